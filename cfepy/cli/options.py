@@ -186,6 +186,12 @@ def _add_processor_id(parser: Options) -> None:
     )
 
 
+def _add_beside(parser: Options) -> None:
+    text = "let another processor fly beside it, in the same virtual time and on one network (from that second on)"
+    metavar = "MISSION[@SECONDS]"
+    parser.add_argument("--with", dest="beside", action="append", default=[], metavar=metavar, help=text)
+
+
 RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "launch_args": _add_launch_args,
     "seconds": _add_seconds,
@@ -205,6 +211,7 @@ RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "settings": _add_settings,
     "spacecraft_id": _add_spacecraft_id,
     "processor_id": _add_processor_id,
+    "beside": _add_beside,
 }
 """What adds the option for each attribute of `RunPlan`, but for the words and the command, which are what is run."""
 
@@ -244,8 +251,8 @@ def plan_of(arguments: argparse.Namespace, words: Sequence[str], command: str | 
         said["schedule"] = schedule.with_points(points) if points else schedule
     if "launch_args" in said:
         said["launch_args"] = () if command == LAUNCH else tuple(said["launch_args"])
-    if "settings" in said:
-        said["settings"] = tuple(said["settings"])
+    for name in said.keys() & {"settings", "beside"}:
+        said[name] = tuple(said[name])
     if said.get("cpp_nodes") is not None:
         said["cpp_nodes"] = cpp_nodes_source(said["cpp_nodes"])
     if command is None:
@@ -311,6 +318,7 @@ _USUAL: Mapping[str, tuple[str, object]] = {
     "settings": ("--set", None),
     "spacecraft_id": ("--spacecraft-id", None),
     "processor_id": ("--processor-id", None),
+    "beside": ("--with", None),
 }
 """The option for each attribute, and its value when nothing is said."""
 

@@ -45,6 +45,7 @@ class MissionOptions(TypedDict, total=False):
         settings: ROS parameters by their full names, in place of what the mission says of them.
         spacecraft_id: number of the spacecraft, in place of the mission's own.
         processor_id: number of the processor, in place of the mission's own.
+        beside: missions that fly beside it, on one network with it; "MISSION@0.5" begins half a second later.
     """
 
     seed: int
@@ -62,6 +63,7 @@ class MissionOptions(TypedDict, total=False):
     settings: Mapping[str, object] | None
     spacecraft_id: int | None
     processor_id: int | None
+    beside: Sequence[str]
 
 
 class RunOptions(MissionOptions, total=False):
@@ -106,6 +108,7 @@ def plan_of(mission: MissionWords, options: Mapping[str, Any], known: Iterable[s
     if "faults" in said:
         said["faults"] = fault_text(said["faults"])
     said["settings"] = tuple((name, json.dumps(value)) for name, value in said.pop("settings", {}).items())
+    said["beside"] = tuple(said.pop("beside", ()))
     said["launch_args"] = tuple((name, str(value)) for name, value in said.pop("args", {}).items())
     return RunPlan(words, NODE if words[0].endswith(_NODE_FILE) else RUN, **said)
 

@@ -54,8 +54,8 @@ def run(
         journal: file into which the run is recorded; None records none.
         echo: whether the console's lines are printed.
         options: `seconds`, `seed`, `board`, `tasks`, `schedule`, `script`, `stop_on_failure`, `faults`, `play`,
-            `play_options`, `args`, `stall`, `guard`, `races`, `cpp_nodes`, `settings`, `spacecraft_id` and
-            `processor_id`, see `RunOptions`.
+            `play_options`, `args`, `stall`, `guard`, `races`, `cpp_nodes`, `settings`, `spacecraft_id`,
+            `processor_id` and `beside`, see `RunOptions`.
 
     Returns:
         The run, with everything that was sent in it.
@@ -97,7 +97,8 @@ def boot(mission: MissionWords, *, attachments: Sequence[Attachment] = (), **opt
         mission: as of `run`.
         attachments: what else watches the run or changes it.
         options: `seed`, `board`, `tasks`, `schedule`, `faults`, `play`, `play_options`, `args`, `stall`, `guard`,
-            `races`, `cpp_nodes`, `settings`, `spacecraft_id` and `processor_id`, see `MissionOptions`.
+            `races`, `cpp_nodes`, `settings`, `spacecraft_id`, `processor_id` and `beside`,
+            see `MissionOptions`.
 
     Returns:
         The flight, to be closed: use it as a context manager.

@@ -120,7 +120,9 @@ class Dictionary:
             return decoded._replace(problem=f"its header has the version {version}, not 0")
         if header == TLM_HEADER_SIZE:
             seconds, subseconds = msg.get_msg_time(packet)
-            return _read(self._by_id.get(msg_id), packet, decoded._replace(time_s=seconds + subseconds / 2**32))
+            found = self._by_id.get(msg_id)
+            found = found.variant_of(packet) if isinstance(found, Telemetry) else found
+            return _read(found, packet, decoded._replace(time_s=seconds + subseconds / 2**32))
         code = msg.get_fcn_code(packet) if header == CMD_HEADER_SIZE else 0
         return _read(self._by_code.get((msg_id, code)), packet, decoded._replace(name=f"{decoded.name}/{code}"))
 
@@ -129,7 +131,7 @@ class Dictionary:
         msg_id, header = msg.get_msg_id(packet), msg.get_header_size(packet)
         if header == TLM_HEADER_SIZE:
             found = self._by_id.get(msg_id)
-            return found if isinstance(found, Telemetry) else None
+            return found.variant_of(packet) if isinstance(found, Telemetry) else None
         return self._by_code.get((msg_id, msg.get_fcn_code(packet))) if len(packet) >= header else None
 
     def fields_of(self, packet: bytes) -> dict[str, Any]:
@@ -169,7 +171,8 @@ def dictionary_of(spec: MissionSpec | None) -> Dictionary:
     found = Dictionary()
     for packets in CORE_PACKETS.values():
         found.add([*packets.COMMANDS, *packets.TELEMETRY])
-    found.add(declared(spec, DECLARATIONS, found.problems))
+    for each in (spec, *(() if spec is None else spec.beside)):
+        found.add(declared(each, DECLARATIONS, found.problems))
     if spec is not None:
         found.add(Topic(topic.name, topic.msg_id, raw=topic.raw) for topic in spec.ros.topics.values())
     return found

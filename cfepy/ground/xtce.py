@@ -89,8 +89,15 @@ class TypeSet:
         self._set = add(parent, f"{what}TypeSet")
         self._known: set[str] = set()
 
-    def number(self, kind: str) -> str:
-        """A number or bool in C's representation, such as "u16", "i8", "f64"; the name of the type."""
+    def number(self, kind: str, big_endian: bool = False) -> str:
+        """A number or bool in C's representation, such as "u16", "i8", "f64"; the name of the type.
+
+        Args:
+            kind: which.
+            big_endian: of an unsigned one, whether its first byte is the highest.
+        """
+        if big_endian and kind[0] == "u":
+            return self.bits(int(kind[1:]))
         if kind == "bool":
             return self._integer("bool", 8, "unsigned", "Boolean")
         bits = int(kind[1:])
@@ -112,11 +119,16 @@ class TypeSet:
                 add(values, "Enumeration", value=str(number), label=label)
         return name
 
-    def cell(self, cell: Cell) -> str:
-        """What a cell of a layout is; the name of the type."""
+    def cell(self, cell: Cell, on_the_wire: bool = False) -> str:
+        """What a cell of a layout is; the name of the type.
+
+        Args:
+            cell: the cell.
+            on_the_wire: as of its layout, whose numbers are unsigned then.
+        """
         if cell.names is not None:
             return self.named(cell.type, cell.names)
-        return self.text(cell.size) if cell.type.startswith("char") else self.number(cell.type)
+        return self.text(cell.size) if cell.type.startswith("char") else self.number(cell.type, on_the_wire)
 
     def bits(self, count: int) -> str:
         """An unsigned number of the packet header, big-endian."""
@@ -242,7 +254,23 @@ class _Telemetry:
             known = isinstance(packet, Telemetry) or (packet.type and not packet.raw)
             if known and packet.msg_id not in taken:
                 taken.add(packet.msg_id)
-                self._add(packet)
+                if isinstance(packet, Telemetry) and packet.variants:
+                    self._add_variants(packet)
+                else:
+                    self._add(packet)
+
+    def _add_variants(self, packet: Telemetry) -> None:
+        """Packets that share a MsgId: a container of what they have in common, and one for each."""
+        common = self._unique(f"{xtce_name(packet.name)}_any")
+        entries = self._container(common, "what packets of one MsgId have in common", is_abstract=True)
+        first = self._unique(f"{common}_first")
+        self._entry(entries, first, self._types.number("u8"))
+        self._base(TELEMETRY, PKT_APID=str(packet.msg_id & APID_MASK))
+        for each in (packet, *packet.variants):
+            name = self._unique(xtce_name(each.name))
+            entries = self._container(name, each.text)
+            self._add_cells(entries, name, [cell for cell in cells_with_padding(each.payload) if cell.offset], each)
+            self._base(common, **{first: str(each.first)})
 
     def _add(self, packet: Telemetry | Topic) -> None:
         name = self._unique(xtce_name(packet.name))
@@ -253,12 +281,16 @@ class _Telemetry:
                 self._entry(entries, part.name, part.type)
             self._base(TELEMETRY, PKT_APID=apid, SEQ_FLGS=WHOLE)
             return
-        for cell in cells_with_padding(packet.payload):
+        self._add_cells(entries, name, cells_with_padding(packet.payload), packet)
+        self._base(TELEMETRY, PKT_APID=apid)
+
+    def _add_cells(self, entries: Element, name: str, cells: Iterable[Cell], packet: Telemetry) -> None:
+        for cell in cells:
             if cell.type == "padding":
                 self._padding(entries, cell.size)
             else:
-                self._entry(entries, self._unique(f"{name}_{xtce_name(cell.path)}"), self._types.cell(cell))
-        self._base(TELEMETRY, PKT_APID=apid)
+                kind = self._types.cell(cell, packet.payload.on_the_wire)
+                self._entry(entries, self._unique(f"{name}_{xtce_name(cell.path)}"), kind)
 
     def _unique(self, name: str) -> str:
         """The name, with underscores behind it as long as another one is the same."""

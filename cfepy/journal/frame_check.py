@@ -144,8 +144,9 @@ PLAN: dict[str, Check] = {
     "settings": _list(lambda value: _named(value) and _text(value[0]) and _text(value[1])),
     "spacecraft_id": _perhaps(_whole),
     "processor_id": _perhaps(_whole),
+    "beside": _list(_text),
 }
-_LATER = {"outcome", "mode", "cpp_nodes", "races", "settings", "play_options"}  # may be missing
+_LATER = {"outcome", "mode", "cpp_nodes", "races", "settings", "play_options", "beside"}  # may be missing
 
 
 def problem_of(kind: str, body: Any) -> str | None:

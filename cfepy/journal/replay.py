@@ -40,6 +40,8 @@ class ReplayCourse(Course):
         until_ns: virtual time at which to end, if that is earlier; None for the end of the run.
     """
 
+    takes_company = False
+
     def __init__(
         self,
         mission: Mission,

@@ -27,7 +27,7 @@ from cfepy.journal.looks import put_in_place
 from cfepy.journal.mission_files import MissionFile
 from cfepy.mission import LAUNCH_FILES, Mission, MissionSpec
 from cfepy.nodes import NodeConfig
-from cfepy.pilot import LAUNCH, NODE, RUN, RunPlan
+from cfepy.pilot import LAUNCH, NODE, RUN, RunPlan, boot_of
 from cfepy.status import UsageError
 
 MOST_NAMED = 8
@@ -218,7 +218,15 @@ def moved_plan(header: Header, root: str) -> RunPlan:
         name: _moved(getattr(plan, name), header.cwd, root)
         for name in ("script", "faults", "play", "board", "cpp_nodes")
     }
-    return replace(plan, words=(root + header.startup, *_arguments(header)), **files)
+    beside = tuple(_moved_mission(text, header.cwd, root) for text in plan.beside)
+    return replace(plan, words=(root + header.startup, *_arguments(header)), beside=beside, **files)
+
+
+def _moved_mission(text: str, cwd: str, root: str) -> str:
+    """Where a mission is now that flew beside the one of the journal; one that cfepy brings along stays."""
+    mission, _ = boot_of(text)
+    place = root + os.path.normpath(os.path.join(cwd, mission))
+    return place + text[len(mission) :] if os.path.exists(place) else text
 
 
 def _arguments(header: Header) -> tuple[str, ...]:

@@ -89,6 +89,8 @@ class Mission:
         stall_watch: ends the run when a task does not give up the CPU.
         processor: what runs between two resets; a reset puts another one here.
         booted: virtual ns at which the mission became OPERATIONAL for the first time, None before.
+        meet: lets those that fly beside it come to where it stands, and tells the virtual ns until which it may go on
+            without them; None when it flies alone.
     """
 
     def __init__(
@@ -124,6 +126,7 @@ class Mission:
         self.kernel.on_task_error = _while_there_is_one(self._task_failed, False)
         self.accesses = Accesses(kernel)
         self.stall_watch = StallWatch(self.kernel, is_own=is_own_code)
+        self.meet: Callable[[], int] | None = None
         self._first_boot: int | None = None
         self._resetting = self._is_closed = False
         self._attachments = tuple(attachments)
@@ -244,15 +247,25 @@ class Mission:
             raise RuntimeError("this mission was closed: its tasks have ended, and it cannot go on; boot another one")
         with HeldBack() as signals:
             if not signals.is_first:
-                self._run(until_ns, self.kernel.run)
+                self._run_meeting(until_ns, self.kernel.run)
                 return
             watch = self.stall_watch
             wanted = watch.wanted
             watch.wanted = lambda: signals.asked or wanted()
             try:
-                self._run(until_ns, lambda end_ns: self._run_in_pieces(end_ns, signals))
+                self._run_meeting(until_ns, lambda end_ns: self._run_in_pieces(end_ns, signals))
             finally:
                 watch.wanted = wanted
+
+    def _run_meeting(self, until_ns: int, run: Callable[[int], None]) -> None:
+        """Run until a virtual time in ns, and on the way meet those that fly beside it."""
+        stop_ns = until_ns
+        while True:
+            if self.meet is not None:
+                stop_ns = min(until_ns, self.meet())
+            self._run(stop_ns, run)
+            if stop_ns == until_ns or self.kernel.now < stop_ns:  # it is there, or was stopped on the way
+                return
 
     def _run(self, until_ns: int, run: Callable[[int], None]) -> None:
         self.stall_watch.begin()

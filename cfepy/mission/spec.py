@@ -81,6 +81,7 @@ class MissionSpec:
             `cfepy.monitors.demands` reads them.
         sweep: what a rate means in it, for `cfepy sweep`.
         ids: what the run gives it of `cfepy.config.IDENTITIES`, in place of its own.
+        beside: the missions that fly beside it: what their applications declare can be seen in this one, too.
     """
 
     name: str
@@ -99,6 +100,7 @@ class MissionSpec:
     demands: Mapping[str, Marked] = field(default_factory=dict)
     sweep: SweepConfig = field(default_factory=SweepConfig)
     ids: Mapping[str, int] = field(default_factory=dict)
+    beside: tuple[MissionSpec, ...] = ()
 
     @property
     def startup_script(self) -> bytes:

@@ -78,12 +78,16 @@ class Telemetry:
         msg_id: its MsgId.
         payload: layout of what follows the 16-byte header.
         text: what it tells, for tools.
+        first: of packets that share their MsgId, the value of the first byte of the payload, which tells them apart.
+        variants: the other packets that have this MsgId.
     """
 
     name: str
     msg_id: int
     payload: Layout = NO_PAYLOAD
     text: str = ""
+    first: int | None = None
+    variants: tuple[Telemetry, ...] = ()
 
     @property
     def length(self) -> int:
@@ -105,3 +109,8 @@ class Telemetry:
             CfeError: CFE_STATUS_WRONG_MSG_LENGTH when the packet is too short.
         """
         return self.payload.unpack(packet, TLM_HEADER_SIZE)
+
+    def variant_of(self, packet: bytes | bytearray | memoryview) -> Telemetry:
+        """Which of the packets with this MsgId a packet is; this one when none fits."""
+        first = packet[TLM_HEADER_SIZE] if len(packet) > TLM_HEADER_SIZE else None
+        return next((each for each in self.variants if each.first == first), self)

@@ -192,6 +192,8 @@ class Layout:
     Args:
         name: the struct's name, for messages.
         fields: (name, type) pairs in order, types as the module says.
+        on_the_wire: big-endian and without padding, as an application packs it by hand; for a payload, not for a struct
+            inside of another one.
 
     Attributes:
         size: bytes, padding at the end included (sizeof).
@@ -206,20 +208,22 @@ class Layout:
     {'Id': 7, 'X': -1, 'Name': 'ab'}
     """
 
-    __slots__ = ("_fields", "_struct", "align", "code", "leaves", "name", "offsets", "size", "sizes")
+    __slots__ = ("_fields", "_struct", "align", "code", "leaves", "name", "offsets", "on_the_wire", "size", "sizes")
 
-    def __init__(self, name: str, fields: Iterable[tuple[str, Any]]) -> None:
+    def __init__(self, name: str, fields: Iterable[tuple[str, Any]], *, on_the_wire: bool = False) -> None:
         self.name: str = name
+        self.on_the_wire: bool = on_the_wire
         self._fields: dict[str, _Type] = {}
         for field, kind in fields:
             if field in self._fields:
                 raise UsageError("is declared twice", field=f"{name}.{field}")
             self._fields[field] = _parse_type(kind, f"{name}.{field}")
         self.sizes: dict[str, int] = {field: kind.size for field, kind in self._fields.items()}
-        self.align: int = max((kind.align for kind in self._fields.values()), default=1)
+        aligns = [] if on_the_wire else [kind.align for kind in self._fields.values()]
+        self.align: int = max(aligns, default=1)
         self.leaves: int = sum(kind.leaves for kind in self._fields.values())
         self._place()
-        self._struct = struct.Struct("<" + self.code)
+        self._struct = struct.Struct((">" if on_the_wire else "<") + self.code)
 
     def _place(self) -> None:
         """Give every field its offset, with padding as a C compiler puts it."""
@@ -227,7 +231,7 @@ class Layout:
         codes: list[str] = []
         at = 0
         for field, kind in self._fields.items():
-            padding = -at % kind.align
+            padding = -at % min(kind.align, self.align)
             codes += [f"{padding}x"] * bool(padding) + [kind.code]
             self.offsets[field] = at + padding
             at += padding + kind.size

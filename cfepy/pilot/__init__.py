@@ -6,6 +6,7 @@ computer alone; this package adds the monitors, scripts and faults that the miss
 
 from __future__ import annotations
 
+from cfepy.pilot.company import boot_of
 from cfepy.pilot.course import BOOT_S, DEFAULT_S, STALLED, SUDDEN, Course
 from cfepy.pilot.pilot import BootError, Flown, Host, LiveRun, booting, fly, takeoff
 from cfepy.pilot.plan import LAUNCH, NODE, RUN, RunPlan, builder, built_node
@@ -43,6 +44,7 @@ __all__ = [
     "RunPlan",
     "RunProblem",
     "TopicResult",
+    "boot_of",
     "booting",
     "builder",
     "built_node",

@@ -5,7 +5,7 @@ A caller flies a mission from stop to stop; nothing in the run depends on where 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from cfepy.mission import Mission
 from cfepy.pilot.results import Mark, mark
@@ -20,6 +20,7 @@ give up the CPU."""
 SUDDEN = (BROKEN_OFF, STALLED)
 """Ends in the middle of something: such a run has no digest, and nothing to be held against at its last instant."""
 DEFAULT_S = 10.0
+LONGEST_S = 1e9  # virtual time is a signed 64-bit number of ns
 NODE_S = 60.0  # virtual time that a single node gets when no length is given
 BOOT_S = 0.55  # virtual time until nodes of a launch file start, which does not count as theirs
 
@@ -35,7 +36,10 @@ class Course:
     Attributes:
         at: what there was when the time was over; set by `end`.
         outcome: of the script, None without one; set by `end`.
+        takes_company: whether missions can fly beside it; what came of them is on record for a replay.
     """
+
+    takes_company: ClassVar[bool] = True
 
     def __init__(self, mission: Mission, seconds: float | None, script: ScriptRun | None = None) -> None:
         self.mission = mission

@@ -12,7 +12,7 @@ collect warnings for the user. What the host does between two pieces of a run is
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict, Unpack
@@ -21,6 +21,7 @@ from cfepy.attachment import Attachment
 from cfepy.cached import CachedProperty
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
+from cfepy.pilot.company import Companion, Company
 from cfepy.pilot.course import BROKEN_OFF, INTERRUPTED, OVER, STALLED, Course
 from cfepy.pilot.plan import RunPlan
 from cfepy.pilot.results import Mark, Results, never_happened
@@ -299,8 +300,9 @@ def takeoff(
     seconds = plan.virtual_s
     if plan.seconds is None and script is None and host.longest_s is not None:
         seconds = host.longest_s
-    with mission:
-        run = LiveRun(plan, mission, make_course(mission, seconds, script), script, host, (*spec.notes, *problems))
+    course = make_course(mission, seconds, script)
+    with mission, _company(plan, spec, mission, course):
+        run = LiveRun(plan, mission, course, script, host, (*spec.notes, *problems))
         host.begin(run)
         try:
             with booting(spec.script):
@@ -323,6 +325,27 @@ def booting(script: Path) -> Iterator[None]:
         yield
     except CfeError as error:
         raise BootError(f"the mission cannot boot: {error}", file=script) from error
+
+
+@contextmanager
+def _company(plan: RunPlan, spec: MissionSpec, mission: Mission, course: Course) -> Iterator[None]:
+    """Around a run: the missions that fly beside it."""
+    if not plan.beside or not course.takes_company:
+        yield
+        return
+    members = [Companion("", mission, 0, mission.run_until)]
+    with ExitStack() as flights:
+        for (text, other, begins_ns), other_spec in zip(plan.companions(), spec.beside, strict=True):
+            console = _beside(mission.console, other.words[0])
+            run = flights.enter_context(takeoff(other, spec=other_spec, console=console))
+            members.append(Companion(text, run.mission, begins_ns, run.run_until))
+        mission.meet = Company(members).advance
+        yield
+
+
+def _beside(console: Console, name: str) -> Console:
+    """The console of a mission that flies beside another one, whose console shows its lines."""
+    return Console(sink=lambda line: console.show(f"{name}: {line}"))
 
 
 def _watch_for_stalls(mission: Mission, plan: RunPlan, host: Host) -> None:

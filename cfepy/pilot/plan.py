@@ -27,7 +27,8 @@ from cfepy.mission import (
     with_settings,
 )
 from cfepy.nodes import CppNode
-from cfepy.pilot.course import BOOT_S, DEFAULT_S, NODE_S
+from cfepy.pilot.company import boot_of
+from cfepy.pilot.course import BOOT_S, DEFAULT_S, LONGEST_S, NODE_S
 from cfepy.rtos import STALL_S, Schedule
 from cfepy.status import UsageError
 
@@ -88,6 +89,7 @@ class RunPlan:
         settings: ROS parameters in place of those that the mission says: full name, and value in YAML.
         spacecraft_id: number of the spacecraft; None takes the mission's own.
         processor_id: number of the processor; None takes the mission's own.
+        beside: missions that fly beside this one, on one network with it; each may say when it begins: "MISSION@0.5".
     """
 
     words: tuple[str, ...]
@@ -110,6 +112,7 @@ class RunPlan:
     settings: tuple[tuple[str, str], ...] = ()
     spacecraft_id: int | None = None
     processor_id: int | None = None
+    beside: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if not isinstance(self.schedule, Schedule):
@@ -126,7 +129,8 @@ class RunPlan:
             spec = replace(spec, compiled=replace(spec.compiled, guard=True))
         if self.settings:
             spec = with_settings(spec, self.settings)
-        return self.with_played_bag(replace(spec, ids=self._ids()))
+        beside = tuple(other.spec() for _, other, _ in self.companions())
+        return self.with_played_bag(replace(spec, ids=self._ids(), beside=beside))
 
     def _ids(self) -> dict[str, int]:
         """The identities that the run gives the mission.
@@ -163,6 +167,24 @@ class RunPlan:
 
         return with_player(spec, self.play, self.play_options or "")
 
+    def companions(self) -> list[tuple[str, RunPlan, int]]:
+        """The missions that fly beside this one: what the user wrote, the plan, the virtual ns at which it begins.
+
+        They have the seed, the tasks and the patience of this plan, and nothing else of it.
+
+        Raises:
+            UsageError: a mission would fly beside itself.
+        """
+        found = []
+        for text in self.beside:
+            mission, begins_ns = boot_of(text)
+            if mission in self.words:
+                what = "give the other one a startup script of its own, and a mission file with another processor_id"
+                raise UsageError(f"{text} would be the same processor twice; {what}", field="--with")
+            plan = RunPlan((mission,), seconds=LONGEST_S, seed=self.seed, tasks=self.tasks, stall=self.stall)
+            found.append((text, plan, begins_ns))
+        return found
+
     def attachments(self) -> list[Attachment]:
         """What the plan itself brings to its run: nothing, but for a plan whose files lie elsewhere than they did."""
         return []
@@ -189,6 +211,8 @@ class RunPlan:
             options += ["--arg", f"{name}:={value}"]
         for name, value in plan.settings:
             options += ["--set", f"{name}={value}"]
+        for other in plan.beside:
+            options += ["--with", other]
         if plan.seconds is not None:
             options += ["--for", f"{plan.seconds:.12g}"]
         for each in ("seed", "board", "tasks", "schedule", "script", "play", "faults", "cpp_nodes", *IDENTITIES):
@@ -225,6 +249,7 @@ class RunPlan:
                 "words": tuple(plain["words"]),
                 "launch_args": _pairs(plain.get("launch_args", ())),
                 "settings": _pairs(plain.get("settings", ())),
+                "beside": tuple(plain.get("beside", ())),
                 "schedule": Schedule.parse(plain.get("schedule", Schedule().text())),
             }
         )

@@ -182,9 +182,9 @@ class Results:
     why the run did not end well, `faults` has a row for each fault that was to happen, `deadlines` one for each of the
     mission file, `inversions` one for each lock that a task waited for while a third one held up its holder,
     `ros_peers` one for each ROS node outside that the run was joined to, `viewer_peers` one for what went each way
-    between each viewer and each topic, `script_problems` what of the startup script could not be started,
-    `endless_waits` a line for each task that nobody can wake any more, `missed_moves` which moves of the schedule were
-    not possible.
+    between each viewer and each topic, `beside` one for each mission that flew beside this one, `script_problems` what
+    of the startup script could not be started, `endless_waits` a line for each task that nobody can wake any more,
+    `missed_moves` which moves of the schedule were not possible.
     """
 
     mission: str
@@ -210,6 +210,7 @@ class Results:
     faults: list[dict[str, Any]]
     ros_peers: list[dict[str, Any]]
     viewer_peers: list[dict[str, Any]]
+    beside: list[dict[str, Any]]
     script_problems: list[str]
     endless_waits: list[str]
     missed_moves: list[str]
@@ -252,6 +253,7 @@ class Results:
             faults=record.rows("faults"),
             ros_peers=record.rows("ros_peers"),
             viewer_peers=record.rows("viewer_peers"),
+            beside=record.rows("beside"),
             script_problems=_script_problems(mission, apps),
             endless_waits=at.endless_waits,
             missed_moves=_missed_moves(mission),

@@ -97,6 +97,7 @@ OPTIONS: dict[str, tuple[list[str], Any]] = {
     "settings": (["--set", "/arm/rate=20"], (("/arm/rate", "20"),)),
     "spacecraft_id": (["--spacecraft-id", "67"], 67),
     "processor_id": (["--processor-id", "2"], 2),
+    "beside": (["--with", "pair/client.scr@0.5"], ("pair/client.scr@0.5",)),
 }
 SAID_OTHERWISE = {
     ("launch", "launch_args"): "its words have them, as for roslaunch",

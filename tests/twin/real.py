@@ -11,10 +11,11 @@ import os
 import re
 import select
 import shutil
+import signal
 import socket
 import subprocess
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
@@ -69,6 +70,7 @@ class RealCfe:
         folder: where its private copy goes.
         files: what to write over files of the copy, by virtual path ("/cf/x").
         line: the ports at which it hears the ground and the ground hears it.
+        arguments: of its command line, such as "--cpuid", "2".
 
     Attributes:
         inside: id of the first process of its namespaces.
@@ -80,7 +82,9 @@ class RealCfe:
         folder: Path,
         files: Mapping[str, bytes],
         line: tuple[int, int] = (CI_PORT, TO_PORT),
+        arguments: Sequence[str] = (),
     ) -> None:
+        self._arguments = tuple(arguments)
         self._folder = folder
         self._up_port, self._down_port = line
         shutil.copytree(built / "cf", folder / "cf")
@@ -93,7 +97,10 @@ class RealCfe:
         spaces = [*NOT_LONGER_THAN_US, "taskset", "-c", str(one_cpu()), *NAMESPACES]
         with self._log.open("wb") as log:
             self._process = subprocess.Popen(
-                [*spaces, "bash", "-c", FOREVER, "-", f"./{EXECUTABLE}"], cwd=self._folder, stdout=log, stderr=log
+                [*spaces, "bash", "-c", FOREVER, "-", f"./{EXECUTABLE}", *self._arguments],
+                cwd=self._folder,
+                stdout=log,
+                stderr=log,
             )
         try:
             self.wait(lambda: self.boots() > 0, "boot", BOOT_LIMIT_S)
@@ -127,6 +134,11 @@ class RealCfe:
         if not select.select([self._down], [], [], max(0.0, timeout_s))[0]:
             return None
         return self._down.recv(65536)
+
+    def kill(self) -> None:
+        """End its process as a crash would; it is started again."""
+        for child in Path(f"/proc/{self.inside}/task/{self.inside}/children").read_text().split():
+            os.kill(int(child), signal.SIGKILL)
 
     def console(self) -> bytes:
         """All that was printed since the start."""

@@ -18,6 +18,7 @@ def show(results: Results, stream: TextIO) -> None:
         *faults(results),
         *_peers("ROS outside", results.ros_peers),
         *_peers("Viewers", results.viewer_peers),
+        *_beside(results),
         *_pipes(results),
         *_deadlines(results),
         *_inversions(results),
@@ -101,6 +102,20 @@ def _peers(title: str, rows: list[dict[str, Any]]) -> list[Table]:
     for row in rows:
         counts = [row[key] for key in ("messages", "dropped", "connections", "ended", "refused")]
         table.add(row["name"], row["peer"], row["direction"], *counts, row["why"])
+    return [table] if table.rows else []
+
+
+def _beside(results: Results) -> list[Table]:
+    """The missions that flew beside this one, and their datagrams."""
+    table = Table(
+        "Beside it",
+        ("mission", "booted, s", "sent", "taken", "lost", "resets", "died of", "trace"),
+        right=(1, 2, 3, 4, 5),
+    )
+    for row in results.beside:
+        booted = "" if row["booted_s"] is None else f"{row['booted_s']:.3f}"
+        counts = [row[key] for key in ("sent", "taken", "lost", "resets")]
+        table.add(row["mission"], booted, *counts, row["died"], row["trace"])
     return [table] if table.rows else []
 
 

@@ -1,0 +1,11 @@
+"""SBN, the Software Bus Network: joins the Software Buses of several processors. NASA's SBN 1.18.0.
+
+Each SBN tells its peers what its processor subscribes to, and sends on what they subscribe to.
+"""
+
+from __future__ import annotations
+
+from .app import SBN_AppMain, run
+from .packets import COMMANDS, TABLES, TELEMETRY
+
+__all__ = ["COMMANDS", "TABLES", "TELEMETRY", "SBN_AppMain", "run"]

@@ -1,0 +1,278 @@
+"""The nets and peers of an SBN, what goes to them and comes from them (SBN_NetInterface_t, SBN_PeerInterface_t).
+
+A peer that is heard of is connected: it gets a pipe of its own, into which go the messages that it subscribes to, and
+is told the protocol's version and what this processor subscribes to. How it is reached is the protocol module's affair.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from cfepy.app import Cfe
+from cfepy.msg import PRIMARY_HEADER_SIZE, get_size
+from cfepy.osal import OS_TIME_ZERO, OsTime
+from cfepy.sb import PIPEOPTS_IGNOREMINE
+from cfepy.status import CfeError
+
+from . import events as ev
+from . import protocol as pr
+from .remap import Remap
+from .subscriptions import Subscriptions
+
+PEER_PIPE_DEPTH = 32
+
+
+class Module(Protocol):
+    """A protocol module (SBN_IfOps_t)."""
+
+    def init_net(self, net: Net) -> None:
+        """Open what the net is reached by."""
+
+    def poll_peer(self, peer: Peer) -> None:
+        """Do what is due for a peer: say that this processor is there, notice that the other one is not any more."""
+
+    def send(self, peer: Peer, message: pr.NetMsg) -> None:
+        """Send a message; OsalError when that failed."""
+
+    def recv(self, net: Net, pend: bool) -> pr.NetMsg | None:
+        """The next message of a net, of one of its peers, which is connected then; None when there is none now.
+
+        Args:
+            net: which.
+            pend: wait for it.
+
+        Raises:
+            Malformed: what came is none. The module told of it.
+        """
+
+    def unload_net(self, net: Net) -> None:
+        """Say good-bye to its peers, and close it."""
+
+
+@dataclass(eq=False)
+class Peer:
+    """Another processor (SBN_PeerInterface_t).
+
+    Attributes:
+        processor_id, spacecraft_id, address, task_flags: as in the configuration table.
+        net: where it is.
+        filters: what its messages pass.
+        subs: the MsgIds on this processor's bus that it wants.
+        pipe: for messages that it wants; 0 when it is not connected.
+        has_greeted: it has told its version since it was connected.
+        last_send, last_recv: local times.
+        send_cnt, recv_cnt, send_err_cnt, recv_err_cnt: messages since it was connected.
+        send_task: id of the task that sends to it; 0 without one.
+    """
+
+    processor_id: int
+    spacecraft_id: int
+    address: str
+    task_flags: int
+    net: Net
+    filters: list[Remap] = field(default_factory=list)
+    subs: dict[int, None] = field(default_factory=dict)
+    pipe: int = 0
+    connected: bool = False
+    has_greeted: bool = False
+    last_send: OsTime = OS_TIME_ZERO
+    last_recv: OsTime = OS_TIME_ZERO
+    send_cnt: int = 0
+    recv_cnt: int = 0
+    send_err_cnt: int = 0
+    recv_err_cnt: int = 0
+    send_task: int = 0
+
+    @property
+    def name(self) -> str:
+        """Spacecraft and processor, as events have them."""
+        return f"{self.spacecraft_id}:{self.processor_id}"
+
+    def reset_counts(self) -> None:
+        """Set the counters to zero."""
+        self.send_cnt = self.recv_cnt = self.send_err_cnt = self.recv_err_cnt = 0
+
+
+@dataclass(eq=False)
+class Net:
+    """Processors that reach each other by one protocol (SBN_NetInterface_t).
+
+    Attributes:
+        index: its number in the configuration table.
+        module, protocol_idx: the protocol module; None while the table has not said how this processor is reached.
+        address, task_flags: of this processor.
+        peers: the others.
+        socket: what the module opened; 0 for nothing.
+        recv_task: id of the task that receives; 0 without one.
+    """
+
+    index: int
+    module: Module | None = None
+    protocol_idx: int = 0
+    address: str = ""
+    task_flags: int = 0
+    peers: list[Peer] = field(default_factory=list)
+    socket: int = 0
+    recv_task: int = 0
+
+    def peer(self, processor_id: int, spacecraft_id: int) -> Peer | None:
+        """The peer with these ids (SBN_GetPeer)."""
+        for peer in self.peers:
+            if (peer.processor_id, peer.spacecraft_id) == (processor_id, spacecraft_id):
+                return peer
+        return None
+
+
+class Nets:
+    """All nets, and the ways from and to the Software Bus.
+
+    Args:
+        cfe: the app's handle.
+        subscriptions: those of this processor.
+
+    Attributes:
+        nets: by number; one that the table leaves out has no module.
+        longest: bytes of the longest message.
+    """
+
+    def __init__(self, cfe: Cfe, subscriptions: Subscriptions) -> None:
+        self._cfe = cfe
+        self._subscriptions = subscriptions
+        self.nets: list[Net] = []
+        self.longest = cfe.sb.config.sb_max_msg_size
+        self._send_mutex = cfe.os.mut_sem_create("sbn_send_mutex")
+
+    @property
+    def peers(self) -> list[Peer]:
+        """The peers of all nets."""
+        return [peer for net in self.nets for peer in net.peers]
+
+    # -- connections -------------------------------------------------------------------------------------------------
+
+    def connected(self, peer: Peer) -> None:
+        """A peer is there: make its pipe, tell it the version and what this processor wants (SBN_Connected)."""
+        cfe = self._cfe
+        name = f"SBN_{peer.processor_id}_{peer.spacecraft_id}_Pipe"
+        try:
+            peer.pipe = cfe.sb.create_pipe(PEER_PIPE_DEPTH, name)
+        except CfeError:
+            cfe.evs.send_err(ev.PEER_EID, f"ERROR: could not connect peer: could not create peer pipe '{name}'")
+            return
+        cfe.evs.send_info(ev.PEER_EID, f"Created peer pipe '{name}'")
+        cfe.sb.set_pipe_opts(peer.pipe, PIPEOPTS_IGNOREMINE)
+        cfe.evs.send_info(ev.PEER_EID, f"Peer {peer.name} connected.")
+        peer.last_recv = cfe.os.get_local_time()
+        peer.connected, peer.has_greeted = True, False
+        if self.send(peer, pr.PROTO_MSG, bytes([pr.PROTO_VER])):
+            self.send(peer, pr.SUB_MSG, self._subscriptions.all())
+
+    def disconnected(self, peer: Peer) -> None:
+        """A peer is gone: so are its pipe and subscriptions (SBN_Disconnected)."""
+        cfe = self._cfe
+        pipe, peer.pipe, peer.connected = peer.pipe, 0, False
+        peer.subs.clear()
+        peer.reset_counts()
+        try:
+            cfe.sb.delete_pipe(pipe)
+        except CfeError as error:
+            text = f"could not delete pipe when disconnecting peer {peer.name}: {error.hex}"
+            cfe.evs.send_err(ev.PEER_EID, f"ERROR: could not disconnect peer: {text}")
+        cfe.evs.send_info(ev.PEER_EID, f"Disconnected from peer {peer.name}.")
+
+    # -- out ---------------------------------------------------------------------------------------------------------
+
+    def send(self, peer: Peer, kind: int, payload: bytes = b"") -> bool:
+        """Send a message to a peer; whether that was possible (SBN_SendNetMsg)."""
+        cfe = self._cfe
+        module = peer.net.module
+        if module is None:
+            return False
+        if len(payload) > pr.LONGEST:
+            peer.send_err_cnt += 1
+            text = f"a message of {len(payload)} bytes cannot be sent to peer {peer.name}, at most {pr.LONGEST}"
+            cfe.evs.send_err(ev.PEER_EID, text)
+            return False
+        message = pr.NetMsg(kind, cfe.psp.get_processor_id(), cfe.psp.get_spacecraft_id(), payload)
+        if peer.send_task:
+            cfe.os.mut_sem_take(self._send_mutex)
+        try:
+            module.send(peer, message)
+            peer.send_cnt += 1
+        except CfeError:  # the module told of it
+            peer.send_err_cnt += 1
+            return False
+        finally:
+            peer.last_send = cfe.os.get_local_time()  # also when it failed, so that it is not tried at once again
+            if peer.send_task:
+                cfe.os.mut_sem_give(self._send_mutex)
+        return True
+
+    def send_packet(self, peer: Peer, packet: bytes) -> None:
+        """Send a message of the Software Bus to a peer, if the filters let it pass."""
+        filtered = through(peer, packet)
+        if filtered is not None:
+            self.send(peer, pr.APP_MSG, filtered)
+
+    # -- in ----------------------------------------------------------------------------------------------------------
+
+    def process(self, net: Net, message: pr.NetMsg) -> None:
+        """Do what a message of a connected peer says (SBN_ProcessNetMsg)."""
+        peer = net.peer(message.processor_id, message.spacecraft_id)
+        if peer is None:
+            return
+        peer.last_recv = self._cfe.os.get_local_time()
+        if message.kind & pr.MODULE_SPECIFIC:
+            return
+        peer.recv_cnt += 1
+        try:
+            self._process(peer, message)
+        except CfeError as error:
+            peer.recv_err_cnt += 1
+            text = f"(Status={error.status} MsgType=0x{message.kind:x}): {error}"
+            self._cfe.evs.send_err(ev.SB_EID, f"ERROR: could not process peer message: {text}")
+
+    def _process(self, peer: Peer, message: pr.NetMsg) -> None:
+        if message.kind == pr.APP_MSG:
+            self._publish(peer, message.payload)
+        elif message.kind == pr.SUB_MSG:
+            self._subscriptions.from_peer(peer, message.payload)
+        elif message.kind == pr.UNSUB_MSG:
+            self._subscriptions.unsub_from_peer(peer, message.payload)
+        elif message.kind == pr.PROTO_MSG:
+            self._compare_versions(peer, message.payload)
+        elif message.kind != pr.NO_MSG:
+            raise pr.Malformed("unknown message type")
+
+    def _publish(self, peer: Peer, packet: bytes) -> None:
+        """Put a message of a peer on the bus as it is."""
+        size = get_size(packet) if len(packet) > PRIMARY_HEADER_SIZE else self.longest + 1
+        if size > len(packet):
+            raise pr.Malformed(f"a packet of {len(packet)} bytes that says it has {size}")
+        filtered = through(peer, packet[:size])
+        if filtered is not None:
+            self._cfe.sb.transmit_msg(filtered, is_origination=False)
+
+    def _compare_versions(self, peer: Peer, payload: bytes) -> None:
+        """Tell whether a peer has the same version; one that says so again was reset, and knows no subscriptions."""
+        if not payload:
+            raise pr.Malformed("a protocol version of no bytes")
+        if peer.has_greeted:
+            self.send(peer, pr.SUB_MSG, self._subscriptions.all())
+        peer.has_greeted = True
+        if payload[0] == pr.PROTO_VER:
+            self._cfe.evs.send_info(ev.SB_EID, f"SBN protocol version match with peer {peer.name}")
+            return
+        versions = f"my version={pr.PROTO_VER}, peer version {payload[0]}"
+        text = f"SBN protocol version mismatch with peer {peer.name}, {versions}"
+        self._cfe.evs.send_err(ev.SB_EID, f"ERROR: could not process peer message: {text}")
+
+
+def through(peer: Peer, packet: bytes) -> bytes | None:
+    """A packet as the filters of a peer leave it; None when it is not to go on."""
+    passed: bytes | None = packet
+    for each in peer.filters:
+        if passed is None:
+            return None
+        passed = each.filter(passed, peer.processor_id, peer.spacecraft_id)
+    return passed

@@ -1,0 +1,19 @@
+"""SBN's default remapping, NASA's: one MsgId is another one at processor 3, all others are what they are.
+
+After a change: `python -m apps.sbn.tables.sbn_remap_tbl` writes sbn_remap_tbl.tbl anew.
+"""
+
+from __future__ import annotations
+
+from cfepy.tbl import TableImage, write_beside
+
+from ..definition import remapping
+
+
+def image() -> TableImage:
+    """The table."""
+    return remapping([(3, 0x0882, 0x0883)])
+
+
+if __name__ == "__main__":
+    write_beside(__file__, image())

@@ -1,0 +1,122 @@
+"""Missions that fly beside another one, as processors on one network: `--with MISSION`.
+
+Each is a simulated computer of its own, with its own kernel, so the missions go forward in turn, a link's delay at a
+time. Datagrams that a mission sends to a port that none of its own sockets has are collected meanwhile, and come in at
+the ports of the others at the next such instant, through the same door as what comes from real sockets. Nothing can
+arrive earlier than that, so it does not matter who goes first: the run is a function of the missions and the seed. A
+journal of the first mission has what came in, and is replayed without the others.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from cfepy.mission import Mission
+from cfepy.osal import Datagram, Place
+from cfepy.units import NS_PER_MS, NS_PER_S
+
+LOOPBACK = "127.0.0.1"
+LINK_NS = NS_PER_MS
+"""How long a datagram is under way at most, virtual ns; it comes in at a multiple of this time."""
+
+TABLE = "beside"
+_LATER = re.compile(r"(?P<mission>.+)@(?P<seconds>\d+(\.\d+)?)")
+
+
+def boot_of(text: str) -> tuple[str, int]:
+    """A mission and the virtual time in ns at which its computer is switched on: "pair/client.scr@0.35"."""
+    found = _LATER.fullmatch(text)
+    return (text, 0) if found is None else (found["mission"], round(float(found["seconds"]) * NS_PER_S))
+
+
+@dataclass(eq=False)
+class Companion:
+    """A mission of the company.
+
+    Attributes:
+        name: as the user has written it.
+        mission: it.
+        begins_ns: virtual time of the first mission at which this one begins.
+        run_until: lets it go on to a virtual time of its own, in ns.
+        sent, taken, lost: datagrams that it sent to the others, that came in, that found no room or no socket any more.
+    """
+
+    name: str
+    mission: Mission
+    begins_ns: int
+    run_until: Callable[[int], object]
+    sent: int = 0
+    taken: int = 0
+    lost: int = 0
+
+    def row(self) -> dict[str, Any]:
+        """Its row of the report."""
+        mission = self.mission
+        deaths = mission.record.deaths()
+        return {
+            "mission": self.name,
+            "booted_s": None if mission.booted is None else (mission.booted + self.begins_ns) / NS_PER_S,
+            "sent": self.sent,
+            "taken": self.taken,
+            "lost": self.lost,
+            "resets": len(mission.record.resets),
+            "died": "; ".join(deaths),
+            "trace": mission.trace.digest(),
+        }
+
+
+class Company:
+    """The missions, and the network between them.
+
+    Args:
+        members: the first one is flown by the caller.
+    """
+
+    def __init__(self, members: list[Companion]) -> None:
+        self._members = members
+        self._under_way: list[tuple[Companion, Datagram]] = []
+        self._due_ns = 0
+        for each in members:
+            each.mission.network.outlets.append(self._outlet(each))
+        members[0].mission.record.tables[TABLE] = lambda: [each.row() for each in members[1:]]
+
+    def advance(self) -> int:
+        """Bring all members to where the first one stands; the virtual time in ns until which it may go on now."""
+        now_ns = self._members[0].mission.kernel.now
+        if now_ns >= self._due_ns:
+            for each in self._members[1:]:
+                if now_ns > each.begins_ns:
+                    each.run_until(now_ns - each.begins_ns)
+            self._deliver(now_ns)
+            self._due_ns = now_ns - now_ns % LINK_NS + LINK_NS
+        return self._due_ns
+
+    def _outlet(self, sender: Companion) -> Callable[[Datagram], object]:
+        def leave(datagram: Datagram) -> None:
+            if datagram.target.is_here and not datagram.target.is_ip6:
+                self._under_way.append((sender, datagram))
+
+        return leave
+
+    def _deliver(self, now_ns: int) -> None:
+        under_way, self._under_way = self._under_way, []
+        under_way.sort(key=lambda each: self._members.index(each[0]))
+        for sender, datagram in under_way:
+            receiver = self._receiver(sender, datagram.target)
+            if receiver is None:
+                continue  # a port that nobody has, such as the ground's
+            sender.sent += 1
+            source = Place(LOOPBACK, datagram.source.port)
+            if receiver.mission.outside.datagram(datagram.target.port, source, datagram.data):
+                receiver.taken += 1
+            else:
+                receiver.lost += 1
+
+    def _receiver(self, sender: Companion, target: Place) -> Companion | None:
+        for each in self._members:
+            if each is not sender and each.mission.network.datagrams.find(target.reached()) is not None:
+                return each
+        return None
