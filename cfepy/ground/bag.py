@@ -142,6 +142,11 @@ class BagReader:
         return list(self._bag.contents.connections.values())
 
     @property
+    def start_ns(self) -> int | None:
+        """Time of the first message; None when there is none."""
+        return min((chunk.start for chunk in self._bag.contents.chunks), default=None)
+
+    @property
     def length_ns(self) -> int:
         """Time from the first message to the last."""
         chunks = self._bag.contents.chunks

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from cfepy.ground.bag import CHUNK_BYTES, storage
+from cfepy.ground.json_packets import PACKETS
 from cfepy.ground.mcap_writer import COMPRESSIONS, McapWriter
 from cfepy.mission import described
 from cfepy.status import UsageError
@@ -196,6 +197,19 @@ def summary_of(file: str) -> RecordingSummary:
         for _ in _Count(summary, salvage).messages():
             pass
     return summary
+
+
+def packets_of(file: str) -> Iterator[RecordedMessage]:
+    """The packets of cFE in an MCAP file, as JSON (`cfepy.ground.json_packets`); none in a bag.
+
+    Raises:
+        UsageError: the file cannot be read, or is broken.
+    """
+    with _opened(file) as (_, salvage):
+        for message in salvage.messages():
+            channel = message.channel
+            if channel.encoding == "json" and channel.topic.startswith(PACKETS) and "msg_id" in channel.metadata:
+                yield message
 
 
 def rewrite(file: str, output: str, compression: str | None = None, strict: bool = False) -> RecordingSummary:

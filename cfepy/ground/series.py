@@ -12,6 +12,8 @@ What is sent is kept as it is, and decoded when somebody asks for its values. Re
 
 from __future__ import annotations
 
+import base64
+import json
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,13 +21,15 @@ from cfepy.attachment import Attachment
 from cfepy.ground.bag import BagReader
 from cfepy.ground.dictionary import Dictionary, dictionary_of
 from cfepy.ground.fields import MessageDecoder, array_of, columns_of, names_in, path_of, steps_of, unit_at, values_at
+from cfepy.ground.json_packets import PACKETS
+from cfepy.ground.recording import packets_of
 from cfepy.ground.topics import topics_of
 from cfepy.ground.values import unknown_field
 from cfepy.markup import headline, rows_of
 from cfepy.mission import Mission, PacketWatch, Seen, TopicMessage, TopicWatch, matches
 from cfepy.msg import TLM_HEADER_SIZE, Command, Telemetry, get_fcn_code, get_header_size, get_msg_time
 from cfepy.sb import SoftwareBus
-from cfepy.status import UsageError
+from cfepy.status import CfeError, UsageError
 from cfepy.suggestions import like
 from cfepy.units import NS_PER_S
 
@@ -69,7 +73,7 @@ class Series:
         self._sent: list[Any] = []
         self._messages: list[Any] = []
 
-    def add(self, sent: TopicMessage | Seen) -> None:
+    def add(self, sent: TopicMessage | Seen | RecordedPacket) -> None:
         """Take the next one."""
         self.count += 1
         if (self.count - 1) % self.every:
@@ -311,27 +315,77 @@ def candidates(name: str) -> list[str]:
 
 
 def bag_series(file: str, words: Sequence[str] = (), seconds: float | None = None) -> SeriesSet:
-    """The series of a bag.
+    """The series of a bag, or of an MCAP file, which has packets of cFE, too.
 
     Args:
         file: the bag.
         words: what is wanted of it, as `SeriesRecorder` takes them; everything when there are none.
-        seconds: how much of it; None is all.
+        seconds: how much of it, from its first message on a topic on; None is all.
 
     Raises:
-        UsageError: there is no such bag, it is broken, or a word names no topic.
+        UsageError: there is no such bag, it is broken, or a word names nothing in it.
     """
-    for word in words:
-        if not word.startswith("/"):
-            raise UsageError(f"{word} is no topic, which begins with /; a bag has nothing else", file=file)
+    packets = [word for word in words if not word.startswith("/")]
+    topics = _topics_of(words)
     found = SeriesSet()
+    start_ns: int | None = None
     with BagReader(file) as bag:
         found._silent = [connection.topic for connection in bag.connections]
-        for message in bag.messages(_topics_of(words)):
+        for message in bag.messages(topics) if topics or not words else ():
             if seconds is not None and message.at_ns > seconds * NS_PER_S:
                 break
             found.take_message(message)
+        start_ns = bag.start_ns
+    if packets or not words:
+        _take_packets(found, file, packets, start_ns, seconds)
     return found
+
+
+class RecordedPacket(NamedTuple):
+    """A packet of an MCAP file: virtual time since the file's first message on a topic, and what is in it."""
+
+    at_ns: int
+    packet: bytes
+    values: dict[str, Any]
+    stamp_ns: int | None
+
+
+def _take_packets(
+    found: SeriesSet, file: str, words: Sequence[str], start_ns: int | None, seconds: float | None
+) -> None:
+    wanted = {name for word in words for name, _ in meanings(word)}
+    there: set[str] = set()
+    for message in packets_of(file):
+        name = message.channel.topic.removeprefix(PACKETS)
+        there.add(name)
+        if words and name not in wanted:
+            continue
+        start_ns = message.time if start_ns is None else start_ns
+        if seconds is not None and message.time - start_ns > seconds * NS_PER_S:
+            continue
+        packet = _recorded_packet(message.data, message.time - start_ns, file)
+        series = found.get(name)
+        if series is None:
+            kind = "command" if packet.stamp_ns is None else "telemetry"
+            series = Series(name, kind, lambda sent: sent.values, lambda sent: sent.stamp_ns)
+            found.add(series)
+        series.add(packet)
+    if words and not there:
+        raise UsageError(f"{words[0]} is no topic, which begins with /; there is nothing else in it", file=file)
+    found._silent += sorted(there)
+
+
+def _recorded_packet(data: bytes, at_ns: int, file: str) -> RecordedPacket:
+    try:
+        values = json.loads(data)
+        header, packet = values["_header"], base64.b64decode(values["_packet"])
+        fields = {name: value for name, value in values.items() if name not in ("_header", "_packet")}
+        if "problem" in header:
+            fields = {"data": packet[get_header_size(packet) :]}
+        stamp_ns = round(header["time_s"] * NS_PER_S) if "time_s" in header else None
+    except (ValueError, LookupError, TypeError, CfeError) as error:
+        raise UsageError(f"has a packet that cannot be read: {error}", file=file) from None
+    return RecordedPacket(at_ns, packet, fields, stamp_ns)
 
 
 def _topics_of(words: Sequence[str]) -> list[str]:

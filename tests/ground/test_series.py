@@ -10,6 +10,7 @@ import numpy
 import pytest
 
 from cfepy.ground.bag import BagRecorder
+from cfepy.ground.mcap_recorder import McapRecorder
 from cfepy.ground.series import SeriesRecorder, SeriesSet, bag_series, meanings
 from cfepy.pilot import RunPlan, fly, takeoff
 from cfepy.status import UsageError
@@ -130,8 +131,32 @@ def test_a_packet_that_the_mission_has_not() -> None:
 
 
 def test_a_bag_has_topics_only(tmp_path: Path) -> None:
+    file = str(tmp_path / "x.bag")
+    with BagRecorder(file):
+        pass
     with pytest.raises(UsageError, match="CFE_ES_HK_TLM is no topic"):
-        bag_series(str(tmp_path / "x.bag"), ["CFE_ES_HK_TLM"])
+        bag_series(file, ["CFE_ES_HK_TLM"])
+
+
+def test_an_mcap_file_has_packets_as_the_run_has(tmp_path: Path) -> None:
+    file, recorder = str(tmp_path / "run.mcap"), SeriesRecorder()
+    with McapRecorder(file) as mcap:
+        fly(PLAN, attachments=[recorder, mcap])
+    found = bag_series(file)
+    assert {"CFE_ES_HK_TLM", "CFE_EVS_LONG_EVENT_MSG", "/joint_states"} <= set(found.names)
+    for name in ("CFE_ES_HK_TLM", "CFE_EVS_LONG_EVENT_MSG", "CFE_TIME_HK_TLM", "HK_HK_TLM"):
+        of_run, of_file = recorder.series(name), found.series(name)
+        ours, theirs = of_run.columns(), of_file.columns()
+        assert list(ours) == list(theirs)
+        for column, values in ours.items():
+            assert numpy.array_equal(values, theirs[column]), (name, column)
+        assert numpy.allclose(of_run.stamps_ns, of_file.stamps_ns, atol=1000, rtol=0)
+        apart = set(of_run.times_ns - of_file.times_ns)
+        assert len(apart) == 1, "the file begins with its first message on a topic"
+    alone = bag_series(file, ["CFE_ES_HK_TLM.SysLogBytesUsed"])
+    assert alone.names == ["CFE_ES_HK_TLM"]
+    with pytest.raises(UsageError, match="did you mean CFE_ES_HK_TLM"):
+        bag_series(file, ["CFE_ES_HK_TM.SysLogBytesUsed"]).found("CFE_ES_HK_TM.SysLogBytesUsed")
 
 
 def test_a_table(recorded: Recorded) -> None:
