@@ -28,5 +28,6 @@ def test_every_command_and_packet_of_every_mission(tmp_path: Path) -> None:
     said = run_in_own_network(FLIGHT, "compare", 10, cwd=tmp_path)
     found = re.findall(r"^\w+ (\d+) commands, (\d+) values of telemetry$", said, re.MULTILINE)
     assert len(found) == 7
+    assert re.search(r"^topics 2\d$", said, re.MULTILINE)
     assert sum(int(commands) for commands, _ in found) > 4000
     assert sum(int(values) for _, values in found) > 40_000

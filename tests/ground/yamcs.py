@@ -6,6 +6,7 @@ HTTP API (https://docs.yamcs.org/yamcs-http-api/).
 
 from __future__ import annotations
 
+import base64
 import json
 import os
 import shutil
@@ -36,6 +37,7 @@ _VALUES = {
     "STRING": "stringValue",
     "BOOLEAN": "booleanValue",
     "ENUMERATED": "stringValue",
+    "BINARY": "binaryValue",
 }
 
 
@@ -119,6 +121,8 @@ def value_of(said: Mapping[str, Any]) -> object:
         return int(value)
     if kind == "FLOAT":
         return struct.unpack("<f", struct.pack("<f", float(value)))[0]
+    if kind == "BINARY":
+        return base64.b64decode(value)
     return float(value) if kind == "DOUBLE" else value
 
 

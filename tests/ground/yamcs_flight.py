@@ -14,12 +14,14 @@ from pathlib import Path
 from random import Random
 
 from cfepy.ground.dictionary import Dictionary
+from cfepy.ground.topics import Topic
 from cfepy.ground.xtce import xtce_name, xtce_of
 from cfepy.msg import TLM_HEADER_SIZE, Cell, Command, Telemetry, generate_checksum
 from tests.ground import yamcs
 from tests.ground.page import blocks
 from tests.ground.page_flight import COUNTED, ENABLED, flying, output_of
 from tests.ground.random_packets import SEQUENCES, random_payload, random_telemetry, xtce_values
+from tests.ground.test_xtce import Export
 from tests.ground.test_xtce_missions import ALL_TYPES, MISSIONS, dictionary_named
 
 LOOPBACK = "127.0.0.1"
@@ -131,13 +133,50 @@ def _argument(cell: Cell, value: object) -> object:
     return str(value) if cell.type in ("u64", "i64") else value
 
 
+class Topics:
+    """ROS messages of a flight: what Yamcs reads, and what space_packet_parser does.
+
+    Args:
+        number: of its instance.
+        home: of Yamcs.
+    """
+
+    name = "topics"
+
+    def __init__(self, number: int, home: Path) -> None:
+        folder = Path(self.name)
+        folder.mkdir()
+        self._export = Export(folder)
+        self._tm = (LOOPBACK, yamcs.ports_of(number)[0])
+        (home / f"mdb/{self.name}.xml").write_text(self._export.text)
+
+    def compare(self) -> int:
+        """Send one message of each topic to Yamcs; how many values were compared."""
+        compared = 0
+        topics = [each for each in self._export.dictionary.telemetry.values() if isinstance(each, Topic)]
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+            for topic in (each for each in topics if each.msg_id in self._export.packets):
+                link.sendto(self._export.packets[topic.msg_id], self._tm)
+                read = dict(self._export.definition.parse_bytes(self._export.packets[topic.msg_id]))
+                names = [name for name in read if name.startswith(f"{xtce_name(topic.name)}_")]
+                wanted = {f"/{self.name}/{name}": read[name] for name in names}
+                theirs: dict[str, object] = {}
+                while set(theirs) != set(wanted):
+                    theirs = yamcs.parameters(self.name, wanted)
+                assert theirs == wanted
+                compared += len(wanted)
+        return compared
+
+
 def compare(times: int) -> None:
-    """Every command and packet of every mission, so many times each."""
+    """Every command and packet of every mission, so many times each, and ROS messages."""
     home = Path("yamcs").resolve()
     yamcs.install(home)
     missions = [Comparison(name, number, home) for number, name in enumerate((*MISSIONS, ALL_TYPES))]
-    yamcs.add_instances(home, [mission.name for mission in missions])
+    topics = Topics(len(missions), home)
+    yamcs.add_instances(home, [*(mission.name for mission in missions), topics.name])
     with yamcs.running(home):
+        print("topics", topics.compare())
         for mission in missions:
             print(mission.name, mission.commands(times), "commands,", mission.telemetry(times), "values of telemetry")
 
