@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import socket
 from types import TracebackType
 
@@ -75,7 +76,8 @@ class UdpListener:
             self._socket.bind((host, port))
         except OSError as error:
             self._socket.close()
-            text = f"cannot listen there: {error.strerror or error}"
+            taken = "; give another port" if error.errno == errno.EADDRINUSE else ""
+            text = f"cannot listen there: {error.strerror or error}{taken}"
             raise UsageError(text, file=f"{host}:{port}") from None
         self.port: int = self._socket.getsockname()[1]
 

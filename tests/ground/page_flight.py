@@ -62,7 +62,7 @@ def output_of(command: Sequence[str], typed: str = "", status: int = 0) -> str:
 
 def own_tools() -> None:
     """The spacecraft, and cfepy's own tools."""
-    [[fly]] = [block.commands for block in blocks("The spacecraft")]
+    [fly] = blocks("The spacecraft")[0].commands
     [[tlm, noop, display, console]] = [block.commands for block in blocks("cfepy's own tools")]
     with flying(fly) as craft:
         assert len(output_of(tlm).splitlines()) == 5
@@ -72,6 +72,19 @@ def own_tools() -> None:
         output_of(display)
         craft.says(COUNTED)
         output_of(console, "SAMPLE_APP_NOOP\nexpect event SAMPLE_APP 3\n")
+
+
+def recorded() -> None:
+    """A flight that took commands through its port, and the same run where there is no network at all."""
+    _, record = blocks("The spacecraft")
+    fly, replay = record.commands
+    noop = blocks("cfepy's own tools")[0].commands[1]
+    with flying(fly) as craft:
+        output_of(noop)
+        craft.says(NOOP)
+    again = output_of(["unshare", "--net", *replay])  # its loopback interface is down
+    assert NOOP in again
+    assert "the same run as flight.cfepy" in again
 
 
 def ground_system(folder: str) -> None:
@@ -90,7 +103,7 @@ def parser() -> None:
     install, program, enable = blocks("space_packet_parser")
     output_of(install.commands[1])
     Path("program.py").write_text(program.text)
-    [[fly]] = [block.commands for block in blocks("The spacecraft")]
+    [fly] = blocks("The spacecraft")[0].commands
     listen = [sys.executable, "-u", "program.py"]
     with flying(fly) as craft, subprocess.Popen(listen, stdout=subprocess.PIPE, text=True) as reader:
         try:
@@ -123,7 +136,7 @@ def several() -> None:
     output_of([sys.executable, "program.py"])
 
 
-PARTS = {"own_tools": own_tools, "parser": parser, "several": several}
+PARTS = {"own_tools": own_tools, "recorded": recorded, "parser": parser, "several": several}
 
 if __name__ == "__main__":
     if sys.argv[1] == "ground_system":

@@ -34,7 +34,7 @@ def loop() -> None:
     [[export], _, [login, enable, display, counter, packets]] = [
         block.commands for block in blocks("Yamcs") if block.language == ""
     ]
-    [[fly]] = [block.commands for block in blocks("The spacecraft")]
+    [fly] = blocks("The spacecraft")[0].commands
     os.chdir(home)
     os.environ["HOME"] = str(home)  # where the tool keeps its login
     output_of(export)
