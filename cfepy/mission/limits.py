@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
-from cfepy.config import PlatformConfig
+from cfepy.config import IDENTITIES, PlatformConfig
 from cfepy.ids import SERIAL_MAX
 from cfepy.marked_yaml import Marked, Mistakes
 from cfepy.msg import HIGHEST_VALID_MSG_ID
@@ -89,7 +89,7 @@ class MissionLimits:
 
     def _check(self, name: str, value: Limit, board: BoardProfile) -> None:
         most = board.limits.get(name)
-        if not isinstance(most, int) or not isinstance(value, int) or value <= most:
+        if name in IDENTITIES or not isinstance(most, int) or not isinstance(value, int) or value <= most:
             return
         if name in self.values:
             text = f"is {value}, the board {board.name} has {most}; lower it, or take another board"

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
-from cfepy.config import COUNTED_BY_ID, MAY_BE_ZERO, NOT_LIMITS, PlatformConfig
+from cfepy.config import COUNTED_BY_ID, IDENTITIES, MAY_BE_ZERO, MOST_ID, NOT_LIMITS, PlatformConfig
 from cfepy.ids import SERIAL_MAX
 from cfepy.marked_yaml import Marked, load
 from cfepy.resources import shipped
@@ -238,6 +238,8 @@ def read_limit(name: str, entry: Marked) -> Limit:
         return entry.flag()
     if isinstance(default, tuple):
         return tuple(each.integer() for each in entry.items())
+    if name in IDENTITIES:
+        return entry.integer(0, MOST_ID)
     lowest = 0 if name in MAY_BE_ZERO else min(1, default)
     return entry.integer(lowest, MOST_OBJECTS if name in COUNTED_BY_ID else MOST_LIMIT)
 

@@ -79,6 +79,13 @@ def test_a_mission_file_says_what_it_was_built_with(tmp_path: Path) -> None:
         ]
 
 
+def test_an_id_is_no_capacity_that_a_board_could_limit(tmp_path: Path) -> None:
+    (tmp_path / "numbered.yaml").write_text("name: numbered\nlimits: {spacecraft_id: 5, processor_id: 7}\n")
+    said = "board: numbered.yaml\nlimits: {spacecraft_id: 4294967295, processor_id: 0}\n"
+    with booted(tmp_path, said) as mission:
+        assert (mission.config.spacecraft_id, mission.config.processor_id) == (0xFFFF_FFFF, 0)
+
+
 def test_they_stay_over_a_reset(tmp_path: Path) -> None:
     with booted(tmp_path, spacecraft_id=67) as mission:
         before = len(mission.console.lines)
