@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from cfepy.exploration.moves import MadeMove
     from cfepy.exploration.progress import make_progress
     from cfepy.exploration.replays import GONE, NOT_POSSIBLE, STILL_THERE, ReplayedFailure, replay_all
+    from cfepy.exploration.search import SeededSearch, seeded_kinds
     from cfepy.exploration.shipment import files_read, ship
     from cfepy.exploration.shrink import Shrinkable, Shrinker, Shrunk, budget_of
     from cfepy.exploration.sweep import (
@@ -59,6 +60,7 @@ __all__ = [
     "PointNumbers",
     "ReplayedFailure",
     "Report",
+    "SeededSearch",
     "Shrinkable",
     "Shrinker",
     "Shrunk",
@@ -84,6 +86,7 @@ __all__ = [
     "points_of",
     "replay_all",
     "seconds_text",
+    "seeded_kinds",
     "seeds_of",
     "ship",
     "story_of_run",
@@ -101,6 +104,10 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "answers",
             ),
             ".progress": ("make_progress",),
+            ".search": (
+                "SeededSearch",
+                "seeded_kinds",
+            ),
             ".shipment": (
                 "files_read",
                 "ship",

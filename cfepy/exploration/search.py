@@ -58,11 +58,14 @@ class SeededSearch:
     def tell(self, number: int, verdict: Verdict) -> None:
         """See `cfepy.exploration.campaign.Search`: from the first one it learns how long a run is."""
         if number == 0:
-            self._is_measured = True
-            self._kinds = tuple(
-                replace(each, steps=max(each.steps, verdict.decisions)) if each.kind == "pct" else each
-                for each in self._kinds
-            )
+            self.reckon_with(verdict.decisions)
+
+    def reckon_with(self, decisions: int) -> None:
+        """PCT reckons with so many decisions of a run, or with more."""
+        self._is_measured = True
+        self._kinds = tuple(
+            replace(each, steps=max(each.steps, decisions)) if each.kind == "pct" else each for each in self._kinds
+        )
 
 
 class SystematicSearch:
@@ -111,27 +114,27 @@ def make_search(
         tick_ns: of the board's clock; 0 for none.
         holds: in `all`, running tasks may also be held up in some schedules if `options` have nothing of it.
     """
-    steps = max(steps, 1)
     if policy == "dfs":
         return SystematicSearch(DFS_DEPTH if depth is None else depth, options)
     if policy == "orders":
         return OrderSearch(options, CORE_APPS, depth)
-    random = replace(options, kind="random")
-    depths = (
-        PORTFOLIO_DEPTHS if depth is None and policy in ("all", GREYBOX) else (PCT_DEPTH if depth is None else depth,)
-    )
-    pct = [replace(options, kind="pct", depth=each, steps=steps) for each in depths]
-    if policy == "random":
-        return SeededSearch((random,), first_seed)
-    if policy == "pct":
-        return SeededSearch(tuple(pct), first_seed)
-    abreast = replace(options, kind="abreast")
-    if policy == "abreast":
-        return SeededSearch((abreast,), first_seed)
+    return SeededSearch(seeded_kinds(policy, depth, steps, options, tick_ns, holds=holds), first_seed)
+
+
+def seeded_kinds(
+    policy: str, depth: int | None, steps: int, options: Schedule, tick_ns: int = 0, *, holds: bool = True
+) -> tuple[Schedule, ...]:
+    """The schedules of a policy that comes from seeds, which take turns; the arguments are those of `make_search`."""
+    random, abreast = replace(options, kind="random"), replace(options, kind="abreast")
+    is_mixed = policy in ("all", GREYBOX)
+    depths = PORTFOLIO_DEPTHS if depth is None and is_mixed else (PCT_DEPTH if depth is None else depth,)
+    pct = tuple(replace(options, kind="pct", depth=each, steps=max(steps, 1)) for each in depths)
+    if not is_mixed:
+        return {"random": (random,), "pct": pct, "abreast": (abreast,)}[policy]
     if not holds and not options.hold_ns:
-        return SeededSearch((random, pct[0], abreast, *pct[1:]), first_seed)
+        return (random, pct[0], abreast, *pct[1:])
     held = replace(random, hold_ns=options.hold_ns or max(PORTFOLIO_HOLD_NS, tick_ns))
-    return SeededSearch((random, pct[0], abreast, held, *pct[1:]), first_seed)
+    return (random, pct[0], abreast, held, *pct[1:])
 
 
 class DepthFirst:

@@ -214,7 +214,7 @@ class Trial:
         return Verdict(
             schedule,
             failed,
-            decisions=sum(width > 1 for width in policy.widths),
+            decisions=policy.decisions,
             deviations=deviations,
             preemptions=policy.preemptions,
             missed=policy.missed,

@@ -81,6 +81,8 @@ class Explored:
         failures: each failure once, those of the default schedule first.
         schedules: how many were flown.
         failed: how many of them failed.
+        coverage: what the runs covered; None where that was not looked at.
+        worst: the longest that was measured, and the schedule that gives it; None when nothing was to be.
         troubles: errors of cfepy itself, which are to be reported.
         notes: what its user should know.
     """
@@ -88,6 +90,7 @@ class Explored:
     def __init__(self, mission: str, report: Report) -> None:
         self.failures = [FoundFailure(report, told) for told in report.findings]
         self.schedules, self.failed = report.tally.done, report.tally.failed
+        self.coverage, self.worst = report.coverage, report.worst
         self.troubles = [each.trouble for each in report.troubles]
         leak = () if report.unsteady is None else (f"not deterministic: two runs under {report.unsteady} differ",)
         self.notes = (*report.notes, *leak)
@@ -118,13 +121,21 @@ def explore(
     seeds: int = DEFAULT_SEEDS,
     budget: float | None = None,
     policy: str = "all",
+    depth: int | None = None,
     until_failure: bool = False,
     any_priority: bool = False,
     hold: float | None = None,
     connect: float | None = None,
     points: str = "",
     start: float | None = None,
+    fair: int | None = None,
     events: str = "error",
+    starved: float | None = None,
+    livelock: float | None = None,
+    stuck: bool = True,
+    worst: str | None = None,
+    coverage: bool = False,
+    corpus: str | os.PathLike[str] | None = None,
     jobs: int | None = None,
     results: str | os.PathLike[str] | None = None,
     shrink: int | None = None,
@@ -140,6 +151,8 @@ def explore(
         seeds: how many schedules.
         budget: wall time in s after which no further schedule is begun; None for no limit.
         policy: where they come from: "random", "pct", "abreast", "dfs", "orders", "greybox", or "all".
+        depth: of the bugs that PCT looks for; most preemptions of "dfs"; how many steps "orders" may differ in. None is
+            1 to 3, 2 and all.
         until_failure: whether the first failure ends it.
         any_priority: less urgent tasks may run before more urgent ones.
         hold: how long the running task may be held up, in virtual s.
@@ -147,7 +160,14 @@ def explore(
         points: where others may get in besides calls: "lines", "attributes" or "calls", in some modules alone as
             "lines:arm,util"; empty for nowhere.
         start: virtual time in s until which all is as by default; 0 for that at which the mission is OPERATIONAL.
+        fair: decisions in which a task that could run may be passed over; None for any number.
         events: which events of the mission's applications are failures: "error", "critical" or "none".
+        starved: virtual time in s for which a task may be ready and not run; None for any time.
+        livelock: virtual time in s for which an application may run on without a message; None for any time.
+        stuck: whether a task that waits for ever, and does not by default, is a failure.
+        worst: what is to take as long as it can, such as "latency:/topic"; None for nothing.
+        coverage: whether it is looked at what the runs cover, which "greybox" does in any case.
+        corpus: results file of an earlier campaign, with whose schedules "greybox" begins; None for none.
         jobs: processes; None is one on each CPU.
         results: file that keeps the verdicts, and that it goes on from.
         shrink: how many runs it may take to shrink a failure; None for as many as there were schedules, 300 to 800; 0
@@ -167,13 +187,21 @@ def explore(
         seeds=seeds,
         budget_s=budget,
         policy=policy,
+        depth=depth,
         until_failure=until_failure,
         any_priority=any_priority,
         hold_s=hold,
         connect_s=connect,
         points=points,
         from_s=start,
+        fair=fair,
         events=events,
+        starved_s=starved,
+        livelock_s=livelock,
+        stuck=stuck,
+        worst=worst,
+        coverage=coverage,
+        corpus=None if corpus is None else os.fspath(corpus),
         jobs=jobs,
         results=None if results is None else os.fspath(results),
         shrink=shrink,

@@ -436,6 +436,11 @@ class NotingPolicy(AskingPolicy):
         return {moment.decision: moment.choice for moment in self.moments}
 
     @property
+    def decisions(self) -> int:
+        """How many there were that left a choice."""
+        return sum(width > 1 for width in self.widths)
+
+    @property
     def preemptions(self) -> int:
         """How many of the deviations took the CPU from a task that could have gone on."""
         return sum(moment.preemption for moment in self.moments)

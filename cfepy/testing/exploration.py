@@ -13,37 +13,75 @@ from typing import Literal, cast
 import pytest
 from _pytest.runner import runtestprotocol
 
-from cfepy.exploration import Failure, MadeMove, Shrinker, Shrunk, Story, TaskLook, Tried, Verdict, budget_of, important
-from cfepy.rtos import DEPTH, STEPS, Points, Policy, Schedule
+from cfepy.exploration import (
+    Failure,
+    MadeMove,
+    SeededSearch,
+    Shrinker,
+    Shrunk,
+    Story,
+    TaskLook,
+    Tried,
+    Verdict,
+    budget_of,
+    important,
+    seeded_kinds,
+)
+from cfepy.rtos import Points, Policy, Schedule
 from cfepy.status import UsageError
 from cfepy.testing.missions import EXPLORE_MARK, SECTION, UNDER_TEST, Conditions, Missions
 
-POLICIES = ("random", "pct", "abreast")
+POLICIES = ("all", "random", "pct", "abreast")
+BASE = "at"  # a schedule that has options, and is fifo's otherwise
 FAILED = "test failed"
 
 
 @dataclass(frozen=True, slots=True)
 class Exploration:
-    """Which schedules a test is run under; see `explore`."""
+    """Which schedules a test is run under; see `explore`.
+
+    Attributes:
+        seeds: how many.
+        policies: where they come from, by turns.
+        depth: of the bugs that PCT looks for; None for that of `cfepy explore`.
+        steps: how many decisions PCT expects of a run, at least.
+        options: a schedule whose options all have but fifo.
+        shrink: runs that shrinking may take; None for as many as there were until then, 300 to 800.
+        races: whether data races are failures.
+    """
 
     seeds: int
-    kinds: tuple[Schedule, ...]
+    policies: tuple[str, ...]
+    depth: int | None
+    steps: int
+    options: Schedule
     shrink: int | None
     races: bool = False
 
-    def schedules(self, count: int | None = None) -> Iterator[Schedule]:
-        """So many schedules; fifo comes first, then the kinds take turns, each with a seed of its own."""
+    def schedules(self, decisions: Callable[[], int], count: int | None = None) -> Iterator[Schedule]:
+        """So many schedules; fifo comes first, then the policies take turns, each schedule with a seed of its own.
+
+        Args:
+            decisions: how many the last run had.
+            count: how many schedules; None for `seeds`.
+        """
         yield Schedule()
-        for seed in range(1, self.seeds if count is None else count):
-            yield self.kinds[(seed - 1) % len(self.kinds)].with_seed(seed)
+        steps = max(self.steps, decisions())
+        kinds = [kind for each in self.policies for kind in seeded_kinds(each, self.depth, steps, self.options)]
+        search = SeededSearch(tuple(kinds), first_seed=1)
+        for _ in range((self.seeds if count is None else count) - 1):
+            schedule = search.next()
+            assert schedule is not None, "it knows how long a run is"
+            yield schedule
+            search.reckon_with(decisions())
 
 
 def explore(
     seeds: int = 200,
-    policy: str | Sequence[str] = "random",
+    policy: str | Sequence[str] = "all",
     *,
-    depth: int = DEPTH,
-    steps: int = STEPS,
+    depth: int | None = None,
+    steps: int = 1,
     any_priority: bool = False,
     hold: str = "",
     connect: str = "",
@@ -60,9 +98,9 @@ def explore(
 
     Args:
         seeds: how many schedules; --cfepy-schedules overrules it.
-        policy: "random", "pct", "abreast", or several of them, which take turns.
-        depth: of the bugs that pct looks for.
-        steps: how many decisions pct expects of a run.
+        policy: "random", "pct", "abreast", several of them, which take turns, or "all" as `cfepy explore` has it.
+        depth: of the bugs that PCT looks for; None for 3, and for 1 to 3 in "all".
+        steps: how many decisions PCT expects of a run, at least; they are counted.
         any_priority: tasks of less urgent priority may go before more urgent ones.
         hold: how long the running task may be held up, such as "500us"; empty for not at all.
         connect: how long a connection between two ROS nodes may take, such as "50ms"; empty for what the mission has.
@@ -84,14 +122,15 @@ def explore(
             raise UsageError(f"{each!r} is no policy; there are {', '.join(POLICIES)}", field="policy")
     if seeds < 1 or not policies:
         raise UsageError("there is nothing to run; give at least one", field="seeds" if policies else "policy")
-    options = (":any" if any_priority else "") + (f":hold={hold}" if hold else "")
-    options += f":connect={connect}" if connect else ""
-    options += f":points={Points.parse(points, 'points').text()}" if points else ""
-    options += f":from={start}" if start else ""
-    numbers = {"pct": f":{depth}:{steps}"}
-    kinds = [Schedule.parse(f"{each}:{seed}{numbers.get(each, '')}{options}") for seed, each in enumerate(policies, 1)]
+    if depth is not None and depth < 1:
+        raise UsageError(f"{depth} is no depth; it is a whole number of at least 1", field="depth")
+    words = [BASE, *(["any"] if any_priority else []), *([f"hold={hold}"] if hold else [])]
+    words += [f"connect={connect}"] if connect else []
+    words += [f"points={Points.parse(points, 'points').text()}"] if points else []
+    words += [f"from={start}"] if start else []
+    options = Schedule.parse(":".join(words))
     mark: pytest.MarkDecorator = getattr(pytest.mark, EXPLORE_MARK)
-    return mark(Exploration(seeds, tuple(kinds), shrink, races))
+    return mark(Exploration(seeds, policies, depth, steps, options, shrink, races))
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +195,7 @@ class ExploredTest:
     def explore(self, nextitem: pytest.Item | None) -> Sequence[pytest.TestReport]:
         """Run it; the reports that stand for all runs."""
         count = self._item.config.getoption("--cfepy-schedules") or self._exploration.seeds
-        for number, schedule in enumerate(self._exploration.schedules(count), 1):
+        for number, schedule in enumerate(self._exploration.schedules(self._decisions, count), 1):
             when = f"under the {number}. of {count} schedules"
             self._flown = number
             self._last = self._once(Conditions(schedule))
@@ -170,6 +209,10 @@ class ExploredTest:
         if failure is not None:
             reports = self._told(schedule, when, failure.group)
         return [*reports, *self._end_wider(nextitem)]
+
+    def _decisions(self) -> int:
+        """Of the longest mission of the last run."""
+        return max((each.decisions for each in self._last.conditions.recorded), default=0)
 
     def _end_wider(self, nextitem: pytest.Item | None) -> list[pytest.TestReport]:
         """Tear down the fixtures of a wider scope that the next test does not need; a report if that fails."""

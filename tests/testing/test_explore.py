@@ -60,9 +60,12 @@ def check_journal(folder: Path, moves: str) -> None:
 
 @pytest.mark.slow
 def test_pct_finds_it_too_and_need_not_be_shrunk(suite: Suite) -> None:
-    result = suite(RACE.format(policy="pct", shrink=0).replace("explore(", "explore(steps=60, "))
+    result = suite(RACE.format(policy="pct", shrink=0))
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["failed under the *. of 60 schedules, pct:*", "*--cfepy-schedule pct:*"])
+    expected = re.search(r"of 60 schedules, pct:\d+:3:(\d+)", result.stdout.str())
+    assert expected is not None  # a test is as long as it is, and not the 1000 decisions of a schedule's default
+    assert int(expected[1]) < 200
     result.stdout.no_fnmatch_line("*the shortest schedule*")
 
 
@@ -83,9 +86,12 @@ def test_fifo_is_the_first_schedule_and_finds_nothing(suite: Suite) -> None:
 def test_each_schedule_has_fixtures_of_its_own(suite: Suite) -> None:
     result = suite(
         """
+        import re
+
         import pytest
         from cfepy.testing import explore
 
+        PCT = "pct:2"
         seen, ended, wide = [], [], []
 
         @pytest.fixture
@@ -111,7 +117,8 @@ def test_each_schedule_has_fixtures_of_its_own(suite: Suite) -> None:
             seen.append((number, shared, flight.plan.schedule.text()))
 
         def test_what_was_seen():
-            schedules = ["fifo", "random:1", "random:2"]
+            seen[:] = [(number, shared, re.sub(r"^pct:.*", PCT, text)) for number, shared, text in seen]
+            schedules = ["fifo", "random:1", PCT]
             expected = [(number, shared, each) for shared in "ab" for number in (1, 2) for each in schedules]
             assert sorted(seen) == sorted(expected)
             assert len(ended) == 12
@@ -188,7 +195,7 @@ def test_several_missions_have_the_schedule_all(suite: Suite) -> None:
 
 
 def test_wrong_arguments() -> None:
-    with pytest.raises(UsageError, match="'fancy' is no policy; there are random, pct"):
+    with pytest.raises(UsageError, match="'fancy' is no policy; there are all, random, pct"):
         explore(policy="fancy")
     with pytest.raises(UsageError, match="seeds"):
         explore(seeds=0)
@@ -206,11 +213,27 @@ def test_a_decorator_without_parentheses_is_told() -> None:
 def test_options_of_schedules() -> None:
     found = explore(seeds=4, policy=["random", "pct"], depth=2, any_priority=True, hold="500us", start="600ms").args[0]
     options = "any:hold=500us:from=600ms"
-    assert [each.text() for each in found.schedules()] == [
+    assert [each.text() for each in found.schedules(lambda: 40)] == [
         "fifo",
         f"random:1:{options}",
-        f"pct:2:2:{options}",
+        f"pct:2:2:40:{options}",
         f"random:3:{options}",
+    ]
+
+
+def test_the_default_is_that_of_the_command() -> None:
+    """As many kinds by turns as `cfepy explore` has, and PCT counts on as many decisions as the longest run had."""
+    lengths = iter([40, 60, *[50] * 6])
+    found = [each.text() for each in explore(seeds=8).args[0].schedules(lambda: next(lengths))]
+    assert found == [
+        "fifo",
+        "random:1",
+        "pct:2:2:60",
+        "abreast:3",
+        "random:4:hold=1ms",
+        "pct:5:3:60",
+        "pct:6:1:60",
+        "random:7",
     ]
 
 
