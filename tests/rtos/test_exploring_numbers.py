@@ -345,6 +345,72 @@ def test_abreast_reaches_every_order_of_two() -> None:
     assert words == {"aabb", "abab", "abba", "baab", "baba", "bbaa"}
 
 
+def workers_and_reader(count: int) -> Program:
+    """Many who do two things each, and a reader, started last, who writes an `x` when it sees the first thing alone."""
+
+    def program(kernel: Kernel, written: list[str]) -> None:
+        first, second = [False], [False]
+
+        def work() -> None:
+            kernel.preempt()
+            first[0] = True
+            kernel.preempt()
+            second[0] = True
+
+        def read() -> None:
+            kernel.preempt()
+            was_done = first[0]
+            kernel.preempt()
+            written.append("x" if was_done and not second[0] else "-")
+
+        def start() -> None:
+            for number in range(count):
+                kernel.spawn(f"{number}", work, 100)
+                kernel.preempt()
+            kernel.spawn("reader", read, 100)
+
+        kernel.spawn("starter", start, 100)
+
+    return program
+
+
+def test_abreast_pairs_those_who_do_different_things() -> None:
+    schedules = [Schedule.parse(f"abreast:{seed}") for seed in range(300)]
+    assert sum(fly(workers_and_reader(19), each.policy())[0] == "x" for each in schedules) > 5
+    by_chance = [Schedule.parse(f"random:{seed}") for seed in range(300)]
+    assert not any(fly(workers_and_reader(19), each.policy())[0] == "x" for each in by_chance)
+
+
+def test_abreast_lets_who_starts_many_go_on_beyond_its_time_slice() -> None:
+    """It would be taken for one that polls, and those it has not started would never meet the others."""
+    schedule = next(each for each in map("abreast:{}".format, range(100)) if _is_together(each, slice_us=0))
+    assert _is_together(schedule, slice_us=20_000)
+
+
+def _is_together(schedule: str, slice_us: int) -> bool:
+    """Whether of six all have done the first thing before the first one does its second."""
+
+    def program(kernel: Kernel, written: list[str]) -> None:
+        def come() -> None:
+            kernel.preempt()
+            written.append("1")
+            kernel.preempt()
+            written.append("2")
+
+        def start() -> None:
+            for number in range(6):
+                kernel.spawn(f"{number}", come, 100)
+                kernel.charge(slice_us * 1000)
+
+        kernel.spawn("starter", start, 100)
+
+    with make_kernel("greenlet", Trace(), Schedule.parse(schedule).policy()) as kernel:
+        written = list[str]()
+        program(kernel, written)
+        kernel.run(1_000_000_000)
+    return "".join(written) == "111111222222"
+
+
 def test_who_polls_does_not_keep_others_away_for_ever() -> None:
     def program(kernel: Kernel, written: list[str]) -> None:
         def poll() -> None:
