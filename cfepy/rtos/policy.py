@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from cfepy.rtos.task import Task
 
 HOLD_ODDS = 16  # one in so many chances to hold a task up is taken: time would else run away from the work
+STAY_ODDS = (0.0, 0.0, 0.5, 0.75)
 Settings = tuple[bool, int, int, str]
 """What the kernel reads of a policy besides its answers; see the arguments of `Policy`."""
 HOLD = "hold"  # in place of a task's name: no task runs until the next timer
@@ -156,14 +157,21 @@ class AskingPolicy(Policy):
 
 
 class SeededRandom(Policy):
-    """Any of the candidates, the same ones for the same seed; the other arguments are those of `Policy`."""
+    """Any of the candidates, the same ones for the same seed; the other arguments are those of `Policy`.
+
+    With points between calls a run has so many decisions that no task would come far while another one waits. The
+    running task then stays as often as the seed draws it, so that some schedules have long stretches and some have
+    short ones.
+    """
 
     def __init__(
         self, seed: int, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0, points: str = ""
     ) -> None:
         super().__init__(any_priority, hold_ns, connect_ns, points)
-        self._random = Random(seed).random
+        random = Random(seed)
+        self._random = random.random
         self._seldom = Seldom(self._random)
+        self._stay = random.choice(STAY_ODDS) if points else 0.0
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
@@ -172,6 +180,8 @@ class SeededRandom(Policy):
         width = decision.width - decision.hold
         if decision.hold and self._random() * HOLD_ODDS < 1:
             return width
+        if self._stay and decision.running and self._random() < self._stay:
+            return 0
         return int(self._random() * width)
 
 

@@ -4,6 +4,9 @@
 
 `python -m tests.quality coverage` measures what guidance by coverage is worth (docs/benchmarks_coverage.md).
 
+`python -m tests.quality edits` tells how many of their shrunk schedules still fail after small edits
+(docs/exploration.md).
+
 `python -m tests.quality stories` writes down the cause that is told of each of them (`stories.txt`).
 """
 
@@ -13,6 +16,7 @@ import argparse
 
 from tests.quality.bugs import BUGS
 from tests.quality.coverage_report import measure as measure_coverage
+from tests.quality.edits import measure as measure_edits
 from tests.quality.measure import MOST
 from tests.quality.program_report import measure as measure_programs
 from tests.quality.programs import PROGRAMS
@@ -37,11 +41,15 @@ def main() -> None:
     )
     missions = [each.name for each in (*BUGS, *PROGRAMS)]
     coverage.add_argument("missions", nargs="*", choices=[[], *missions], help="only these")
+    edits = commands.add_parser("edits", help="fly the planted bugs after small edits, and print the table")
+    edits.add_argument("bugs", nargs="*", choices=[[], *(bug.name for bug in BUGS)], help="only these")
     given = parser.parse_args()
     if given.command == "report":
         measure(given.bugs, given.jobs, given.most)
     elif given.command == "programs":
         measure_programs(given.programs)
+    elif given.command == "edits":
+        measure_edits(given.bugs)
     elif given.command == "coverage":
         measure_coverage(given.missions)
     else:
