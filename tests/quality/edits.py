@@ -152,8 +152,8 @@ def lasting(bug: Bug, schedule: Schedule) -> Iterator[Lasting]:
             shutil.copytree(bug.folder, copy, ignore=shutil.ignore_patterns("__pycache__", "fix.yaml"))
             edit.make(copy)
             trial = reference_trial(copy)
-            broken = trial.run(Schedule()).failures
-            assert not broken, f"{bug.name}: {edit.text}: {broken[0].title}"
+            if trial.run(Schedule()).failed:
+                continue  # the edit is a mistake itself: a rate in a mission whose clock jumps back
             yield Lasting(edit, _shows(bug, trial, schedule), _shows(bug, trial, numbers))
 
 
