@@ -43,12 +43,13 @@ class Bridged:
 
     def step(self) -> None:
         """Let the run go on for a while."""
-        self._pacer.step(PATIENCE_NS)
+        self._pacer.step(self.mission.kernel.now + PATIENCE_NS)
 
     def run_while(self, missing: Callable[[], bool]) -> None:
         """Let the run go on until nothing is missing any more."""
+        until_ns = self.mission.kernel.now + PATIENCE_NS
         while missing():
-            assert self.mission.kernel.now < PATIENCE_NS, "what was expected never came"
+            assert self.mission.kernel.now < until_ns, "what was expected never came"
             self.step()
 
     def client(self, path: str = "/", headers: Mapping[str, str] | None = None) -> Client:
