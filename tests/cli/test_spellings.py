@@ -65,6 +65,11 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--tasks": (None, "what tasks run on"),
     "--trace": ("FILE", "write everything that happened to a file"),
     "--until": ("SECONDS", "ends at this virtual time"),
+    "--foxglove": ("[HOST:]PORT", "serve Foxglove"),
+    "--rosbridge": ("[HOST:]PORT", "serve clients of rosbridge"),
+    "--viewer-origin": ("ORIGIN", "let pages of a web site connect"),
+    "--viewer-token": ("TOKEN", "what such a program must know to connect"),
+    "--with": ("MISSION[@SECONDS]", "let another processor fly beside it"),
     "-w --window": ("N", "the newest N messages count"),
 }
 """Of each option that more than one command has: the name of its value, and what its help says everywhere."""
