@@ -211,6 +211,8 @@ class RosHost:
         assert self.ros is not None
         graph, registry = self.ros.graph, self.ros.switchboard.master.registry
         nodes = {name: registry.node_uri(name) or "" for name in (*graph.nodes, *graph.compiled)}
+        others = {name: registry.node_uri(name) for name in self.ros.outside.ways_out}  # such as of a viewer's server
+        nodes |= {name: uri for name, uri in others.items() if uri is not None}
         if self.shown:
             nodes[APPLICATIONS] = self._nodes[APPLICATIONS].inner
         publishers = _own(registry.publishers(), nodes)
@@ -316,7 +318,7 @@ class RosHost:
         if name == APPLICATIONS:
             return self.shown.header(topic)
         node, compiled = graph.nodes.get(name), graph.compiled.get(name)
-        link = None if node is None else node.links.get(topic)
+        link = self.ros.outside.links.get((topic, name)) if node is None else node.links.get(topic)
         if link is not None and link.topic is not None:
             return dict(link.header)
         if compiled is not None and topic in compiled.published:

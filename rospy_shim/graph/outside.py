@@ -409,7 +409,8 @@ class OutsideGraph:
             )
             self.subscriptions[topic, name] = subscription
             for each in entry.links:
-                each.expect_peer(subscription)
+                if not each.is_outside:  # what comes from there comes at once
+                    each.expect_peer(subscription)
         subscription.publishers.append(publisher)
         node = self._graph.nodes.get(publisher)
         link = None if node is None else node.links.get(topic)

@@ -1,0 +1,78 @@
+"""Clients of rosbridge and ROS nodes outside are one graph, when a run has both."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from cfepy.console import Console
+from cfepy.io import HostNetwork, PeerCounts
+from cfepy.mission import Mission
+from cfepy.ros_host import RosHost, ServedMaster
+from cfepy.viewers.listen import Admission, ListenPlace
+from cfepy.viewers.rosbridge import RosbridgeServer
+from tests.ros_host.peers import CALLER, SERVER, SET_BOOL, Joined, OutsideSpeaker, text
+from tests.viewers.rosbridge.bridged import Bridged
+
+
+class Both(Joined, Bridged):
+    """A run that ROS nodes and clients reach."""
+
+    def __init__(self, mission: Mission, network: HostNetwork, host: RosHost, server: RosbridgeServer) -> None:
+        Joined.__init__(self, mission, network, host, [])
+        self.port = server.place.port
+        self.server = server
+
+
+@pytest.fixture
+def both(tmp_path: Path) -> Iterator[Both]:
+    (tmp_path / "mission.yaml").write_text("name: both\n")
+    (tmp_path / "startup.scr").write_text("CFE_APP, server.py, __main__, SERVER, 100, 16384, 0x0, 0;\n!\n")
+    (tmp_path / "server.py").write_text(SERVER)
+    server = RosbridgeServer(ListenPlace("127.0.0.1", 0), Admission(), PeerCounts())
+    with (
+        Mission(str(tmp_path), console=Console(quiet=True), attachments=[server]) as mission,
+        HostNetwork(mission) as network,
+        RosHost(mission, lambda host: ServedMaster(host, 0), {}) as host,
+    ):
+        network.join(host)
+        network.join(server)
+        run = Both(mission, network, host, server)
+        run.run_while(lambda: mission.booted is None)
+        yield run
+    server.close()
+
+
+def test_messages_and_calls_between_them(both: Both) -> None:
+    client = both.client()
+    client.send(op="subscribe", topic="/orders", type="std_msgs/String")
+    mouth = OutsideSpeaker(both, "/orders")
+    mouth.connect()
+    mouth.send(text("from a node"))
+    assert client.next() == {"op": "publish", "topic": "/orders", "msg": {"data": "from a node"}}
+    assert client.call("/rosapi/publishers", "/orders") == {"publishers": [CALLER]}
+
+    client.send(op="advertise", topic="/replies", type="std_msgs/String")
+    client.call("/rosapi/nodes")
+    ear = both.subscribed("/replies")
+    assert ear.header()["callerid"] == "/rosbridge_websocket"
+    client.send(op="publish", topic="/replies", msg={"data": "from a page"})
+    assert ear.frame() == text("from a page")
+
+    client.send(op="advertise_service", service="/mine", type="std_srvs/SetBool")
+    client.call("/rosapi/nodes")
+    caller = both.connected(both.master("lookupService", "/mine"), {"service": "/mine", **SET_BOOL})
+    assert caller.header()["callerid"] == "/rosbridge_websocket"
+    caller.frames.has_status = True
+    caller.socket.sendall(b"\x01\0\0\0\x01")
+    request = client.next()
+    assert request["args"] == {"data": True}
+    values = {"success": True, "message": "page"}
+    client.send(op="service_response", service="/mine", id=request["id"], values=values, result=True)
+    assert caller.frame() == b"\x01\x01" + text("page")
+    mouth.close()
+    for each in (ear, caller):
+        each.socket.close()
+    client.close()
