@@ -23,7 +23,7 @@ from cfepy.mission.acts import HostActs
 from cfepy.mission.finding import read_mission
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.outside import Outside
-from cfepy.mission.pieces import HeldBack, PieceLength
+from cfepy.mission.pieces import HeldBack, PieceLength, is_to_be_held_back
 from cfepy.mission.processor import Machine, Processor, RunFiles
 from cfepy.mission.python_code import find_code
 from cfepy.mission.record import Reset, RunRecord
@@ -245,6 +245,12 @@ class Mission:
         """
         if self._is_closed:
             raise RuntimeError("this mission was closed: its tasks have ended, and it cannot go on; boot another one")
+        if not self._resetting and self.kernel.passes(until_ns):
+            self.outside.begin_piece(until_ns)
+            return
+        if not is_to_be_held_back():
+            self._run(until_ns, self.kernel.run)
+            return
         with HeldBack() as signals:
             if not signals.is_first:
                 self._run_meeting(until_ns, self.kernel.run)

@@ -21,6 +21,15 @@ _handler_of: Callable[[int], Any] = getattr(signal.getsignal, "__wrapped__", sig
 """The function in C, which makes no enum of what it finds: it is asked before each piece."""
 
 
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_DEFAULT = signal.default_int_handler
+
+
+def is_to_be_held_back() -> bool:
+    """Whether Python would answer a signal with a KeyboardInterrupt, so that it takes `HeldBack`."""
+    return _handler_of(_SIGNALS[0]) is _DEFAULT or _handler_of(_SIGNALS[1]) is _DEFAULT
+
+
 class PieceLength:
     """How long a piece is, after what the ones before it took.
 
@@ -58,8 +67,8 @@ class HeldBack:
 
     def __enter__(self) -> HeldBack:
         try:
-            for each in (signal.SIGINT, signal.SIGTERM):
-                if _handler_of(each) is signal.default_int_handler:
+            for each in _SIGNALS:
+                if _handler_of(each) is _DEFAULT:
                     self._before[each] = signal.signal(each, self._on_signal)
         except ValueError:
             pass  # not the first thread: signals do not come here

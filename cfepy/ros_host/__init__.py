@@ -11,10 +11,11 @@ from collections.abc import Callable
 
 from cfepy.ros_host.host import RosHost
 from cfepy.ros_host.joined_master import JoinedMaster
+from cfepy.ros_host.message_package import telemetry_package
 from cfepy.ros_host.served_master import MASTER_PORT, ServedMaster
 from cfepy.ros_host.world import RosWorld
 
-__all__ = ["JoinedMaster", "RosHost", "ServedMaster", "world_at"]
+__all__ = ["JoinedMaster", "RosHost", "ServedMaster", "telemetry_package", "world_at"]
 
 SERVE = "serve"
 

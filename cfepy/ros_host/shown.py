@@ -76,6 +76,22 @@ def type_of(name: str, layout: Layout) -> PacketType:
         name: of the packet.
         layout: of its payload.
     """
+    texts = definitions_of(name, layout)
+    header = f"{RULE}\nMSG: std_msgs/Header\n{message_class('std_msgs/Header')._full_text}"
+    first, *others = texts.items()
+    definition = first[1] + "".join(f"{RULE}\nMSG: {PACKAGE}/{each}\n{text}" for each, text in others) + header
+    full_name = f"{PACKAGE}/{first[0]}"
+    made = from_full_text(full_name, definition).message_class(full_name)
+    return PacketType(full_name, made._md5sum, definition)
+
+
+def definitions_of(name: str, layout: Layout) -> dict[str, str]:
+    """The definitions of that message and of those in it, by their names in the package; its own is the first.
+
+    Args:
+        name: of the packet.
+        layout: of its payload.
+    """
     main = re.sub(r"\W", "_", name)
     main = main if main[:1].isalpha() else f"P{main}"
     root = _Struct()
@@ -84,12 +100,7 @@ def type_of(name: str, layout: Layout) -> PacketType:
         root.add(parts, "string" if cell.type.startswith("char") else _ROS[cell.type])
     texts: dict[str, str] = {}
     _write(main, root, texts, "std_msgs/Header header\n")
-    header = f"{RULE}\nMSG: std_msgs/Header\n{message_class('std_msgs/Header')._full_text}"
-    first, *others = texts.items()
-    definition = first[1] + "".join(f"{RULE}\nMSG: {PACKAGE}/{each}\n{text}" for each, text in others) + header
-    full_name = f"{PACKAGE}/{main}"
-    made = from_full_text(full_name, definition).message_class(full_name)
-    return PacketType(full_name, made._md5sum, definition)
+    return texts
 
 
 def _write(name: str, shape: _Struct, texts: dict[str, str], lines: str = "") -> None:

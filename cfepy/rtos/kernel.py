@@ -252,9 +252,7 @@ class Kernel(Scheduler):
         if self.broken is not None:
             raise self.broken
         end = ENDLESS if until_ns is None else until_ns
-        if self._is_idle_until(end):
-            self._stopped = False
-            self.now = max(self.now, end)
+        if self.passes(end):
             return
         self._stopped = self._exhausted = False
         if not self._begun:
@@ -273,8 +271,19 @@ class Kernel(Scheduler):
         if until_ns is None and self._exhausted and self.tasks:
             raise DeadlockError(self.waiting())
 
+    def passes(self, until_ns: int) -> bool:
+        """Let virtual time go by, if nothing happens before it is `until_ns` or at that instant; whether it did.
+
+        A run that waits for the wall clock mostly finds it so, and who brings something in for it waits for this.
+        """
+        if self.current is not self.host or self.broken is not None or not self._is_idle_until(until_ns):
+            return False
+        self._stopped = False
+        self.now = max(self.now, until_ns)
+        return True
+
     def _is_idle_until(self, end: int) -> bool:
-        """Whether nothing happens up to a virtual time; a run that waits for the wall clock mostly finds it so."""
+        """Whether nothing happens up to a virtual time."""
         if not self._begun or self.ready or self._failed or self._interrupted is not None or end >= self._collect_at:
             return False
         upcoming = self.next_event()

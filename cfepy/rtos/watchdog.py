@@ -133,6 +133,7 @@ class StallWatch:
         self._tell = tell
         self._over = threading.Event()
         self._thread: threading.Thread | None = None
+        self._process = 0  # in which the thread looks
         self._host_ident = 0
         self._is_paused = self._has_lost = self._was_wanted = False
         self._stand: _Stand | None = None
@@ -145,7 +146,8 @@ class StallWatch:
         """
         self._host_ident = threading.get_ident()
         self._stand = None
-        if not self.is_on:
+        if self._process != os.getpid():
+            self._process = os.getpid()
             self._arm()
             self._over = threading.Event()
             self._thread = threading.Thread(target=self._look_on, name="cfepy stall watch", daemon=True)
@@ -159,6 +161,7 @@ class StallWatch:
     def end(self) -> None:
         """Look no more."""
         self._over.set()
+        self._process = 0
         if self._thread is not None:
             self._thread.join()
         if self.last_resort is not None:

@@ -188,6 +188,14 @@ def _add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     )
     add_mission(xtce)
     add_output(xtce, "standard output", "-")
+    ros = formats.add_parser(
+        "ros",
+        help="telemetry of a mission as ROS messages: a catkin package, for programs beside `--ros-master`",
+        description="Write a catkin package of the message types that a mission's telemetry has in ROS (`ros_bridge:` "
+        "of its mission file), so that rostopic echo and your own nodes know them by name.",
+    )
+    add_mission(ros)
+    add_output(ros, "a folder", "cfe_tlm")
 
 
 def _add_values(formats: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str, usual: str) -> None:

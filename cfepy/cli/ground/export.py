@@ -1,4 +1,4 @@
-"""`cfepy export`: values over time as CSV or Parquet, and what a mission's packets mean as XTCE."""
+"""`cfepy export`: values over time as CSV or Parquet; what a mission's packets mean, as XTCE or as ROS messages."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from cfepy.cli.looked_at import look_at_series
 from cfepy.cli.main import ENDED_WELL
 from cfepy.ground import Series, dictionary_of, surveyed_topics
 from cfepy.mission import read_mission
+from cfepy.msg import Telemetry
 from cfepy.pilot import booting
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -38,7 +39,8 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: there is no such run, mission, message or field, it cannot boot, or a file cannot be written.
     """
-    return _xtce(arguments) if arguments.format == "xtce" else _values(arguments)
+    formats = {"xtce": _xtce, "ros": _ros}
+    return formats.get(arguments.format, _values)(arguments)
 
 
 def _xtce(arguments: argparse.Namespace) -> int:
@@ -52,6 +54,24 @@ def _xtce(arguments: argparse.Namespace) -> int:
         print(f"cfepy: {problem}", file=sys.stderr)
     document = xtce_of(spec.name, dictionary)
     write_text(arguments.output, document, "--output", arguments)
+    return ENDED_WELL
+
+
+def _ros(arguments: argparse.Namespace) -> int:
+    from cfepy.ros_host import telemetry_package
+
+    spec = read_mission(arguments.mission)
+    dictionary = dictionary_of(spec)
+    for problem in dictionary.problems:
+        print(f"cfepy: {problem}", file=sys.stderr)
+    declared = [each for each in dictionary.telemetry.values() if isinstance(each, Telemetry)]
+    files = telemetry_package(declared, spec.name)
+    for name, text in files.items():
+        path = Path(arguments.output) / name
+        with writing(str(path), "--output"):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+    print(f"{arguments.output}: {len(files) - 2} message types of {len(declared)} packets")
     return ENDED_WELL
 
 
