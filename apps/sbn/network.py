@@ -60,7 +60,7 @@ class Peer:
         filters: what its messages pass.
         subs: the MsgIds on this processor's bus that it wants.
         pipe: for messages that it wants; 0 when it is not connected.
-        has_greeted: it has told its version since it was connected.
+        is_new: it was connected by the message that is looked at now.
         last_send, last_recv: local times.
         send_cnt, recv_cnt, send_err_cnt, recv_err_cnt: messages since it was connected.
         send_task: id of the task that sends to it; 0 without one.
@@ -75,7 +75,7 @@ class Peer:
     subs: dict[int, None] = field(default_factory=dict)
     pipe: int = 0
     connected: bool = False
-    has_greeted: bool = False
+    is_new: bool = False
     last_send: OsTime = OS_TIME_ZERO
     last_recv: OsTime = OS_TIME_ZERO
     send_cnt: int = 0
@@ -163,7 +163,7 @@ class Nets:
         cfe.sb.set_pipe_opts(peer.pipe, PIPEOPTS_IGNOREMINE)
         cfe.evs.send_info(ev.PEER_EID, f"Peer {peer.name} connected.")
         peer.last_recv = cfe.os.get_local_time()
-        peer.connected, peer.has_greeted = True, False
+        peer.connected = peer.is_new = True
         if self.send(peer, pr.PROTO_MSG, bytes([pr.PROTO_VER])):
             self.send(peer, pr.SUB_MSG, self._subscriptions.all())
 
@@ -223,6 +223,7 @@ class Nets:
             return
         peer.last_recv = self._cfe.os.get_local_time()
         if message.kind & pr.MODULE_SPECIFIC:
+            peer.is_new = False
             return
         peer.recv_cnt += 1
         try:
@@ -231,6 +232,8 @@ class Nets:
             peer.recv_err_cnt += 1
             text = f"(Status={error.status} MsgType=0x{message.kind:x}): {error}"
             self._cfe.evs.send_err(ev.SB_EID, f"ERROR: could not process peer message: {text}")
+        finally:
+            peer.is_new = False
 
     def _process(self, peer: Peer, message: pr.NetMsg) -> None:
         if message.kind == pr.APP_MSG:
@@ -254,12 +257,15 @@ class Nets:
             self._cfe.sb.transmit_msg(filtered, is_origination=False)
 
     def _compare_versions(self, peer: Peer, payload: bytes) -> None:
-        """Tell whether a peer has the same version; one that says so again was reset, and knows no subscriptions."""
+        """Tell whether a peer has the same version.
+
+        It tells so when it takes this processor for connected, which it may do anew: after a reset it knows nothing of
+        what this one wants.
+        """
         if not payload:
             raise pr.Malformed("a protocol version of no bytes")
-        if peer.has_greeted:
+        if not peer.is_new:
             self.send(peer, pr.SUB_MSG, self._subscriptions.all())
-        peer.has_greeted = True
         if payload[0] == pr.PROTO_VER:
             self._cfe.evs.send_info(ev.SB_EID, f"SBN protocol version match with peer {peer.name}")
             return
