@@ -122,12 +122,14 @@ def several() -> None:
     crafts, tools, taken, in_python = blocks("Several spacecraft")
     first, second, third = crafts.commands
     with flying(first) as one, flying(second) as two, flying(third, "phase approach") as three:
-        [tlm_one, tlm_two, noop] = tools.commands
+        [tlm_one, tlm_two, noop, console] = tools.commands
         assert len(output_of(tlm_one).splitlines()) == 5
         assert len(output_of(tlm_two).splitlines()) == 5
         one.says(" 66/1/TO_LAB 3: ")
         two.says(" 67/1/TO_LAB 3: ")
         output_of(noop)
+        two.says(f" 67/1/{NOOP}")
+        output_of(console, "SAMPLE_APP_NOOP\nexpect event SAMPLE_APP 3\n")
         two.says(f" 67/1/{NOOP}")
         assert three
         [again] = taken.commands
