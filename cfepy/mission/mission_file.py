@@ -192,25 +192,37 @@ def _topic(name: str, entry: Marked) -> TopicConfig:
     return TopicConfig(name, msg_id, _truth(fields["raw"]) if "raw" in fields else False)
 
 
+MOST_CLOCK_HZ = 1000
+
+
 def read_bridge(section: Marked, mistakes: Mistakes) -> RosBridge:
     """The section `ros_bridge:`, without what is wrong in it.
 
     Args:
         section: its value.
-        mistakes: takes an unknown key, and a topic's name without "/".
+        mistakes: takes an unknown key, a topic's name without "/", and a rate that cannot be.
     """
     publish: dict[str, BridgedPacket] = {}
     subscribe: list[str] = []
-    for name, part in mistakes.fields(section, ("publish", "subscribe")):
+    clock_hz = 0
+    for name, part in mistakes.fields(section, ("publish", "subscribe", "clock")):
         if name == "publish":
             for topic, entry in mistakes.mapping(part).items():
                 packet = mistakes.attempt(partial(_bridged, topic, entry))
                 if packet is not None:
                     publish[topic] = packet
+        elif name == "clock":
+            clock_hz = mistakes.attempt(partial(_clock_hz, part)) or 0
         else:
             heard = [mistakes.attempt(partial(_global_topic, item)) for item in mistakes.attempt(part.items) or ()]
             subscribe = [each for each in heard if each is not None]
-    return RosBridge(publish, tuple(subscribe))
+    return RosBridge(publish, tuple(subscribe), clock_hz)
+
+
+def _clock_hz(entry: Marked) -> int:
+    if type(entry.value) is not int or not 1 <= entry.value <= MOST_CLOCK_HZ:
+        raise entry.fail(f"is {entry.value!r}; write how often a second /clock is told, from 1 to {MOST_CLOCK_HZ}")
+    return entry.value
 
 
 def _bridged(topic: str, entry: Marked) -> BridgedPacket:

@@ -125,10 +125,13 @@ class RosBridge:
     Attributes:
         publish: packets, by the topic as which they are seen.
         subscribe: topics that are heard for applications; `topics` of the mission file has their MsgIds.
+        clock_hz: how often a second of the mission its time is told on /clock; 0 for never. Its own nodes have that
+            time anyway: /use_sim_time is then for those outside.
     """
 
     publish: Mapping[str, BridgedPacket] = field(default_factory=dict)
     subscribe: tuple[str, ...] = ()
+    clock_hz: int = 0
 
 
 @dataclass(frozen=True, slots=True)

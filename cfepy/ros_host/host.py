@@ -9,6 +9,7 @@ never wait. Who is outside, and what the master knows of it, is the world's to s
 from __future__ import annotations
 
 import os
+import struct
 import time
 from collections.abc import Callable, Mapping
 from selectors import EVENT_READ, DefaultSelector
@@ -20,9 +21,10 @@ from cfepy.mission import Mission
 from cfepy.ros_host.errands import Errands
 from cfepy.ros_host.mission_node import ANY, MissionNode, OutsideClient
 from cfepy.ros_host.peers import OutsideCall, OutsidePublisher
-from cfepy.ros_host.shown import APPLICATIONS, ShownPackets
+from cfepy.ros_host.shown import APPLICATIONS, CLOCK, ShownPackets
 from cfepy.ros_host.tcpros import frame
 from cfepy.status import CfeError
+from cfepy.units import NS_PER_S
 from rospy_shim.master.calls import Answer
 
 if TYPE_CHECKING:
@@ -35,6 +37,7 @@ LOOK_S = 0.02  # wall time between two looks at who has come and gone
 PUT_OFF_S = 0.1  # for which one waits at most while something comes in
 ACT = "ros"
 TABLE = "ros_peers"
+_time = struct.Struct("<II").pack
 
 
 class RosAddress(NamedTuple):
@@ -110,7 +113,8 @@ class RosHost:
         self._is_over = False
         self.selector.register(self.errands, EVENT_READ, lambda events: self.errands.deliver())
         self.shown = ShownPackets(mission.spec)
-        self._ears: dict[str, list[OutsideClient]] = {}  # by topic, of shown packets
+        self._ears: dict[str, list[OutsideClient]] = {}  # by topic, of shown packets and /clock
+        self._tell_at_ns = 0
         mission.record.tables[TABLE] = self.counts.rows
         self.world = make_world(self)
         self.world.begin()
@@ -145,6 +149,8 @@ class RosHost:
         if now_s >= self._look_at_s + (PUT_OFF_S if arrived else 0.0):  # what has come in goes first
             self._look_at_s = now_s + LOOK_S
             self._look(now_s)
+        if self.shown.clock_ns:
+            self._tell_time()
 
     def soon(self) -> None:
         """Look at who has come and gone at the next occasion."""
@@ -193,8 +199,8 @@ class RosHost:
         """One node stands for the cFE applications outside; the mission's own graph knows it by name alone."""
         node = self._nodes[APPLICATIONS] = MissionNode(self, APPLICATIONS, "")
         node.inner = node.uri
-        for topic, shown in self.shown.packets.items():
-            self.ask_inside("", dumps((APPLICATIONS, topic, shown.type.name, node.uri), "registerPublisher").encode())
+        for topic, kind in self.shown.types.items():
+            self.ask_inside("", dumps((APPLICATIONS, topic, kind.name, node.uri), "registerPublisher").encode())
         for topic in self.shown.heard:
             self.ask_inside("", dumps((APPLICATIONS, topic, ANY, node.uri), "registerSubscriber").encode())
 
@@ -379,7 +385,8 @@ class RosHost:
     def subscribe(self, topic: str, name: str, kind: str, md5sum: str, publisher: str) -> str:
         """Put an outside subscriber on the graph; what is wrong with it."""
         if publisher == APPLICATIONS:
-            self.act("show", topic, self.shown.packets[topic].msg_id)
+            if topic in self.shown.packets:
+                self.act("show", topic, self.shown.packets[topic].msg_id)
             return ""
         wrong: str = self.act("subscribe", topic, name, self.world.uri_of(name), kind, md5sum, publisher)
         return wrong
@@ -387,7 +394,7 @@ class RosHost:
     def unsubscribe(self, topic: str, name: str, publisher: str) -> None:
         """One of its connections is gone."""
         if publisher == APPLICATIONS:
-            if not self._ears.get(topic):
+            if topic in self.shown.packets and not self._ears.get(topic):
                 self.act("show no more", topic)
             return
         self.act("subscribe no more", topic, name, publisher)
@@ -418,6 +425,19 @@ class RosHost:
                 count.dropped += 1
                 count.why = "a packet is shorter than its layout"
                 continue
+            client.send(frame(payload))
+            count.messages += 1
+            count.size += len(payload)
+
+    def _tell_time(self) -> None:
+        """On /clock, which is no part of the run: the mission's nodes have their time without it."""
+        ears, every_ns, now_ns = self._ears.get(CLOCK), self.shown.clock_ns, self._mission.kernel.now
+        if not ears or now_ns < self._tell_at_ns:
+            return
+        self._tell_at_ns = now_ns // every_ns * every_ns + every_ns
+        payload = _time(*divmod(self._mission.processor.machine.epoch_ns + now_ns, NS_PER_S))
+        for client in ears:
+            count = self.counts.of(CLOCK, client.caller, OUT_OF)
             client.send(frame(payload))
             count.messages += 1
             count.size += len(payload)

@@ -80,7 +80,7 @@ class MissionNode:
         """The node that stands for the cFE applications is none of the graph's, nor is the host's own."""
         shown = self._host.shown
         if method == "getPublications" and self.name == APPLICATIONS:
-            return 1, "publications", [[topic, each.type.name] for topic, each in shown.packets.items()]
+            return 1, "publications", [[topic, each.name] for topic, each in shown.types.items()]
         if method == "getSubscriptions" and self.name == APPLICATIONS:
             return 1, "subscriptions", [[topic, ANY] for topic in shown.heard]
         values: dict[str, Any] = {"getUri": self.uri, "getName": self.name, "getPid": self._host.pid}

@@ -19,10 +19,12 @@ from cfepy.ground import dictionary_of
 from cfepy.mission import UNIX_AT_CFE_EPOCH, MissionSpec
 from cfepy.msg import TLM_HEADER_SIZE, Cell, Layout, Telemetry
 from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
 from rospy_shim.msgs import from_full_text, message_class
 
 APPLICATIONS = "/cfe"  # the node's name
 RAW = "std_msgs/UInt8MultiArray"
+CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/Clock"
 PACKAGE = "cfe_tlm"
 RULE = "=" * 80
 _ROS = {
@@ -181,6 +183,8 @@ class ShownPackets:
     Attributes:
         packets: those that are shown, by topic.
         heard: topics that are heard for the applications.
+        types: the types of all topics that are published for them, and of /clock.
+        clock_ns: virtual time between two messages of /clock; 0 when it is not told.
 
     Raises:
         UsageError: there is no such packet.
@@ -190,8 +194,15 @@ class ShownPackets:
         bridge = spec.ros.bridge
         self.heard = bridge.subscribe
         self.packets: dict[str, ShownPacket] = {}
-        if not bridge.publish:
-            return
+        self.clock_ns = NS_PER_S // bridge.clock_hz if bridge.clock_hz else 0
+        if bridge.publish:
+            self._read(spec)
+        self.types = {topic: each.type for topic, each in self.packets.items()}
+        if self.clock_ns:
+            self.types[CLOCK] = _plain_type(CLOCK_TYPE)
+
+    def _read(self, spec: MissionSpec) -> None:
+        bridge = spec.ros.bridge
         dictionary = dictionary_of(spec)
         for topic, (packet, is_raw) in bridge.publish.items():
             try:
@@ -202,24 +213,24 @@ class ShownPackets:
                 serialize = PacketSerializer(found.payload).message
                 self.packets[topic] = ShownPacket(found.msg_id, type_of(found.name, found.payload), serialize)
             else:
-                self.packets[topic] = ShownPacket(found.msg_id, _raw_type(), _whole)
+                self.packets[topic] = ShownPacket(found.msg_id, _plain_type(RAW), _whole)
 
     def __bool__(self) -> bool:
-        return bool(self.packets or self.heard)
+        return bool(self.types or self.heard)
 
     def header(self, topic: str) -> dict[str, str] | None:
-        """The connection header of a topic; None when no packet is shown there."""
-        shown = self.packets.get(topic)
-        if shown is None:
+        """The connection header of a topic; None when nothing is shown there."""
+        kind = self.types.get(topic)
+        if kind is None:
             return None
-        kind = shown.type
         fields = {"callerid": APPLICATIONS, "latching": "0", "md5sum": kind.md5sum, "topic": topic}
         return {**fields, "type": kind.name, "message_definition": kind.definition}
 
 
-def _raw_type() -> PacketType:
-    kind = message_class(RAW)
-    return PacketType(RAW, kind._md5sum, kind._full_text)
+def _plain_type(name: str) -> PacketType:
+    """A type that ROS knows."""
+    kind = message_class(name)
+    return PacketType(name, kind._md5sum, kind._full_text)
 
 
 def _whole(packet: bytes) -> bytes:

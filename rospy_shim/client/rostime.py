@@ -183,7 +183,11 @@ class RosClock:
     def init_simtime(self) -> bool:
         """`init_node`: from now on time is what /clock says, if the parameter /use_sim_time is true; 0 before."""
         self.set_rostime_initialized(True)
-        if self._set is None and self._node.params.get_param("/use_sim_time", False):
+        if (
+            self._set is None
+            and not self._node.graph.tells_time
+            and self._node.params.get_param("/use_sim_time", False)
+        ):
             clock_message = self._node.library.message_class("rosgraph_msgs/Clock")
             self._node.Subscriber("/clock", clock_message, lambda tick: self._set_rostime(tick.clock), queue_size=1)
             self._set_rostime(self.Time())

@@ -211,6 +211,7 @@ class Graph:
     def __init__(self, config: RosConfig) -> None:
         self._config = config
         self.connection_delay_ns = config.connection_delay_ns
+        self.tells_time = config.bridge.clock_hz > 0  # to nodes outside, on /clock
         self.topics: dict[str, TopicEntry] = {}
         self.nodes: dict[str, Node] = {}
         self.compiled: dict[str, CompiledNode] = {}

@@ -32,7 +32,7 @@ cfe_version: 6.7
 compiled: {omit_deprecated: 1, strip: true}
 cpp_nodes: {profile: hard, arena_bytes: 3}
 connection_delay: 20 parsecs
-ros_bridge: {publish: {a: X, /b: {raw: true}, /c: Y}, subscribe: [d, /e], hear: []}
+ros_bridge: {publish: {a: X, /b: {raw: true}, /c: Y}, subscribe: [d, /e], clock: 0, hear: []}
 sweep: {rate: fast, topics: [a], points: 3}
 launch: [nothing.launch, {args: {}}]
 invariants: 3
@@ -50,7 +50,8 @@ def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
     fields = "name board bord limits.sb_max_pipes limits.nodes nodes.A.namespace nodes.A.args nodes.A.keys[0] topics.b "
     fields += "topics./c params.x params_from ordered_sets cfe_version compiled.omit_deprecated compiled.strip "
     fields += "cpp_nodes.profile cpp_nodes.arena_bytes "
-    fields += "connection_delay ros_bridge.publish.a ros_bridge.publish./b ros_bridge.subscribe[0] ros_bridge.hear "
+    fields += "connection_delay ros_bridge.publish.a ros_bridge.publish./b ros_bridge.subscribe[0] "
+    fields += "ros_bridge.clock ros_bridge.hear "
     fields += "sweep.rate sweep.topics[0] sweep.points launch[0] launch[1]"
     assert [error.field for error in mistakes.errors] == fields.split()
     assert (said.name, said.board, said.ordered_sets, said.launch) == (None, None, False, ())

@@ -87,6 +87,23 @@ def test_topics_are_heard_for_applications(tmp_path: Path) -> None:
     assert (rows["/packets"]["messages"], rows["/packets"]["dropped"]) == (2, 1)
 
 
+def test_the_mission_tells_its_time(tmp_path: Path) -> None:
+    """/clock has the mission's time, at the rate that is asked for; its own nodes do not wait for it."""
+    node = "import rospy\nrospy.init_node('n')\nrospy.sleep(0.01)\nprint(f'at {rospy.get_time():.2f}')\nrospy.spin()\n"
+    file = "params: {use_sim_time: true}\nros_bridge: {clock: 50}\n"
+    with joined(tmp_path, {"N": node}, mission_file=file) as run:
+        wire = run.subscribed("/clock", {"type": "rosgraph_msgs/Clock", "md5sum": "a9c97c1d230cfc112e270351a944ee47"})
+        assert wire.header()["callerid"] == "/cfe"
+        epoch_ns = run.mission.processor.machine.epoch_ns
+        run.run_while(lambda: not run.heard("at 3165"))
+        times = [wire.frame() for _ in range(5)]
+        at_ns = [int.from_bytes(each[:4], "little") * 10**9 + int.from_bytes(each[4:], "little") for each in times]
+        assert all(epoch_ns < each <= epoch_ns + run.mission.kernel.now for each in at_ns)
+        ticks = [(each - epoch_ns) // 20_000_000 for each in at_ns]
+        assert ticks == sorted(set(ticks))
+        wire.socket.close()
+
+
 @pytest.mark.parametrize("telemetry", dictionary_of(None).telemetry.values(), ids=lambda each: each.name)
 def test_every_packet_is_a_message(telemetry: Telemetry) -> None:
     if not isinstance(telemetry, Telemetry):
