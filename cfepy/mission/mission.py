@@ -245,6 +245,16 @@ class Mission:
         """
         if self._is_closed:
             raise RuntimeError("this mission was closed: its tasks have ended, and it cannot go on; boot another one")
+        stop_ns = until_ns
+        while True:
+            if self.meet is not None:
+                stop_ns = min(until_ns, self.meet())
+            self._run_held_back(stop_ns)
+            if stop_ns == until_ns or self.kernel.now < stop_ns:  # it is there, or was stopped on the way
+                return
+
+    def _run_held_back(self, until_ns: int) -> None:
+        """Run until a virtual time in ns; a signal does not break off what a task is about."""
         if not self._resetting and self.kernel.passes(until_ns):
             self.outside.begin_piece(until_ns)
             return
@@ -253,25 +263,15 @@ class Mission:
             return
         with HeldBack() as signals:
             if not signals.is_first:
-                self._run_meeting(until_ns, self.kernel.run)
+                self._run(until_ns, self.kernel.run)
                 return
             watch = self.stall_watch
             wanted = watch.wanted
             watch.wanted = lambda: signals.asked or wanted()
             try:
-                self._run_meeting(until_ns, lambda end_ns: self._run_in_pieces(end_ns, signals))
+                self._run(until_ns, lambda end_ns: self._run_in_pieces(end_ns, signals))
             finally:
                 watch.wanted = wanted
-
-    def _run_meeting(self, until_ns: int, run: Callable[[int], None]) -> None:
-        """Run until a virtual time in ns, and on the way meet those that fly beside it."""
-        stop_ns = until_ns
-        while True:
-            if self.meet is not None:
-                stop_ns = min(until_ns, self.meet())
-            self._run(stop_ns, run)
-            if stop_ns == until_ns or self.kernel.now < stop_ns:  # it is there, or was stopped on the way
-                return
 
     def _run(self, until_ns: int, run: Callable[[int], None]) -> None:
         self.stall_watch.begin()

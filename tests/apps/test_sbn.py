@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import random
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -11,6 +13,7 @@ import pytest
 import cfepy
 from apps.sbn import protocol as pr
 from apps.sbn.udp import ANNOUNCE_MSG, DISCONN_MSG
+from cfepy.cli.main import main
 from cfepy.flight import Flight
 from cfepy.journal import read_journal, record, replay
 from cfepy.msg import command, init
@@ -193,12 +196,22 @@ def damaged(rng: random.Random) -> bytes:
     return bytes(data[: rng.randrange(len(data) + 1)] if rng.random() < 0.3 else data)
 
 
+def test_a_command_flies_both_and_tells_of_the_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    numbers = tmp_path / "numbers.json"
+    assert main(["run", "pair", "--with", f"{CLIENT}@0.1", "--for", "2", "--json", str(numbers)]) == 0
+    out = capsys.readouterr().out
+    assert f"{CLIENT}: EVS Port1 1980-012-14:03:20.55000 66/2/SAMPLE_APP 1:" in out
+    (row,) = json.loads(numbers.read_text())["beside"]
+    assert (row["mission"], row["booted_s"], row["lost"], row["died"]) == (f"{CLIENT}@0.1", 0.7, 0, "")
+    assert min(row["sent"], row["taken"]) > 5
+
+
 def test_a_mission_does_not_fly_beside_itself() -> None:
     with pytest.raises(UsageError, match="the same processor twice"):
         cfepy.run("pair", seconds=1, beside=["pair"])
 
 
-def test_a_journal_is_replayed_without_the_other_mission(tmp_path: Any) -> None:
+def test_a_journal_is_replayed_without_the_other_mission(tmp_path: Path) -> None:
     journal = tmp_path / "run.cfepy"
     flown = record(RunPlan(("pair",), seconds=3, beside=(CLIENT,)), str(journal))
     again = replay(read_journal(str(journal)), tasks="greenlet")
