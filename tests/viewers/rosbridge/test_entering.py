@@ -90,7 +90,7 @@ def test_a_refusal_is_repeated(tmp_path: Path) -> None:
 
 
 def test_who_only_looks_leaves_no_trace(tmp_path: Path) -> None:
-    """Asking rosapi, sending nonsense and leaving again changes nothing of the run."""
+    """Asking rosapi, hearing a topic, sending nonsense and leaving again changes nothing of the run."""
     digests = []
     for looks in (False, True):
         with bridged(tmp_path, NODES) as run:
@@ -100,6 +100,8 @@ def test_who_only_looks_leaves_no_trace(tmp_path: Path) -> None:
                 assert "/talker" in client.call("/rosapi/nodes")["nodes"]
                 assert "/chatter" in client.call("/rosapi/topics")["topics"]
                 assert client.call("/rosapi/get_param", "/none") == {"value": "null"}
+                client.send(op="subscribe", topic="/chatter")
+                assert client.next()["msg"] == {"data": "first"}
                 client.send(op="nonsense")
                 assert client.next()["op"] == "status"
                 client.close()

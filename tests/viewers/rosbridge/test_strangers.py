@@ -342,3 +342,20 @@ def test_a_client_that_does_not_read_loses_its_own_messages_alone(
         assert rows["(connections)", "out"]["dropped"] > 0
         assert rows["/orders", "in"]["dropped"] == 0
         quick.close()
+
+
+@pytest.mark.slow
+def test_a_burst_is_held_back_and_nothing_of_it_is_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Far more than a pipe holds, at once."""
+    monkeypatch.setattr(client_module, "MOST_PATIENCE_S", 1e9)
+    count = 2_000
+    with bridged(tmp_path, {"TALKER": TALKER}) as run:
+        client = run.client()
+        client.send(op="subscribe", topic="/chatter")
+        client.next()
+        for number in range(count):
+            client.send(op="publish", topic="/orders", msg={"data": f"m{number}"})
+        assert [client.next()["msg"]["data"] for _ in range(count)] == [f"M{number}" for number in range(count)]
+        rows = {(row["name"], row["direction"]): row for row in run.counts.rows()}
+        assert (rows["/orders", "in"]["messages"], rows["/orders", "in"]["dropped"]) == (count, 0)
+        client.close()
