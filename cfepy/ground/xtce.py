@@ -31,6 +31,7 @@ NAMESPACE = "http://www.omg.org/spec/XTCE/20180204"
 SCHEMA = f"{NAMESPACE} {NAMESPACE}/SpaceSystem.xsd"
 ROOT, TELEMETRY = "CCSDSPacket", "CCSDSTelemetry"
 APID_MASK = 0x7FF
+COMMAND_BIT, SECONDARY_HEADER_BIT = 0x1000, 0x0800  # of a MsgId
 WHOLE = "3"  # sequence flags of a packet that is not segmented
 PRIMARY_HEADER = (
     ("VERSION", 3),
@@ -248,11 +249,11 @@ class _Telemetry:
         self._base(ROOT, TYPE="0", SEC_HDR_FLG="1")
 
     def add_packets(self, packets: Iterable[Telemetry | Topic]) -> None:
-        """Add a container for each packet."""
+        """Add a container for each packet that has a telemetry header, by which alone it can be told apart."""
         taken: set[int] = set()
         for packet in sorted(packets, key=lambda each: (each.msg_id, isinstance(each, Topic))):
-            known = isinstance(packet, Telemetry) or (packet.type and not packet.raw)
-            if known and packet.msg_id not in taken:
+            known = isinstance(packet, Telemetry) or packet.type or packet.raw
+            if known and packet.msg_id not in taken and _has_time(packet.msg_id):
                 taken.add(packet.msg_id)
                 if isinstance(packet, Telemetry) and packet.variants:
                     self._add_variants(packet)
@@ -279,7 +280,8 @@ class _Telemetry:
         if isinstance(packet, Topic):
             for part in topic_parts(packet, self._types, lambda path: f"{name}_{xtce_name(path)}"):
                 self._entry(entries, part.name, part.type)
-            self._base(TELEMETRY, PKT_APID=apid, SEQ_FLGS=WHOLE)
+            flags = {} if packet.raw else {"SEQ_FLGS": WHOLE}
+            self._base(TELEMETRY, PKT_APID=apid, **flags)
             return
         self._add_cells(entries, name, cells_with_padding(packet.payload), packet)
         self._base(TELEMETRY, PKT_APID=apid)
@@ -339,17 +341,29 @@ def topic_parts(topic: Topic, types: TypeSet, name: Callable[[str], str]) -> Ite
     """The parameters of a topic's packets.
 
     Args:
-        topic: of a known type.
+        topic: of a known type, or of whole packets.
         types: where their types go.
         name: makes a parameter's name of a field's path.
     """
+    if topic.raw:
+        yield XtceParameter(name("data"), _rest(types, 0))
+        return
     message = _Message(library_of(topic), types, name)
     try:
         yield from message.fields(topic.type, "")
     except _End:
         if message.fixed_bytes is not None:
-            intercept = 8 * (LENGTH_OFFSET - TLM_HEADER_SIZE - message.fixed_bytes)
-            yield XtceParameter(name("rest"), types.counted_bytes("PKT_LEN", 8, intercept))
+            yield XtceParameter(name("rest"), _rest(types, message.fixed_bytes))
+
+
+def _rest(types: TypeSet, after: int) -> str:
+    """What follows so many bytes of payload, up to the packet's end; the name of the type."""
+    return types.counted_bytes("PKT_LEN", 8, 8 * (LENGTH_OFFSET - TLM_HEADER_SIZE - after))
+
+
+def _has_time(msg_id: int) -> bool:
+    """Whether a MsgId is that of telemetry with its time."""
+    return msg_id & (COMMAND_BIT | SECONDARY_HEADER_BIT) == SECONDARY_HEADER_BIT
 
 
 class _Message:

@@ -188,6 +188,28 @@ def test_names_that_become_alike_stay_apart() -> None:
     assert names[-3:] == ["APP_TLM_A_0", "APP_TLM_A_1", "APP_TLM_A_1_"]
 
 
+def read_with(packets: list[Telemetry | Topic], folder: Path, packet: bytes) -> dict[str, Any]:
+    """What the library makes of a packet by the document of a few."""
+    found = Dictionary()
+    found.add(packets)
+    (folder / "few.xml").write_text(xtce_of("few", found))
+    return dict(XtcePacketDefinition.from_xtce(folder / "few.xml").parse_bytes(packet))
+
+
+def test_a_topic_of_whole_packets_is_bytes(tmp_path: Path) -> None:
+    """Such as HK's combined packets, whose fields a table decides."""
+    topic = Topic("/cfe/hk/combined_pkt1", 0x089C, "std_msgs/UInt8MultiArray", raw=True)
+    values = read_with([topic], tmp_path, bytes(telemetry(0x089C, b"any bytes")))
+    assert values["cfe_hk_combined_pkt1_data"] == b"any bytes"
+
+
+def test_a_topic_among_the_commands_is_no_telemetry(tmp_path: Path) -> None:
+    """It has the APID of a telemetry packet, from which it cannot be told apart."""
+    declared = Telemetry("APP_TLM", 0x0890, Layout("L", [("A", "u8")]))
+    topics = [Topic("/goal", 0x1890, "std_msgs/Int32"), Topic("/plain", 0x0090, "std_msgs/Int32")]
+    assert read_with([declared, *topics], tmp_path, bytes(telemetry(0x0890, b"\x07")))["APP_TLM_A"] == 7
+
+
 def test_padding_fills_every_gap() -> None:
     layout = Layout("L", [("A", "u8"), ("B", "u32"), ("C", "u16")])
     found = list(cells_with_padding(layout))
