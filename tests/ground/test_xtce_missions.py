@@ -17,9 +17,10 @@ from cfepy.ground.dictionary import Dictionary, dictionary_of
 from cfepy.ground.xtce import xtce_of
 from cfepy.mission import read_mission
 from cfepy.msg import TLM_HEADER_SIZE, Telemetry
+from cfepy.resources import shipped
 from tests.ground.random_packets import DECLARED, random_telemetry, xtce_values
 
-MISSIONS = ("capture", "cfs", "lab", "pathfinder", "rx64m_pubsub", "sched")
+MISSIONS = sorted(script.parent.name for script in shipped("missions").glob("*/startup.scr"))
 ALL_TYPES = "all types"
 
 
