@@ -231,7 +231,8 @@ class RosbridgeClient:
         count.size += len(payload)
         if not self._node.publish(topic, payload):
             count.dropped += 1
-            count.why = "the Software Bus did not take it"
+            count.why = f"the Software Bus did not take a message of {topic}"
+            self._status("error", f"publish: {count.why}")
         return True
 
     # -- topics that it hears ------------------------------------------------------------------------------------------

@@ -169,6 +169,7 @@ def bridged(
     nodes: Mapping[str, str],
     mission_file: str = "",
     admission: Admission | None = None,
+    lines: str = "",
 ) -> Iterator[Bridged]:
     """A mission of nodes, by application, that clients reach while it runs.
 
@@ -177,10 +178,11 @@ def bridged(
         nodes: their programs.
         mission_file: more of it.
         admission: whom the server lets in.
+        lines: more of its startup script.
     """
     (folder / "mission.yaml").write_text(mission_file or "name: bridged\n")
-    lines = [f"CFE_APP, {app.lower()}.py, __main__, {app}, 100, 16384, 0x0, 0;\n" for app in nodes]
-    (folder / "startup.scr").write_text("".join(lines) + "!\n")
+    apps = [f"CFE_APP, {app.lower()}.py, __main__, {app}, 100, 16384, 0x0, 0;\n" for app in nodes]
+    (folder / "startup.scr").write_text("".join(apps) + lines + "!\n")
     for app, source in nodes.items():
         (folder / f"{app.lower()}.py").write_text(source)
     with bridged_mission(str(folder), admission) as run:
