@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import struct
 from random import Random
+from typing import Literal
 
 from cfepy.ground.values import flat, named_fields
 from cfepy.ground.xtce import xtce_name
-from cfepy.msg import Cell, Command, Layout, Telemetry, ValueNames, telemetry
+from cfepy.msg import TLM_HEADER_SIZE, Cell, Command, Layout, Telemetry, ValueNames, telemetry
 
 TEXT = 'abcXYZ019 _/.\u00e9\u20ac<&"'
 FLOATS = (0.0, -0.0, math.inf, -math.inf, 1.0, 1e-40)
@@ -42,12 +43,13 @@ def random_payload(layout: Layout, random: Random) -> bytes:
         random: decides; what it gives to padding is random, too.
     """
     payload = bytearray(random.randbytes(layout.size))
+    order: Literal["little", "big"] = "big" if layout.on_the_wire else "little"
     for cell in layout.cells():
-        payload[cell.offset : cell.offset + cell.size] = _random_cell(cell, random)
+        payload[cell.offset : cell.offset + cell.size] = _random_cell(cell, order, random)
     return bytes(payload)
 
 
-def _random_cell(cell: Cell, random: Random) -> bytes:
+def _random_cell(cell: Cell, order: Literal["little", "big"], random: Random) -> bytes:
     if cell.type.startswith("char"):
         text = "".join(random.choices(TEXT, k=random.randrange(cell.size))).encode()[: cell.size - 1]
         return text.decode(errors="ignore").encode().ljust(cell.size, b"\0")
@@ -55,8 +57,8 @@ def _random_cell(cell: Cell, random: Random) -> bytes:
         return bytes([random.randrange(2)])
     if cell.type in ("f32", "f64"):
         value = random.choice((*FLOATS, random.uniform(-1e6, 1e6), random.gauss(0, 1)))
-        return struct.pack("<f" if cell.type == "f32" else "<d", value)
-    return _random_number(cell, random).to_bytes(cell.size, "little", signed=cell.type[0] == "i")
+        return struct.pack((">" if order == "big" else "<") + cell.type.replace("f32", "f").replace("f64", "d"), value)
+    return _random_number(cell, random).to_bytes(cell.size, order, signed=cell.type[0] == "i")
 
 
 def _random_number(cell: Cell, random: Random) -> int:
@@ -76,9 +78,22 @@ def random_telemetry(declared: Telemetry, sequence: int, random: Random) -> byte
         random: decides.
     """
     packet = bytearray(telemetry(declared.msg_id, random_payload(declared.payload, random)))
+    if declared.first is not None:
+        packet[TLM_HEADER_SIZE] = declared.first
     packet[2:4] = (UNSEGMENTED | sequence % SEQUENCES).to_bytes(2, "big")
     packet[6:12] = random.randbytes(6)
     return bytes(packet)
+
+
+def telemetry_values(declared: Telemetry, packet: bytes) -> dict[str, object]:
+    """What a reader of our XTCE has to make of the payload of a packet.
+
+    The byte that tells apart packets of one MsgId is no parameter of theirs, but one of what they have in common.
+    """
+    values = xtce_values(declared.name, declared.payload, packet[TLM_HEADER_SIZE:])
+    if declared.first is not None:
+        del values[next(iter(values))]
+    return values
 
 
 def xtce_values(name: str, layout: Layout, payload: bytes) -> dict[str, object]:

@@ -16,13 +16,13 @@ from random import Random
 from cfepy.ground.dictionary import Dictionary
 from cfepy.ground.topics import Topic
 from cfepy.ground.xtce import xtce_name, xtce_of
-from cfepy.msg import TLM_HEADER_SIZE, Cell, Command, Telemetry, generate_checksum
+from cfepy.msg import Cell, Command, Telemetry, generate_checksum
 from tests.ground import yamcs
 from tests.ground.page import blocks
 from tests.ground.page_flight import COUNTED, ENABLED, flying, output_of
-from tests.ground.random_packets import SEQUENCES, random_payload, random_telemetry, xtce_values
+from tests.ground.random_packets import SEQUENCES, random_payload, random_telemetry, telemetry_values, xtce_values
 from tests.ground.test_xtce import Export
-from tests.ground.test_xtce_missions import ALL_TYPES, MISSIONS, dictionary_named
+from tests.ground.test_xtce_missions import ALL_TYPES, MISSIONS, declared_telemetry, dictionary_named
 
 LOOPBACK = "127.0.0.1"
 
@@ -99,16 +99,15 @@ class Comparison:
     def telemetry(self, times: int) -> int:
         """Send each packet to Yamcs; how many values were compared."""
         compared = sequence = 0
-        for declared in self.dictionary.telemetry.values():
-            for _ in range(times if isinstance(declared, Telemetry) else 0):
-                assert isinstance(declared, Telemetry)
+        for declared in declared_telemetry(self.dictionary):
+            for _ in range(times):
                 sequence += 1
                 compared += self._packet(declared, sequence % SEQUENCES)
         return compared
 
     def _packet(self, declared: Telemetry, sequence: int) -> int:
         packet = random_telemetry(declared, sequence, self._random)
-        ours = xtce_values(declared.name, declared.payload, packet[TLM_HEADER_SIZE:])
+        ours = telemetry_values(declared, packet)
         wanted = {f"/{self.name}/{name}": value for name, value in {"SRC_SEQ_CTR": sequence, **ours}.items()}
         self._socket.sendto(packet, self._tm)
         theirs: dict[str, object] = {}
