@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import shutil
 import socket
 from pathlib import Path
 
 import pytest
 
+import cfepy
 from apps.sbn import protocol as pr
 from cfepy.console import Console
-from cfepy.mission import Mission
-from cfepy.msg import command
+from cfepy.mission import Arrival, Mission
+from cfepy.msg import command, get_msg_id
 from cfepy.time import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID
 from cfepy.time import packets as time
 from tests.twin.real import in_network_of, installed
-from tests.twin.sbn_flight import CLIENT_VARIABLE, PAIR, SBN_VARIABLE, Paced, paced, real_sbn
+from tests.twin.sbn_flight import CLIENT_VARIABLE, CONF_WITHOUT_FILTERS, PAIR, SBN_VARIABLE, Paced, paced, real_sbn
 from tests.twin.sbn_peer import RealPeer, VirtualPeer, serve_time
 
 SERVER, CLIENT = installed(SBN_VARIABLE), installed(CLIENT_VARIABLE)
@@ -85,6 +87,44 @@ def assert_bytes_are_ours(flight: Paced) -> None:
             assert pr.pack_subscriptions(subscriptions, ident) == message.payload
             assert ident == pr.IDENT
     assert {pr.SUB_MSG, pr.APP_MSG, pr.PROTO_MSG} <= kinds
+
+
+def said_by_client(folder: Path, code: list[Path]) -> list[tuple[int, bytes | int]]:
+    """What processor 2 sends in 20 virtual seconds, in order: type, and payload, of packets their MsgId.
+
+    Args:
+        folder: for its mission.
+        code: files of compiled code in place of cfepy's SBN.
+    """
+    shutil.copytree(PAIR, folder)
+    (folder / "sbn_conf_tbl.tbl").write_bytes(CONF_WITHOUT_FILTERS)
+    for each in code:
+        shutil.copy(each, folder)
+    said: list[tuple[int, bytes | int]] = []
+
+    def listen(arrival: Arrival) -> None:
+        if arrival.kind == "datagram":
+            message = pr.unpack(arrival.values[-1], 32_768)
+            said.append((message.kind, get_msg_id(message.payload) if message.kind == pr.APP_MSG else message.payload))
+
+    with cfepy.boot("pair", beside=[str(folder / "client.scr")]) as flight:
+        flight.mission.outside.listener = listen
+        flight.run_until(20)  # later an answer and a tone meet in one millisecond, within which the two may differ
+        assert flight.flown().results.beside[0]["died"] == ""
+    return said
+
+
+@needs_sbn
+@pytest.mark.slow
+def test_nasas_sbn_as_compiled_code_says_what_cfepys_says(tmp_path: Path) -> None:
+    """The same shared objects as above, in virtual time; but that cfepy's tells its subscriptions once more."""
+    assert SERVER is not None
+    own = said_by_client(tmp_path / "own", [])
+    nasas = said_by_client(tmp_path / "nasa", [SERVER / "cf/sbn.so", SERVER / "cf/sbn_udp.so"])
+    again = next(at for at, each in enumerate(own) if each[0] == pr.SUB_MSG and own.index(each) < at)
+    del own[again]
+    assert own == nasas
+    assert len(own) > 80
 
 
 VALID, INVALID, FLYWHEEL = CLOCK_VALID, CLOCK_INVALID, CLOCK_FLYWHEEL
