@@ -11,6 +11,7 @@ messages, parameters and service calls; `cfepy.mission.acts` then carries them o
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
@@ -44,6 +45,8 @@ LOOK_NS = 10 * NS_PER_MS
 WITHIN_S = 5.0
 LONGEST_BOOT_S = 60.0
 TABLE_FILE = "/ram/cfepy_test.tbl"
+VALID = re.compile("validation succ|assumed valid")
+"""What CFE_TBL says of an image that its owner took, and of one whose owner looks at none."""
 
 
 class RosSide:
@@ -312,11 +315,11 @@ class Flight(Run):
         self.send("CFE_TBL_LOAD", LoadFilename=TABLE_FILE)
         self.expect_event("CFE_TBL", text="Successful load", within=within)
         self.send("CFE_TBL_VALIDATE", ActiveTableFlag=0, TableName=kind.name)
-        self._await_owner("validation succ", wake, within)
+        self._await_owner(VALID, wake, within)
         self.send("CFE_TBL_ACTIVATE", TableName=kind.name)
         self._await_owner("Update", wake, within)
 
-    def _await_owner(self, text: str, wake: str | None, within: float) -> None:
+    def _await_owner(self, text: Text, wake: str | None, within: float) -> None:
         """Wait for an event of CFE_TBL about what a table's owner does in CFE_TBL_Manage."""
         wanted = expectations.event(self.log, self._here, "CFE_TBL", None, text, None)
         first = self._here.events

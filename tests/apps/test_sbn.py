@@ -11,12 +11,14 @@ from typing import Any
 import pytest
 
 import cfepy
+from apps.sbn import packets as pk
 from apps.sbn import protocol as pr
+from apps.sbn.definition import configuration, peer
 from apps.sbn.udp import ANNOUNCE_MSG, DISCONN_MSG
 from cfepy.cli.main import main
 from cfepy.flight import Flight
 from cfepy.journal import read_journal, record, replay
-from cfepy.msg import command, init
+from cfepy.msg import command, get_msg_id, init
 from cfepy.osal import Datagram, Place
 from cfepy.pilot import RunPlan
 from cfepy.status import UsageError
@@ -112,6 +114,7 @@ def test_a_peer_that_was_reset_unnoticed_is_told_the_subscriptions_again(imposto
     assert impostor.kinds() == [pr.SUB_MSG]
 
 
+@pytest.mark.slow
 def test_each_may_be_reset_and_both_go_on() -> None:
     with cfepy.boot("pair", beside=[CLIENT]) as flight:
         flight.run_until(3)
@@ -170,6 +173,50 @@ def test_a_message_that_the_header_cannot_tell_the_length_of_is_not_sent(imposto
     assert said(impostor.flight, 5)[-1] == "a message of 32768 bytes cannot be sent to peer 66:2, at most 32767"
 
 
+def test_a_remapping_table_of_the_ground_is_taken(impostor: Impostor) -> None:
+    impostor.send(pr.SUB_MSG, subs(0x08F0, 0x08F1, 0x08F2))
+    impostor.flight.run_for(0.5)
+    entries = [{"ProcessorID": 2, "SpacecraftID": 0x42, "FromMID": 0x08F0, "ToMID": 0x08F3}]
+    impostor.flight.load_table("SBN.SBN_RemapTbl", {"RemapDefaultFlag": pk.REMAP_DEFAULT_IGNORE, "Entries": entries})
+    impostor.flight.run_for(0.5)
+    impostor.heard.clear()
+    for msg_id in (0x08F0, 0x08F1):
+        impostor.flight.mission.outside.act("packet", bytes(init(msg_id, 16)))
+    impostor.flight.run_for(0.01)
+    assert [get_msg_id(each.payload) for each in impostor.heard] == [0x08F3]
+
+
+def test_a_configuration_of_the_ground_is_taken(impostor: Impostor) -> None:
+    impostor.send(ANNOUNCE_MSG)
+    impostor.flight.run_for(0.5)
+    impostor.heard.clear()
+    peers = [peer(1, "127.0.0.1:2234"), peer(3, "127.0.0.1:2235")]
+    impostor.flight.load_table("SBN.SBN_ConfTbl", pk.CONF.unpack(configuration(peers).data))
+    impostor.flight.run_for(1)
+    assert impostor.kinds()[0] == DISCONN_MSG
+    assert "SBN re-initialized." in said(impostor.flight, 4)
+    impostor.flight.run_for(1)
+    impostor.kinds()
+    impostor.send(ANNOUNCE_MSG, ids=(3, 0x42))
+    impostor.flight.run_for(0.2)  # it polls now
+    assert impostor.kinds() == [pr.PROTO_MSG, pr.SUB_MSG]
+
+
+def test_commands_that_cannot_be_are_counted(impostor: Impostor) -> None:
+    for wrong in (command(pk.CMD_MID, 9), command(pk.CMD_MID, 0, b"12"), command(pk.CMD_MID, 12, b"\0")):
+        impostor.flight.send(bytes(wrong))
+        impostor.flight.run_for(0.01)
+    impostor.flight.send("SBN_HK_PEER", NetIdx=0, PeerIdx=7)
+    impostor.flight.send("SBN_NOOP")
+    impostor.flight.run_for(0.01)
+    hk = answer(impostor.flight, "SBN_HK")
+    assert (hk["CmdCnt"], hk["CmdErrCnt"]) == (1, 3)
+    assert said(impostor.flight, 7)[-1] == "Invalid PeerIdx (NetIdx=0 PeerIdx=7, max is 0)"
+    assert answer(impostor.flight, "SBN_HK_NET", NetIdx=0) == {"CC": 11, "ProtocolIdx": 0, "PeerCnt": 1}
+    assert answer(impostor.flight, "SBN_HK_MYSUBS")["SubCnt"] == hk["SubCnt"]
+
+
+@pytest.mark.slow
 def test_10_000_random_datagrams_do_no_harm_and_are_counted(impostor: Impostor) -> None:
     rng = random.Random(7)
     impostor.send(ANNOUNCE_MSG)
@@ -206,11 +253,19 @@ def test_a_command_flies_both_and_tells_of_the_other(tmp_path: Path, capsys: pyt
     assert min(row["sent"], row["taken"]) > 5
 
 
+def test_what_dies_beside_a_mission_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "startup.scr").write_text("CFE_APP, app, main, APP, 50, 16384, 0x0, 0;\n!\n")
+    (tmp_path / "app.py").write_text("def main(cfe):\n    raise ValueError('no')\n")
+    assert main(["run", "pair", "--with", str(tmp_path), "--for", "1"]) == 1
+    assert f"cfepy: {tmp_path}: APP died: ValueError: no" in capsys.readouterr().err
+
+
 def test_a_mission_does_not_fly_beside_itself() -> None:
     with pytest.raises(UsageError, match="the same processor twice"):
         cfepy.run("pair", seconds=1, beside=["pair"])
 
 
+@pytest.mark.slow
 def test_a_journal_is_replayed_without_the_other_mission(tmp_path: Path) -> None:
     journal = tmp_path / "run.cfepy"
     flown = record(RunPlan(("pair",), seconds=3, beside=(CLIENT,)), str(journal))

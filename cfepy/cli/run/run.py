@@ -163,7 +163,15 @@ def _nothing() -> None:
 
 def _explain(flown: Flown, longer: str) -> None:
     results, mission = flown.results, flown.mission
-    tell((*results.script_problems, *results.problems, *results.endless_waits, *results.never_happened))
+    tell(
+        (
+            *_deaths_beside(flown),
+            *results.script_problems,
+            *results.problems,
+            *results.endless_waits,
+            *results.never_happened,
+        )
+    )
     if results.script_problems:
         script = mission.spec.script
         tell([f'the console says why, and "cfepy check {script}" what can be seen without running it'])
@@ -171,6 +179,11 @@ def _explain(flown: Flown, longer: str) -> None:
         tell([f"ended by Ctrl-C or SIGTERM after {results.virtual_s:g} virtual seconds"])
     elif results.booted_s is None and not mission.over and flown.stall is None:
         tell([f"not OPERATIONAL after {results.virtual_s:g} virtual seconds; {longer}"])
+
+
+def _deaths_beside(flown: Flown) -> list[str]:
+    """What died in the missions that flew beside it, a line each."""
+    return [f"{row['mission']}: {row['died']}" for row in flown.results.beside if row["died"]]
 
 
 def _status(flown: Flown) -> int:
@@ -181,6 +194,6 @@ def _status(flown: Flown) -> int:
         return FOUND_PROBLEMS
     if flown.outcome is not None:
         return ENDED_WELL if flown.outcome.ok else FOUND_PROBLEMS
-    if results.script_problems or results.problems:
+    if results.script_problems or results.problems or _deaths_beside(flown):
         return FOUND_PROBLEMS
     return ENDED_WELL if results.booted_s is not None or flown.mission.over else BAD_USAGE
