@@ -1,8 +1,8 @@
 """What has another MsgId on the other processor, and what does not go there.
 
-Both subscribe to the commands and requests of their own core services: without this table both would do what the ground
-wants of one. With it, those of processor 2 have MsgIds of their own on processor 1: 0x1826 are commands for its Executive
-Services, which are 0x1806 there. An entry is used by the processor that has the other one for a peer.
+Both subscribe to the commands and requests of their own core services: without this table both would do what the
+ground wants of one. With it, those of processor 2 have MsgIds of their own on processor 1: 0x1826 are commands for its
+Executive Services, which are 0x1806 there. An entry is used by the processor that has the other one for a peer.
 
 After a change: `python missions/pair/sbn_remap_tbl.py` writes sbn_remap_tbl.tbl anew.
 """

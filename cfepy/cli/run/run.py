@@ -163,15 +163,8 @@ def _nothing() -> None:
 
 def _explain(flown: Flown, longer: str) -> None:
     results, mission = flown.results, flown.mission
-    tell(
-        (
-            *_deaths_beside(flown),
-            *results.script_problems,
-            *results.problems,
-            *results.endless_waits,
-            *results.never_happened,
-        )
-    )
+    tell(_deaths_beside(flown))
+    tell((*results.script_problems, *results.problems, *results.endless_waits, *results.never_happened))
     if results.script_problems:
         script = mission.spec.script
         tell([f'the console says why, and "cfepy check {script}" what can be seen without running it'])
