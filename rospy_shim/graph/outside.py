@@ -418,7 +418,17 @@ class OutsideGraph:
             if subscription in link.expected:
                 link.peer_connected(subscription)
             link.peer_joined(subscription, late=True)
+        else:
+            self._give_latched(topic, publisher, subscription)
         return ""
+
+    def _give_latched(self, topic: str, publisher: str, subscription: OutsideSubscription) -> None:
+        """An outside subscriber has another way than an outside publisher: what that has latched comes from here."""
+        link = self.links.get((topic, publisher))
+        if link is None or self._way_to(publisher) is self._way_to(subscription.node.names.name):
+            return
+        if link.is_latch and link.latch is not None and not link.raw:
+            subscription.deliver(link.latch, link.header)
 
     def _way_to(self, name: str) -> WayOut | None:
         """The way out to an outside node."""

@@ -78,17 +78,17 @@ class BridgeNode:
     Args:
         mission: the mission.
         uri: where the node answers, for the master.
+        lost: told of each message that was left out because too much was put aside, by its topic.
 
     Attributes:
         types: what is known of types.
         reading: makes messages of what clients send.
-        lost: messages that were left out because too much was put aside.
     """
 
-    def __init__(self, mission: Mission, uri: str) -> None:
+    def __init__(self, mission: Mission, uri: str, lost: Callable[[str], object]) -> None:
         self.types = KnownTypes(mission)
         self.reading = Reading(self.types.message_class, self.ros_time)
-        self.lost = 0
+        self._lost = lost
         self._mission = mission
         self._uri = uri
         self._ros: RosRuntime | None = None
@@ -377,7 +377,7 @@ class BridgeNode:
         """Put a message aside."""
         self._waiting += len(payload)
         if self._waiting > MOST_WAITING:
-            self.lost += 1
+            self._lost(topic)
         else:
             self._messages.append((topic, publisher, payload))
 

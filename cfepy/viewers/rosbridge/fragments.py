@@ -40,7 +40,7 @@ class Assembly:
     """Puts the pieces together that one client sends.
 
     Args:
-        longest: characters of a message; more are refused.
+        longest: characters of a message, and of all that are not whole; more are refused.
     """
 
     def __init__(self, longest: int) -> None:
@@ -73,9 +73,9 @@ class Assembly:
         begun.pieces[number] = data
         begun.size += len(data)
         begun.at_s = now_s
-        if begun.size > self._longest:
+        if sum(each.size for each in self._begun.values()) > self._longest:
             del self._begun[key]
-            raise UsageError(f"a message in fragments has more than {self._longest:,} characters")
+            raise UsageError(f"messages in fragments have more than {self._longest:,} characters")
         if len(begun.pieces) < total:
             return None
         del self._begun[key]

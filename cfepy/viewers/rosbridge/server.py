@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs, urlsplit
 
 from cfepy.attachment import Attachment
-from cfepy.io import INTO, Listening, PeerCounts, listening_socket
+from cfepy.io import INTO, OUT_OF, Listening, PeerCounts, listening_socket
 from cfepy.status import UsageError
 from cfepy.viewers.listen import Admission, ListenPlace
 from cfepy.viewers.rosbridge.bridge_node import BridgeNode
@@ -33,6 +33,7 @@ GOING_AWAY, INTERNAL = 1001, 1011  # RFC 6455, 7.4.1
 LONGEST_REASON = 40  # characters; in UTF-8 there is room for 123 bytes
 OPTION = "--rosbridge"
 TABLE = "viewer_peers"  # of the report
+OUTSIDE = "rosbridge"
 
 
 class RosbridgeServer(Attachment):
@@ -73,7 +74,7 @@ class RosbridgeServer(Attachment):
     def begin(self, mission: Any) -> None:
         """See `Attachment.begin`."""
         uri = f"http://{self.place}/"
-        self._node = BridgeNode(mission, uri)
+        self._node = BridgeNode(mission, uri, self._lost)
         self._rosapi = Rosapi(self._node, uri)
         mission.record.tables[TABLE] = self._counts.rows
 
@@ -115,13 +116,16 @@ class RosbridgeServer(Attachment):
         self._selector.close()
 
     def _accept(self, connected: socket.socket) -> None:
-        host = str(connected.getpeername()[0])
-        peer = f"rosbridge {host}"
+        try:
+            peer = f"{OUTSIDE} {connected.getpeername()[0]}"
+            connected.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+        except OSError:  # it is gone again
+            connected.close()
+            return
         if len(self._clients) >= MOST_CLIENTS:
             connected.close()
             self._refused(peer, "too many clients")
             return
-        connected.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
         client = RosbridgeClient(self._node, self._rosapi, self._counts, peer, self._mac)
         client.socket = made = WebSocket(
             self._selector,
@@ -151,6 +155,11 @@ class RosbridgeServer(Attachment):
             client.is_admitted()
         self._counts.of(CONNECTION, peer, INTO).connections += 1
         return None
+
+    def _lost(self, topic: str) -> None:
+        count = self._counts.of(topic, OUTSIDE, OUT_OF)
+        count.dropped += 1
+        count.why = "too much between two pieces of the run"
 
     def _refused(self, peer: str, why: str) -> None:
         count = self._counts.of(CONNECTION, peer, INTO)

@@ -71,6 +71,11 @@ def test_pieces_that_are_too_much() -> None:
     assembly = Assembly(10)
     with pytest.raises(UsageError, match="more than 10 characters"):
         assembly.add({"id": 1, "num": 0, "total": 2, "data": "x" * 11}, 0.0)
+    for each in range(2):
+        assembly.add({"id": each, "num": 0, "total": 2, "data": "x" * 4}, 0.0)
+    with pytest.raises(UsageError, match="more than 10 characters"):
+        assembly.add({"id": 2, "num": 0, "total": 2, "data": "x" * 4}, 0.0)
+    assembly = Assembly(10)
     for each in range(16):
         assembly.add({"id": each, "num": 0, "total": 2, "data": ""}, 0.0)
     with pytest.raises(UsageError, match="beside 16 others"):

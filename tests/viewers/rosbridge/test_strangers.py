@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import socket
+import struct
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from typing import Any
 import pytest
 
 from cfepy.viewers.listen import Admission
+from cfepy.viewers.rosbridge import bridge_node
 from cfepy.viewers.rosbridge import client as client_module
 from cfepy.viewers.rosbridge import server as server_module
 from cfepy.viewers.rosbridge.rosauth import MacCheck
@@ -176,6 +178,30 @@ def _still_served(run: Bridged) -> None:
     client.send(op="subscribe", topic="/chatter")
     assert client.next()["msg"] == {"data": "first"}
     client.close()
+
+
+def test_who_has_left_before_it_was_let_in(talker: Bridged) -> None:
+    for _ in range(20):
+        stranger = socket.create_connection((LOOPBACK, talker.port))
+        stranger.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))  # it is reset, not closed
+        stranger.close()
+    _still_served(talker)
+
+
+def test_what_is_too_much_for_a_piece_of_the_run_is_lost_and_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bridge_node, "MOST_WAITING", 10)
+    with bridged(tmp_path, {"TALKER": TALKER}) as run:
+        client = run.client()
+        client.send(op="subscribe", topic="/chatter")
+        client.next()
+        client.send(op="publish", topic="/orders", msg={"data": "longer than that"})
+        client.send(op="publish", topic="/orders", msg={"data": "ok"})
+        assert client.next()["msg"] == {"data": "OK"}
+        rows = {(row["name"], row["peer"], row["direction"]): row for row in run.counts.rows()}
+        assert rows["/chatter", "rosbridge", "out"]["dropped"] == 1
+        client.close()
 
 
 # -- who may connect ---------------------------------------------------------------------------------------------------

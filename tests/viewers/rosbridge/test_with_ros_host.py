@@ -72,6 +72,13 @@ def test_messages_and_calls_between_them(both: Both) -> None:
     values = {"success": True, "message": "page"}
     client.send(op="service_response", service="/mine", id=request["id"], values=values, result=True)
     assert caller.frame() == b"\x01\x01" + text("page")
+    client.send(op="advertise", topic="/kept", type="std_msgs/String", latch=True)
+    client.send(op="publish", topic="/kept", msg={"data": "latched"}, latch=True)
+    client.call("/rosapi/nodes")
+    late = both.subscribed("/kept")
+    late.header()
+    assert late.frame() == text("latched")
+    late.socket.close()
     mouth.close()
     for each in (ear, caller):
         each.socket.close()
