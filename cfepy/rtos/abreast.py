@@ -14,10 +14,10 @@ from random import Random
 from types import CodeType, FrameType
 
 from cfepy.own_code import is_own_code
-from cfepy.rtos.policy import HOLD_ODDS, Decision, Policy, Seldom
+from cfepy.rtos.policy import HOLD_ODDS, STARTERS_ODDS, Decision, Policy, Seldom
+from cfepy.rtos.starters import StartersFirst
 from cfepy.rtos.task import Task
 
-STARTERS_ODDS = 3 / 4  # of schedules in which who starts a task goes on before that
 GROUPS = (2, 2, 3, 0, 0, 0)  # how many tasks take part; 0 for all
 STRAY_ODDS = 2 / 3  # of groups whose tasks take their turns at random, not one after the other
 MIX_ODDS = 1 / 2  # of schedules in whose groups tasks that do the same come after one that does something else
@@ -59,7 +59,7 @@ class Abreast(Policy):
         self._ranks: dict[Task, float] = {}
         self._before: Sequence[Task] = ()
         self._lowest = 0
-        self._children: dict[Task, int] = {}  # how many a task had when its last time slice was over
+        self._starters = StartersFirst()
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
@@ -70,11 +70,11 @@ class Abreast(Policy):
             return int(random() * decision.width)
         if decision.hold and random() * HOLD_ODDS < 1:
             return len(decision.tasks)
-        if decision.left is not None and not self._has_started_more(decision.left):
+        if decision.left is not None and self._starters.polls(decision.left):
             self._lowest -= 1
             self._ranks[decision.left] = self._lowest
         self._meet(decision.tasks)
-        tasks = self._free(decision.tasks)
+        tasks = self._starters.free(decision.tasks) if self._starters_first else decision.tasks
         if self._is_mixed:
             if decision.running:
                 self._look(decision.tasks[0], sys._getframe(1))
@@ -86,12 +86,6 @@ class Abreast(Policy):
         chosen = tasks[int(random() * len(tasks))]
         self._turns[chosen] += chosen.started  # to begin is no turn
         return decision.tasks.index(chosen)
-
-    def _has_started_more(self, task: Task) -> bool:
-        """Whether a task has used its time slice to start others: then it does not poll."""
-        before = self._children.get(task, 0)
-        self._children[task] = task.children
-        return self._children[task] > before
 
     def _meet(self, tasks: Sequence[Task]) -> None:
         """Who is new, or has waited, has had as many turns as the others at least."""
@@ -107,14 +101,6 @@ class Abreast(Policy):
             elif task not in self._before:
                 turns[task] = max(turns[task], least)
         self._before = tasks
-
-    def _free(self, tasks: Sequence[Task]) -> Sequence[Task]:
-        """Those whose starters do not come before them. A starter waits until a new thread has begun."""
-        if not self._starters_first:
-            return tasks
-        starters = tuple(f"{task.path}." for task in tasks if self._ranks[task] >= 0)
-        free = [task for task in tasks if not any(task.path.startswith(path) for path in starters)]
-        return [task for task in free if not task.started] or free
 
     def _look(self, task: Task, frame: FrameType | None) -> None:
         """Find out what the running task does, unless that is known or was looked for often enough."""

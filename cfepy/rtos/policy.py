@@ -14,10 +14,12 @@ from dataclasses import dataclass
 from random import Random
 from typing import Any, NamedTuple
 
+from cfepy.rtos.starters import StartersFirst
 from cfepy.rtos.task import Task
 
 HOLD_ODDS = 16  # one in so many chances to hold a task up is taken: time would else run away from the work
-STAY_ODDS = (0.0, 0.0, 0.5, 0.75)
+STAY_ODDS = (0.0, 0.5, 0.7)  # that the running task stays, where there are points between calls
+STARTERS_ODDS = 3 / 4  # of schedules in which who starts a task goes on before that
 Settings = tuple[bool, int, int, str]
 """What the kernel reads of a policy besides its answers; see the arguments of `Policy`."""
 HOLD = "hold"  # in place of a task's name: no task runs until the next timer
@@ -161,7 +163,7 @@ class SeededRandom(Policy):
 
     With points between calls a run has so many decisions that no task would come far while another one waits. The
     running task then stays as often as the seed draws it, so that some schedules have long stretches and some have
-    short ones.
+    short ones. As those it starts would find nobody in a long stretch, it mostly starts all of them before.
     """
 
     def __init__(
@@ -172,6 +174,7 @@ class SeededRandom(Policy):
         self._random = random.random
         self._seldom = Seldom(self._random)
         self._stay = random.choice(STAY_ODDS) if points else 0.0
+        self._starters = StartersFirst() if self._stay and random.random() < STARTERS_ODDS else None
 
     def choose(self, decision: Decision) -> int:
         """See `Policy.choose`."""
@@ -180,9 +183,20 @@ class SeededRandom(Policy):
         width = decision.width - decision.hold
         if decision.hold and self._random() * HOLD_ODDS < 1:
             return width
-        if self._stay and decision.running and self._random() < self._stay:
-            return 0
+        if self._stay and decision.question is None:
+            return self._going_on(decision)
         return int(self._random() * width)
+
+    def _going_on(self, decision: Decision) -> int:
+        """The running task where it stays, or any."""
+        tasks = decision.tasks
+        if self._starters is not None:
+            if decision.left is not None:
+                self._starters.polls(decision.left)
+            tasks = self._starters.free(tasks)
+        if decision.running and tasks[0] is decision.tasks[0] and self._random() < self._stay:
+            return 0
+        return decision.tasks.index(tasks[int(self._random() * len(tasks))])
 
 
 class Seldom:

@@ -20,6 +20,31 @@ from tests.quality.bugs import CFE, ROS, SECONDS, Bug
 POINTS = "at:points=attributes"
 RAISED, DEADLOCK, STUCK = (verdict.RAISED,), (verdict.DEADLOCK,), (verdict.STUCK, verdict.DEADLOCK)
 INVARIANT, EVENT = (verdict.INVARIANT,), (verdict.EVENT,)
+MAPLE = {
+    "bank_account": 20,
+    "reorder_three": -10,
+    "reorder_ten": -11,
+    "two_stages": 8,
+    "two_stages_many": -11,
+    "wrong_lock": 6,
+    "carter": 6,
+    "deadlock_two": -7,
+    "philosophers_three": 1,
+    "philosophers_six": 1,
+    "circular_buffer": -17,
+    "shared_stack": -10,
+    "lazy_sum": 1,
+    "token_ring": 5,
+    "driver_stop": -11,
+    "signal_once": 1,
+    "file_blocks": 1,
+    "text_buffer": 9,
+    "closed_queue": 4,
+    "missing_barrier": 1,
+    "safe_stack": -23,
+    "work_stealing": -12,
+}
+"""Runs in which Maple, which looks for idioms of interleaving, found the originals; below zero: not in so many."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,13 +55,20 @@ class Program(Bug):
         origin: who tries what with a program of this kind, and its name there; empty for one of our own.
         options: of all schedules, as behind a schedule's kind: `at` with options.
         hangs: it fails whoever goes first, under fifo, too.
-        published: what is known of the original, with the paper; empty where nothing is.
+        bound: how many preemptions the original needs, as SCTBench's authors found; empty where they do not say.
     """
 
     origin: str = ""
     options: str = "at"
     hangs: bool = False
-    published: str = ""
+    bound: str = ""
+
+    @property
+    def published(self) -> str:
+        """What is known of the original; empty where nothing is."""
+        runs = MAPLE.get(self.name, 0)
+        maple = f"Maple {runs}" if runs > 0 else f"Maple > {-runs}" if runs else ""
+        return ", ".join(each for each in (maple, self.bound) if each)
 
     def asked(self) -> str:
         """What `cfepy explore` is given, besides the mission and `--for`."""
@@ -99,7 +131,7 @@ PROGRAMS = (
         + STUCK,  # a cell that has two owners, or a chain that leads nowhere, at which those who pop try for ever
         origin="SCTBench: safestack",
         options=POINTS,
-        published="5 preemptions (PPoPP 2014)",
+        bound="5 preemptions",
     ),
     Program("work_stealing", ROS, "the tail is moved too late", origin="CHESS: work-stealing queue", options=POINTS),
     Program("promise", ROS, "kept between look and wait", STUCK),

@@ -9,7 +9,7 @@ import gc
 from collections import Counter
 from collections.abc import Callable, Iterator
 from functools import partial
-from itertools import combinations, groupby, permutations
+from itertools import combinations, groupby, pairwise, permutations
 from math import sqrt
 
 import pytest
@@ -330,6 +330,42 @@ def crowd(count: int) -> Program:
         kernel.spawn("starter", start, 100)
 
     return program
+
+
+def test_random_has_long_stretches_where_there_are_points_between_calls() -> None:
+    def changes(text: str) -> int:
+        words = [fly(walkers(8, 8), Schedule.parse(f"random:{seed}{text}").policy())[0] for seed in range(60)]
+        return sum(before != after for word in words for before, after in pairwise(word))
+
+    assert changes(":points=attributes") < 0.7 * changes("")
+    words = {fly(walkers(2, 2), Schedule.parse(f"random:{seed}:points=attributes").policy())[0] for seed in range(200)}
+    assert words == {"aabb", "abab", "abba", "baab", "baba", "bbaa"}
+
+
+def test_random_starts_all_before_a_long_stretch() -> None:
+    def program(kernel: Kernel, written: list[str]) -> None:
+        started = [0]
+
+        def go_on() -> None:
+            kernel.preempt()
+            kernel.preempt()
+            written.append(str(started[0]))
+
+        def start() -> None:
+            for number in range(6):
+                kernel.spawn(f"{number}", go_on, 100)
+                started[0] += 1
+                kernel.preempt()
+
+        kernel.spawn("starter", start, 100)
+
+    def often(text: str) -> int:
+        """In how many schedules all had been started before the first one came far."""
+        words = [fly(program, Schedule.parse(f"random:{seed}{text}").policy())[0] for seed in range(100)]
+        return sum(word[0] == "6" for word in words)
+
+    assert often(":points=attributes") > 40
+    assert often("") < 20
 
 
 def test_abreast_lets_equals_collide() -> None:
