@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from cfepy.io import Guest, PeerCounts
     from cfepy.viewers import Admission, ListenPlace
 
-FOXGLOVE, ROSBRIDGE, TOKEN = "--foxglove", "--rosbridge", "--viewer-token"
+FOXGLOVE, ROSBRIDGE, TOKEN, ORIGIN = "--foxglove", "--rosbridge", "--viewer-token", "--viewer-origin"
 
 
 def _to_stderr(line: str) -> None:
@@ -47,8 +47,9 @@ class Viewers:
     def __enter__(self) -> Viewers:
         arguments = self._arguments
         if arguments.foxglove is None and arguments.rosbridge is None:
-            if self._token is not None:
-                raise UsageError("nobody can connect; say where, such as --foxglove 8765", field=TOKEN)
+            field = TOKEN if self._token is not None else ORIGIN if arguments.viewer_origin else None
+            if field is not None:
+                raise UsageError("nobody can connect; say where, such as --foxglove 8765", field=field)
         else:
             from cfepy.io import PeerCounts
 

@@ -1,13 +1,15 @@
-"""`--foxglove` on the command line."""
+"""`--foxglove` and `--rosbridge` on the command line."""
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 import threading
 from pathlib import Path
 
 import pytest
+from websockets.sync.client import connect
 
 from cfepy.cli.main import main
 from tests.viewers.foxglove.client import FoxgloveClient
@@ -32,6 +34,10 @@ def test_a_run_that_is_shown_is_the_same_run(mission: str, capsys: pytest.Captur
     shown = capsys.readouterr()
     assert digest(shown.out) == alone
     assert re.search(r"Foxglove connects to ws://127\.0\.0\.1:\d+", shown.err)
+    assert main(["run", mission, "--for", "1", "--quiet", "--foxglove", "0", "--rosbridge", "0"]) == 0
+    shown = capsys.readouterr()
+    assert digest(shown.out) == alone
+    assert re.search(r"rosbridge clients connect to ws://127\.0\.0\.1:\d+", shown.err)
 
 
 @pytest.mark.parametrize(
@@ -42,6 +48,11 @@ def test_a_run_that_is_shown_is_the_same_run(mission: str, capsys: pytest.Captur
         (["--foxglove", "198.51.100.1:8765"], r"--foxglove: 198\.51\.100\.1:8765 cannot be opened"),
         (["--viewer-token", "long-enough"], "--viewer-token: nobody can connect"),
         (["--foxglove", "0", "--check-determinism"], "--foxglove: runs that are compared are not shown"),
+        (["--rosbridge", "x"], "--rosbridge: 'x' is not like 9090"),
+        (["--rosbridge", "9090", "--viewer-token", "short"], "--viewer-token: a token has at least 8"),
+        (["--rosbridge", "198.51.100.1:9090"], r"--rosbridge: 198\.51\.100\.1:9090 cannot be opened"),
+        (["--viewer-origin", "https://example.org"], "--viewer-origin: nobody can connect"),
+        (["--rosbridge", "0", "--check-determinism"], "--rosbridge: runs that are compared are not shown"),
     ],
 )
 def test_what_is_wrong_is_told(mission: str, options: list[str], why: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -55,6 +66,57 @@ def test_the_library_is_asked_for(
     monkeypatch.setitem(sys.modules, "foxglove", None)
     assert main(["run", mission, "--foxglove", "0"]) == 2
     assert "pip install 'cfepy[viz]'" in capsys.readouterr().err
+    monkeypatch.setitem(sys.modules, "websockets", None)
+    assert main(["run", mission, "--rosbridge", "0"]) == 2
+    assert "pip install 'cfepy[web]'" in capsys.readouterr().err
+
+
+def test_one_token_is_made_for_all_servers(
+    mission: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("CFEPY_VIEWER_TOKEN", raising=False)
+    assert main(["run", mission, "--for", "1", "--quiet", "--foxglove", "0.0.0.0:0", "--rosbridge", "0.0.0.0:0"]) == 0
+    shown = capsys.readouterr()
+    assert len(re.findall(r"viewers need the token \S{24} ", shown.err)) == 1
+    assert "token" not in shown.out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pace", [["--realtime"], []])
+def test_a_journal_of_a_run_with_rosbridge_is_replayed_without_clients(
+    mission: str, tmp_path: Path, pace: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the pace of the wall clock, and as fast as it goes; the token is in no journal."""
+    file, token = tmp_path / "run.cfepy", "a-long-secret"
+    told = threading.Event()
+    urls: list[str] = []
+
+    def to_stderr(line: str) -> None:
+        urls.extend(re.findall(r"ws://\S+", line))
+        told.set()
+
+    monkeypatch.setattr("cfepy.cli.viewers._to_stderr", to_stderr)
+    length = "4" if pace else "6000"
+    command = ["run", mission, "--for", length, "--quiet", "--rosbridge", "0", "--viewer-token", token]
+    flight = threading.Thread(target=main, args=([*command, "--record", str(file), *pace],))
+    flight.start()
+    assert told.wait(60)
+    with connect(f"{urls[0]}/?token={token}") as client:
+        client.send(json.dumps({"op": "subscribe", "topic": "/chatter", "type": "std_msgs/String"}))
+        hearers: list[str] = []
+        while not hearers:  # the talker has not come up yet
+            client.send(json.dumps({"op": "call_service", "service": "/rosapi/subscribers", "args": ["/orders"]}))
+            hearers = json.loads(client.recv(60))["values"]["subscribers"]
+        client.send(json.dumps({"op": "publish", "topic": "/orders", "msg": {"data": "hi"}}))
+        assert json.loads(client.recv(60))["topic"] == "/chatter"
+    flight.join(60)
+    out = capsys.readouterr().out
+    assert re.search(r"/orders +rosbridge 127\.0\.0\.1 +in +1 +0 ", out)
+    assert token.encode() not in file.read_bytes()
+    assert main(["replay", str(file), "--quiet"]) == 0
+    assert digest(capsys.readouterr().out) == digest(out)
+    assert main(["replay", str(file), "--info"]) == 0
+    assert token not in capsys.readouterr().out
 
 
 @pytest.mark.slow

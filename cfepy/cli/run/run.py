@@ -73,8 +73,9 @@ def run(arguments: argparse.Namespace) -> int:
     """
     plan = plan_of_mission(arguments)
     if arguments.check_determinism is not None:
-        if arguments.foxglove is not None:
-            raise UsageError("runs that are compared are not shown; leave one of the two out", field="--foxglove")
+        for option, place in (("--foxglove", arguments.foxglove), ("--rosbridge", arguments.rosbridge)):
+            if place is not None:
+                raise UsageError("runs that are compared are not shown; leave one of the two out", field=option)
         from cfepy.cli.run.check_determinism import check
 
         return check(arguments, plan)
