@@ -54,6 +54,16 @@ COMMANDS = (
     "rosservice call /things",
     "rosparam get /talker/speed",
 )
+PICTURE = """
+import rosgraph.impl.graph
+graph = rosgraph.impl.graph.Graph()
+graph.set_master_stale(60.0)
+graph.set_node_stale(60.0)
+graph.update()
+print(sorted(graph.nn_nodes), sorted(graph.nt_nodes), dict(graph.bad_nodes))
+print(sorted(map(str, graph.nt_all_edges)))
+"""
+"""What rqt_graph asks of the master and of each node; Debian has rosgraph, which it asks with, and not rqt_graph."""
 PARAMETER = ("rosparam set /outside 5", "rosparam get /outside", "rosparam delete /outside", "rosparam get /outside")
 
 
@@ -172,6 +182,14 @@ def test_a_parameter_is_set_asked_for_and_deleted(real: RosGraph, mission: RosGr
     """One after the other, in one test: others may run in another process, against another graph."""
     for command in PARAMETER:
         assert masked(mission.run(command)) == masked(real.run(command)), command
+
+
+def test_rqt_graph_has_the_same_picture(real: RosGraph, mission: RosGraph) -> None:
+    (real.folder / "picture.py").write_text(PICTURE)
+    command = f"{PYTHON} {real.folder / 'picture.py'}"
+    mission.wait_for("rosnode ping -c 1 /talker", "xmlrpc reply")
+    assert "/talker" in real.run(command)
+    assert mission.run(command) == real.run(command)
 
 
 def test_rates_and_bandwidths_are_measured(mission: RosGraph) -> None:
