@@ -47,12 +47,11 @@ def peer(
     }
 
 
-def configuration(peers: Sequence[dict[str, Any]], with_remap: bool = True) -> TableImage:
-    """The configuration table, with the module UDP.
+def configuration(peers: Sequence[dict[str, Any]]) -> TableImage:
+    """The configuration table, with the module UDP and the filter Remap.
 
     Args:
         peers: at most 16 entries of `peer`.
-        with_remap: whether there is the filter Remap.
 
     Raises:
         UsageError: too many, or a value that does not fit.
@@ -61,8 +60,8 @@ def configuration(peers: Sequence[dict[str, Any]], with_remap: bool = True) -> T
         {
             "ProtocolModules": [UDP],
             "ProtocolCnt": 1,
-            "FilterModules": [REMAP] if with_remap else [],
-            "FilterCnt": int(with_remap),
+            "FilterModules": [REMAP],
+            "FilterCnt": 1,
             "Peers": list(peers),
             "PeerCnt": len(peers),
         }

@@ -65,6 +65,32 @@ def test_formats_take_all_kinds_of_arguments(tmp_path: Path) -> None:
     ]
 
 
+def test_arrays_are_sorted_and_searched(tmp_path: Path) -> None:
+    console = fly_c(
+        tmp_path,
+        r"""
+        #include <stdlib.h>
+        typedef struct { int key; char name[8]; } Item;
+        static int calls;
+        static int by_key(const void *one, const void *other)
+        {
+            calls++;
+            return ((const Item *)one)->key - ((const Item *)other)->key;
+        }
+        void TEST_Main(void)
+        {
+            Item items[] = {{3, "c"}, {-1, "a"}, {3, "d"}, {2, "b"}}, wanted = {2, ""}, none = {5, ""};
+            qsort(items, 4, sizeof *items, by_key);
+            SAY("%s%s%s%s %d", items[0].name, items[1].name, items[2].name, items[3].name, calls > 2);
+            Item *found = bsearch(&wanted, items, 4, sizeof *items, by_key);
+            SAY("%s %d", found->name, bsearch(&none, items, 4, sizeof *items, by_key) == NULL);
+            qsort(items, 0, sizeof *items, by_key);
+        }
+        """,
+    )
+    assert said(console) == ["abcd 1", "b 1"]
+
+
 def test_floating_point_survives_calls_and_other_tasks(tmp_path: Path) -> None:
     console = fly_c(
         tmp_path,

@@ -37,11 +37,6 @@ CFE_APP, sbn,        SBN_AppMain,     SBN,        90, 100000, 0x0, 0;
 !
 """
 CONF = build(configuration([peer(1, "127.0.0.1:2234", tasks=TASKS), peer(2, "127.0.0.1:2235", tasks=TASKS)]))
-CONF_WITHOUT_FILTERS = build(
-    configuration(
-        [peer(number, f"127.0.0.1:{2233 + number}", filters=(), tasks=TASKS) for number in (1, 2)], with_remap=False
-    )
-)
 
 
 class Paced:
