@@ -56,6 +56,8 @@ class RosbridgeServer(Attachment):
         self._admission = admission
         self._counts = counts
         self._selector = DefaultSelector()
+        if not hasattr(self._selector, "fileno"):
+            raise UsageError("needs epoll or kqueue, which this system does not have", field=OPTION)
         try:
             opened = listening_socket(place.host, place.port)
         except OSError as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import selectors
 import socket
 import struct
 from collections.abc import Iterator
@@ -12,7 +13,9 @@ from typing import Any
 
 import pytest
 
-from cfepy.viewers.listen import Admission
+from cfepy.io import PeerCounts
+from cfepy.status import UsageError
+from cfepy.viewers.listen import Admission, ListenPlace
 from cfepy.viewers.rosbridge import bridge_node
 from cfepy.viewers.rosbridge import client as client_module
 from cfepy.viewers.rosbridge import server as server_module
@@ -385,3 +388,9 @@ def test_a_burst_is_held_back_and_nothing_of_it_is_lost(tmp_path: Path, monkeypa
         rows = {(row["name"], row["direction"]): row for row in run.counts.rows()}
         assert (rows["/orders", "in"]["messages"], rows["/orders", "in"]["dropped"]) == (count, 0)
         client.close()
+
+
+def test_a_system_without_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server_module, "DefaultSelector", selectors.SelectSelector)
+    with pytest.raises(UsageError, match="--rosbridge: needs epoll or kqueue"):
+        server_module.RosbridgeServer(ListenPlace(LOOPBACK, 0), Admission(), PeerCounts())
