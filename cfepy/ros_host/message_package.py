@@ -7,8 +7,8 @@ want the type built (wiki.ros.org/msg, wiki.ros.org/catkin/package.xml, wiki.ros
 from __future__ import annotations
 
 from collections.abc import Iterable
-from xml.sax.saxutils import escape
 
+from cfepy.markup import escaped
 from cfepy.msg import Telemetry
 from cfepy.ros_host.shown import PACKAGE, definitions_of
 
@@ -27,7 +27,7 @@ def telemetry_package(telemetry: Iterable[Telemetry], mission: str) -> dict[str,
     names = "\n".join(f"  {name}.msg" for name in sorted(messages))
     files = {f"msg/{name}.msg": text for name, text in sorted(messages.items())}
     return {
-        "package.xml": _MANIFEST.format(package=PACKAGE, mission=escape(mission)),
+        "package.xml": _MANIFEST.format(package=PACKAGE, mission=escaped(mission)),
         "CMakeLists.txt": _BUILD.format(package=PACKAGE, names=names),
         **files,
     }
