@@ -56,6 +56,27 @@ def test_what_input_has_made_ready_does_not_wait() -> None:
         assert not kernel.tasks
 
 
+def test_an_answer_is_not_cut_in_two_by_what_its_calls_cost() -> None:
+    """The host would look at the clock between the calls of a task that has something to say to somebody outside."""
+    pieces: list[int] = []
+    with Kernel("thread", Trace()) as kernel:
+
+        def run(until_ns: int) -> None:
+            pieces.append(until_ns)
+            kernel.run(until_ns)
+
+        def answer() -> None:
+            for _ in range(10):
+                kernel.charge(5_000)
+
+        pacer = Pacer(kernel, run, elapsed_ns=lambda: 5_000_000)
+        kernel.run(5_000_000)
+        kernel.spawn("woken", answer)
+        pacer.step(NS_PER_S)
+        assert not kernel.tasks
+        assert pieces == [5_100_000]
+
+
 @pytest.mark.parametrize("factor", [0, -1, float("nan")])
 def test_a_factor_that_makes_no_sense(factor: float) -> None:
     with Kernel("thread") as kernel, pytest.raises(ValueError, match="more than 0"):
