@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 LEVELS = ("none", "error", "warning", "info")
 """Of `status`, from the one that tells least."""
+MOST_OPS = 256  # of a client between two pieces of the run; the others wait
 MOST_CALLS = 1000  # of a client that wait for their answers
 MOST_TOPICS = 1000  # that a client publishes, and that it hears
 MOST_PATIENCE_S = 1.0  # wall time for which the mission may be full, before a message is lost
@@ -67,6 +68,7 @@ class RosbridgeClient:
         self._fragment_number = 0
         self._assembly = Assembly(LONGEST_MESSAGE)
         self._coming: deque[str | bytes] = deque()
+        self._left = MOST_OPS
         self._stalled: tuple[str, bytes, float] | None = None  # topic, message, since when
         self._advertised: dict[str, set[object]] = {}  # by topic: ids
         self._published: set[str] = set()  # topics that it publishes or has published
@@ -96,18 +98,28 @@ class RosbridgeClient:
     def take(self, message: str | bytes) -> None:
         """A message of the client's has come."""
         self._coming.append(message)
-        self.go_on(time.monotonic())
+        self._work()
+
+    @property
+    def is_behind(self) -> bool:
+        """Whether something waits that could be done at once."""
+        return bool(self._coming) and self._stalled is None
+
+    def _work(self) -> None:
+        """Do what the client asks for, as long as the mission has room and it is not too much for once."""
+        while self._coming and self._left and self._stalled is None and self.socket.is_open:
+            self._left -= 1
+            self._incoming(self._coming.popleft())
+        if self._coming or self._stalled is not None:
+            self.socket.pause()
+        else:
+            self.socket.resume()
 
     def go_on(self, now_s: float) -> None:
-        """Do what the client asks for, as long as the mission has room, and send what has waited for its time."""
-        if self._stalled is not None and not self._enter(*self._stalled, now_s):
-            return
-        while self._coming and self._stalled is None and self.socket.is_open:
-            self._incoming(self._coming.popleft())
-        if self._stalled is None:
-            self.socket.resume()
-        else:
-            self.socket.pause()
+        """Go on with what the client asks for, after a piece of the run; send what has waited for its time."""
+        self._left = MOST_OPS
+        if self._stalled is None or self._enter(*self._stalled, now_s):
+            self._work()
         for by_name in list(self._hears.values()):
             for name, pacing in by_name.items():
                 while (message := pacing.due(now_s)) is not None:

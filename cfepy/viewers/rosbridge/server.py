@@ -9,7 +9,7 @@ from __future__ import annotations
 import socket
 import time
 from http import HTTPStatus
-from selectors import DefaultSelector
+from selectors import EVENT_READ, DefaultSelector
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs, urlsplit
 
@@ -72,6 +72,10 @@ class RosbridgeServer(Attachment):
         self._ending: dict[WebSocket, float] = {}
         self._mac = MacCheck(admission.token)
         self._is_over = False
+        self._near, self._far = socket.socketpair()
+        for each in (self._near, self._far):
+            each.setblocking(False)
+        self._selector.register(self._near, EVENT_READ, self._nudged)
 
     def begin(self, mission: Any) -> None:
         """See `Attachment.begin`."""
@@ -88,13 +92,15 @@ class RosbridgeServer(Attachment):
         """Hand out what the mission has for clients, and bring in what they have sent."""
         now_s = time.monotonic()
         self._node.exchange(now_s)
-        for key, events in self._selector.select(0):
-            key.data(events)
         for made, client in list(self._clients.items()):
             try:
                 client.go_on(now_s)
             except Exception as error:  # whatever a stranger's ops lead to ends this connection alone
                 made.close(INTERNAL, f"{type(error).__name__}: {error}"[:LONGEST_REASON])
+        for key, events in self._selector.select(0):
+            key.data(events)
+        if any(client.is_behind for client in self._clients.values()):
+            self._nudge()
         for each in [each for each, since_s in self._since.items() if now_s - since_s > HANDSHAKE_S]:
             each.abort()
         for each in [each for each, since_s in self._ending.items() if each.has_ended or now_s - since_s > FAREWELL_S]:
@@ -115,6 +121,8 @@ class RosbridgeServer(Attachment):
         self._listening.close()
         for each in [*self._clients, *self._ending]:
             each.abort()
+        self._near.close()
+        self._far.close()
         self._selector.close()
 
     def _accept(self, connected: socket.socket) -> None:
@@ -157,6 +165,19 @@ class RosbridgeServer(Attachment):
             client.is_admitted()
         self._counts.of(CONNECTION, peer, INTO).connections += 1
         return None
+
+    def _nudge(self) -> None:
+        """The run is not to sleep after its next piece: there is something to do."""
+        try:
+            self._far.send(b"!")
+        except BlockingIOError:
+            pass  # it is nudged already
+
+    def _nudged(self, events: int) -> None:
+        try:
+            self._near.recv(4096)
+        except BlockingIOError:
+            pass  # nobody has nudged
 
     def _lost(self, topic: str) -> None:
         count = self._counts.of(topic, OUTSIDE, OUT_OF)

@@ -350,6 +350,26 @@ def test_a_message_waits_until_the_mission_has_room(tmp_path: Path, monkeypatch:
         client.close()
 
 
+def test_a_flood_does_not_hold_up_the_run(talker: Bridged, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(client_module, "MOST_OPS", 10)
+    client = talker.client()
+    for _ in range(100):
+        client.text("nonsense")
+    steps = []
+    while len(client.look()) < 100:
+        before = _received(talker)
+        talker.server.exchange()
+        steps.append(_received(talker) - before)
+    assert max(steps) == 10
+    client.close()
+
+
+def _received(run: Bridged) -> int:
+    return next(
+        row["messages"] for row in run.counts.rows() if (row["name"], row["direction"]) == ("(connections)", "in")
+    )
+
+
 @pytest.mark.slow
 def test_a_client_that_does_not_read_loses_its_own_messages_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
