@@ -169,6 +169,7 @@ class WatchedHost(Host):
         """Real ports for the mission's; only a run in real time has them, and only it imports what they need."""
         from cfepy.io import HostNetwork
 
+        self._mission.kernel.context.be_prompt()
         self._network = self._bridge.enter_context(HostNetwork(self._mission, dict(self._ports), self._line))
         if self._ros_master is not None:
             from cfepy.ros_host import RosHost, world_at

@@ -54,6 +54,9 @@ class Context(Protocol):
     def prepare_run(self, tasks: list[Task]) -> None:
         """A run begins, on whatever CPU the host is now."""
 
+    def be_prompt(self) -> None:
+        """Somebody outside waits for answers: tasks are to go on at once when other programs keep the CPUs busy."""
+
     def end_run(self) -> None:
         """No task is left; give back what a run has of this computer."""
 
@@ -83,7 +86,7 @@ class Context(Protocol):
 class _Carrier:
     """An OS thread that runs one task after another."""
 
-    __slots__ = ("alive", "cpu", "disowned", "ident", "lock", "main", "native_id", "spoilt", "task")
+    __slots__ = ("alive", "cpu", "disowned", "ident", "is_batch", "lock", "main", "native_id", "spoilt", "task")
 
     def __init__(self) -> None:
         self.lock = _thread.allocate_lock()
@@ -92,6 +95,7 @@ class _Carrier:
         self.task: Task | None = None
         self.cpu = -1
         self.native_id = 0
+        self.is_batch = _HAS_BATCH
         self.alive = True
         self.spoilt = self.disowned = False
         try:
@@ -111,7 +115,7 @@ class _Carrier:
     def _loop(self) -> None:
         self.native_id = _thread.get_native_id()
         if _HAS_BATCH:
-            _be_batch()
+            _schedule_as(0, os.SCHED_BATCH)
         while True:
             self.lock.acquire()
             main, task = self.main, self.task
@@ -189,6 +193,7 @@ class ThreadContext:
         self._cpu = -1
         self._seat: Seat | None = None
         self._chosen_ns = 0
+        self._is_prompt = False
         self._process = os.getpid()
 
     def bind_host(self, host: Task) -> None:
@@ -206,6 +211,9 @@ class ThreadContext:
             carrier = _idle.pop()
         except IndexError:
             carrier = _Carrier()
+        if _HAS_BATCH and not carrier.is_batch and not self._is_prompt:
+            _schedule_as(carrier.native_id, os.SCHED_BATCH)
+            carrier.is_batch = True
         carrier.main, carrier.task, carrier.cpu = main, task, self._cpu
         task.carrier = carrier
         task.resume, task.park = carrier.lock.release, carrier.lock.acquire
@@ -224,10 +232,17 @@ class ThreadContext:
         self._cpu = cpu = self._seat.choose(current_cpu())
         for task in tasks:
             carrier = task.carrier
+            if self._is_prompt and not task.done and carrier.is_batch and carrier.native_id:
+                carrier.is_batch = False
+                _schedule_as(carrier.native_id, os.SCHED_OTHER)
             if not task.done and carrier.cpu != cpu and cpu >= 0:
                 carrier.cpu = cpu
                 if carrier.native_id:
                     pin(carrier.native_id, cpu)
+
+    def be_prompt(self) -> None:
+        """See `Context.be_prompt`. A SCHED_BATCH thread that is woken on another CPU waits for the end of a slice."""
+        self._is_prompt = True
 
     def end_run(self) -> None:
         self._seat = None
@@ -321,9 +336,10 @@ def take_back() -> None:
         pass
 
 
-def _be_batch() -> None:
+def _schedule_as(native_id: int, policy: int) -> None:
+    """Give a thread of this process, 0 for the calling one, a policy of the system."""
     try:
-        os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
+        os.sched_setscheduler(native_id, policy, os.sched_param(0))
     except OSError:
         pass  # a container may forbid it; hand-overs are then about twice as slow
 
@@ -376,6 +392,9 @@ class GreenletContext:
 
     def prepare_run(self, tasks: list[Task]) -> None:
         pass
+
+    def be_prompt(self) -> None:
+        """See `Context.be_prompt`: its one thread is the host's."""
 
     def end_run(self) -> None:
         pass
