@@ -13,7 +13,7 @@ from cfepy.ros_host.tcpros import LONGEST_FRAME, TcprosFrames, frame, pack_heade
 if TYPE_CHECKING:
     from cfepy.ros_host.host import RosHost
 
-FIRST_PAUSE_S, LONGEST_PAUSE_S = 0.5, 8.0  # wall time between two attempts to connect; each pause is twice the last
+FIRST_PAUSE_S, LONGEST_PAUSE_S = 0.5, 2.0  # wall time between two attempts to connect; each is twice the last
 MOST_PATIENCE_S = 1.0  # wall time for which the mission may be full, before messages are lost
 ANY = "*"
 
