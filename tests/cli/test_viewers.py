@@ -119,6 +119,13 @@ def test_a_journal_of_a_run_with_rosbridge_is_replayed_without_clients(
     assert token not in capsys.readouterr().out
 
 
+def test_what_keeps_a_mission_from_taking_off_is_told(mission: str, capsys: pytest.CaptureFixture[str]) -> None:
+    script = f"{mission}/script.txt"
+    Path(script).write_text("nonsense\n")
+    assert main(["run", mission, "--script", script, "--foxglove", "0"]) == 2
+    assert "script.txt:1" in capsys.readouterr().err
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("pace", [["--realtime"], []])
 def test_a_journal_of_a_run_with_viewers_is_replayed_without_them(

@@ -144,7 +144,8 @@ class FoxgloveViewer(TopicWatch):
         self._server.close()
         self._door.close()
         self._inbox.close()
-        self._count()
+        if self._mission is not None:
+            self._count()
 
     def _begin_ros(self) -> None:
         ros = self._ros
