@@ -6,7 +6,8 @@ The robot's description (URDF) is made from `arm_description.py`, a link for eac
 
 Subscribes: `joint_states_throttle` (sensor_msgs/JointState), `phase` (std_msgs/String)
 Publishes:  `/tf` (from `arm_base` to each link), `/tf_static` (`world` to `arm_base`),
-            `debris` (visualization_msgs/Marker, latched)
+            `debris` (visualization_msgs/Marker, latched),
+            `robot_description` (std_msgs/String, latched: recordings have no parameters)
 Parameters: sets `/robot_description`; ~contact (7 rad): the pose of the arm that touches the debris
 """
 
@@ -70,7 +71,10 @@ class ArmView:
     """The node: a transform for each link with each joint state, and the debris when it is caught."""
 
     def __init__(self) -> None:
-        rospy.set_param("/robot_description", description())
+        urdf = description()
+        rospy.set_param("/robot_description", urdf)
+        self._description = rospy.Publisher("robot_description", String, queue_size=1, latch=True)
+        self._description.publish(urdf)
         self._moving = tf2_ros.TransformBroadcaster()
         self._fixed = tf2_ros.StaticTransformBroadcaster()
         now = rospy.Time.now()

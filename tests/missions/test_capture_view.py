@@ -58,7 +58,9 @@ def test_the_hand_is_where_main_control_says(run: cfepy.Run) -> None:
 def test_the_links_of_the_description_are_the_frames(run: cfepy.Run) -> None:
     mission = run.mission
     assert mission.ros is not None
-    robot = ElementTree.fromstring(mission.ros.graph.params.find("/robot_description"))
+    (description,) = run.messages("/robot_description")
+    assert mission.ros.graph.params.find("/robot_description") == description.data
+    robot = ElementTree.fromstring(description.data)
     joints = {tag.get("name"): tag for tag in robot.findall("joint")}
     assert {tag.get("name") for tag in robot.findall("link")} == {
         "arm_base",
