@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from jsonschema import Draft202012Validator
 from mcap.reader import make_reader
 
 from cfepy.ground.bag import BagReader, is_bag
@@ -73,6 +74,7 @@ def test_packets_are_json_that_their_schema_describes(runs: Path) -> None:
             values, described = json.loads(message.data), json.loads(schema.data)
             assert schema.encoding == "jsonschema"
             assert set(values) <= set(described["properties"])
+            Draft202012Validator(described).validate(values)
             seen.add(channel.topic)
             if "_packet" in values:
                 packet = base64.b64decode(values["_packet"])
