@@ -184,8 +184,9 @@ Of {flown} schedules of the mended forms {alarms} fail.
 {table}
 
 What keeps some away: of twenty threads, as `two_stages_many` has them, two have to overlap in one way while no other
-has come as far; `safe_stack` and `lock_free_stack` need five switches, each at one of a few places among 150. What
-helped the others: Python's own `threading` had a dozen points where a thread is started or joined, so there were 40
+has come as far; `lock_free_stack` needs five switches, each at one of a few places among 150. `safe_stack` needs as
+many, and came down from over 200 schedules when `random` got long stretches of one task for `--points`. What helped
+the others: Python's own `threading` had a dozen points where a thread is started or joined, so there were 40
 decisions in `bank_account` under `fifo` where there are 14 now, and `abreast` lets threads go on side by side once all
 are there, also two or three of them that do different things.
 
