@@ -174,7 +174,7 @@ showed nothing, in the median to half of the searches or more. "needs" is what t
 between calls, less urgent tasks first, or a fault whose instant is explored. "`--races`" says whether a single run
 under `fifo` tells of a data race in it. "published" has what its authors' records say of the original: in how many runs
 Maple found it (Yu, Narayanasamy, Pereira, Pokam: OOPSLA 2012), or had not when it had nothing left to try, from
-mapleRes.txt among the benchmarks of the repository mc-imperial/sctbench. It is empty where nothing comparable is at hand.
+mapleRes.txt among the benchmarks of the repository mc-imperial/sctbench. It is empty where nothing comparable is known.
 
 The first search finds {found} of {count} within {schedules} schedules and {later} within {most:,}; in the median
 {often} are found within {schedules}. The first one does not find {missed} within {schedules}.
