@@ -18,7 +18,7 @@ from cfepy.mission import Mission, MissionSpec, Processor, find_compiled
 from cfepy.nodes import WHOLE, Touch
 from cfepy.ports import PEND_FOREVER
 from cfepy.rtos import ExploringKernel, Kernel, Task, WaitList
-from cfepy.sb import Destination, Pipe, SoftwareBus, asked_before_puts
+from cfepy.sb import Destination, Pipe, PutHook, SoftwareBus
 from cfepy.status import UsageError
 from cfepy.tbl import TableServices
 
@@ -216,8 +216,8 @@ class _Pipes:
         self._leave = footprints.leave
         self._getting: dict[Task, tuple[Pipe, bool]] = {}  # who gets from which, and whether it had to wait
 
-    def puts(self, destination: Destination, limit: int) -> int:
-        """The current task puts a message into a pipe, in this instant; the message limit, as it is."""
+    def puts(self, destination: Destination, limit: int) -> None:
+        """The current task puts a message into a pipe, in this instant."""
         pipe, waiting = destination.pipe, len(destination.pipe.items)
         self.touch(f"pipe {pipe.pipe_id}", READS)
         self.touch(f"tail of {pipe.name}")
@@ -225,7 +225,6 @@ class _Pipes:
             self.touch(f"emptiness of {pipe.name}")
         if min(pipe.depth - waiting, limit - (destination.puts - destination.gets)) <= 1:
             self.touch(f"room of {pipe.name}")
-        return limit
 
     def gets(self, pipe: Pipe) -> None:
         """The current task is about to get one; its subscription may have been told to end before that."""
@@ -297,6 +296,20 @@ def _also(subject: Any, name: str, before: Callable[..., object], after: Callabl
     setattr(subject, name, both)
 
 
+class _Touching(PutHook):
+    """Tells which pipes are put into."""
+
+    def __init__(self, pipes: _Pipes, inner: PutHook | None) -> None:
+        super().__init__(inner)
+        self._pipes = pipes
+
+    def limit(self, destination: Destination) -> int:
+        """See `PutHook.limit`; the limit stays as it is."""
+        limit = super().limit(destination)
+        self._pipes.puts(destination, limit)
+        return limit
+
+
 def _touching(base: type[SoftwareBus], pipes: _Pipes) -> type[SoftwareBus]:
     """A class of Software Bus that tells which pipes are touched.
 
@@ -308,12 +321,12 @@ def _touching(base: type[SoftwareBus], pipes: _Pipes) -> type[SoftwareBus]:
     class TouchingBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
         """A Software Bus that tells of its pipes."""
 
-        destination_type: type[Destination]
+        put_hook: PutHook | None
 
         def __init__(self, kernel: Kernel, *args: Any) -> None:
             super().__init__(kernel, *args)
             pipes.bus = self
-            self.destination_type = asked_before_puts(self.destination_type, pipes.puts)
+            self.put_hook = _Touching(pipes, self.put_hook)
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
             """See `SoftwareBus.transmit_msg`."""

@@ -20,7 +20,7 @@ from cfepy.faults.timing import Agenda, Gate
 from cfepy.ids import OS_STREAM_BASE
 from cfepy.mission import Processor
 from cfepy.rtos import Kernel, Task, WaitList
-from cfepy.sb import Destination, Pipe, SoftwareBus, asked_before_puts
+from cfepy.sb import Destination, Pipe, PutHook, SoftwareBus
 from cfepy.sb import events as ev
 from cfepy.status import OS_QUEUE_FULL, CfeError, OsalError
 
@@ -164,6 +164,22 @@ class Puts:
         return self._refused.get(task, {}).get(pipe)
 
 
+class _Refusing(PutHook):
+    """Lets the message limit be as if it were reached where a put fails."""
+
+    def __init__(self, kernel: Kernel, puts: Puts, inner: PutHook | None) -> None:
+        super().__init__(inner)
+        self._kernel = kernel
+        self._puts = puts
+
+    def limit(self, destination: Destination) -> int:
+        """See `PutHook.limit`."""
+        limit = super().limit(destination)
+        waiting = destination.puts - destination.gets
+        fails = waiting < limit and self._puts.refuses(self._kernel.current, destination.pipe)
+        return waiting if fails else limit
+
+
 def refusing(base: type[SoftwareBus], puts: Puts) -> type[SoftwareBus]:
     """A class of Software Bus with puts that fail.
 
@@ -175,21 +191,16 @@ def refusing(base: type[SoftwareBus], puts: Puts) -> type[SoftwareBus]:
     class RefusingBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
         """A Software Bus that cannot put some messages into some pipes."""
 
-        destination_type: type[Destination]
+        put_hook: PutHook | None
 
         def __init__(self, kernel: Kernel, *args: Any) -> None:
             super().__init__(kernel, *args)
-            self.destination_type = asked_before_puts(self.destination_type, self._limit_of)
+            self.put_hook = _Refusing(kernel, puts, self.put_hook)
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
             """See `SoftwareBus.transmit_msg`."""
             with puts.transmitting(self.kernel.current):
                 super().transmit_msg(packet, is_origination)
-
-        def _limit_of(self, destination: Destination, limit: int) -> int:
-            """The message limit; as if it were reached when the put fails."""
-            waiting = destination.puts - destination.gets
-            return waiting if waiting < limit and puts.refuses(self.kernel.current, destination.pipe) else limit
 
         def _report_failures(self, msg_id: int, failures: list[tuple[int, Destination]]) -> None:
             super()._report_failures(msg_id, [self._as_it_is(*failure) for failure in failures])

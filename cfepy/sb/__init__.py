@@ -15,7 +15,7 @@ from cfepy.sb.packet_listener import listened
 from cfepy.sb.packets import COMMANDS, ONESUB_TLM, TELEMETRY, UNSUBSCRIPTION
 from cfepy.sb.pipe import Pipe
 from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE
-from cfepy.sb.routing import Destination, Route, asked_before_puts
+from cfepy.sb.routing import Destination, PutHook, Route
 from cfepy.sb.task import SbTask
 
 __all__ = [
@@ -31,9 +31,9 @@ __all__ = [
     "MessageBuffer",
     "Outlet",
     "Pipe",
+    "PutHook",
     "Route",
     "SbTask",
     "SoftwareBus",
-    "asked_before_puts",
     "listened",
 ]

@@ -21,7 +21,7 @@ from cfepy.ports import PEND_FOREVER, Ports
 from cfepy.rtos import FOREVER, TIMEOUT, CpuCosts, Kernel
 from cfepy.sb import events as ev
 from cfepy.sb import packets as pk
-from cfepy.sb.buffers import BUFFER_BYTES, DESTINATION_BYTES, BufferServices
+from cfepy.sb.buffers import BUFFER_BYTES, DESTINATION_BYTES
 from cfepy.sb.core import BusCore
 from cfepy.sb.pipe import Pipe
 from cfepy.sb.pipes import PipeServices
@@ -87,11 +87,8 @@ def _send(bus: BusCore, packet: bytes) -> int:
     return CFE_SUCCESS
 
 
-class SubscriptionServices(BufferServices):
+class SubscriptionServices(PipeServices):
     """The CFE_SB_Subscribe* and CFE_SB_Unsubscribe* functions."""
-
-    destination_type = Destination
-    """What subscriptions make; a bus that watches destinations has a kind of its own."""
 
     def subscribe(self, msg_id: int, pipe_id: int) -> None:
         """Let a MsgId into a pipe, with the default message limit of 4 (CFE_SB_Subscribe)."""
@@ -188,7 +185,7 @@ class SubscriptionServices(BufferServices):
         except CfeError as error:
             text = f"Subscribe Err:Request for Destination Blk failed for Msg 0x{route.msg_id:x}"
             raise self._subscribe_error(ev.DEST_BLK_ERR_EID, error.status, text) from error
-        route.add(self.destination_type(pipe, limit, scope, block))
+        route.add(Destination(pipe, limit, scope, block))
         self.subscriptions += 1
         self.peaks.subscriptions = max(self.peaks.subscriptions, self.subscriptions)
         self.note_growth()
@@ -218,7 +215,7 @@ class SubscriptionServices(BufferServices):
         return CfeError(CFE_SB_BAD_ARGUMENT, text)
 
 
-class SoftwareBus(PipeServices, SubscriptionServices):
+class SoftwareBus(SubscriptionServices):
     """One processor's Software Bus; the arguments are those of `BusCore`.
 
     On a bus that is watched, `on_unsent` is called with each message that a sender keeps back because it has no
@@ -298,13 +295,14 @@ class SoftwareBus(PipeServices, SubscriptionServices):
         if self.costs is not None:
             kernel.charge(self.costs.of(size))
         weight = size + BUFFER_BYTES
+        hook = self.put_hook
         failures: list[tuple[int, Destination]] | None = None
         for destination in route.active:
             pipe = destination.pipe
             if pipe.unheard and kernel.current.owner in pipe.unheard:
                 continue
             puts = destination.puts
-            if puts - destination.gets >= destination.limit:
+            if puts - destination.gets >= (destination.limit if hook is None else hook.limit(destination)):
                 destination.limit_drops += 1
                 failures = [*(failures or ()), (ev.MSGID_LIM_ERR_EID, destination)]
                 continue
@@ -312,6 +310,8 @@ class SoftwareBus(PipeServices, SubscriptionServices):
             if waits:
                 if not pipe.peak:
                     pipe.peak = 1
+                if hook is not None:
+                    hook.put(destination)
                 destination.puts = puts + 1
                 kernel.make_ready(waits.pop(0), (packet, destination))
                 continue
@@ -324,6 +324,8 @@ class SoftwareBus(PipeServices, SubscriptionServices):
                     continue
                 waiting = self._drop_oldest(pipe)
                 puts = destination.puts
+            if hook is not None:
+                hook.put(destination)
             self._queued_bytes += weight
             destination.puts = puts + 1
             items.append((packet, destination))

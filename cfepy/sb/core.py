@@ -17,7 +17,7 @@ from cfepy.ports import Ports, application_of
 from cfepy.rtos import CpuCosts, Kernel
 from cfepy.sb import events as ev
 from cfepy.sb.pipe import Pipe
-from cfepy.sb.routing import Route, RoutingTable
+from cfepy.sb.routing import PutHook, Route, RoutingTable
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_MAX_PIPES_MET, CFE_SB_MSG_TOO_BIG, CfeError
 
 
@@ -80,6 +80,7 @@ class BusCore:
         subscriptions: pairs of MsgId and pipe.
         outlets: how many there ever were (`cfepy.sb.outlet`).
         reporting: whether each subscription is told to other processors.
+        put_hook: stands before each put into a pipe; None on a bus that nobody watches or disturbs.
     """
 
     def __init__(
@@ -103,6 +104,7 @@ class BusCore:
         self.subscriptions = 0
         self.outlets = 0
         self.reporting = False
+        self.put_hook: PutHook | None = None
         self.unrouted = Unrouted()
         self.app_id = 0  # of the SB application itself, in whose name events are sent
         self._sending: set[tuple[int, int]] = set()

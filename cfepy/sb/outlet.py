@@ -13,7 +13,7 @@ from typing import Any
 
 from cfepy.sb.bus import SoftwareBus
 from cfepy.sb.pipe import Pipe
-from cfepy.sb.routing import LOCAL
+from cfepy.sb.routing import LOCAL, Destination
 from cfepy.status import CFE_SB_MAX_MSGS_MET, CfeError
 
 NO_LIMIT = 0xFFFF
@@ -42,7 +42,7 @@ class Outlet(Pipe):
         self._route = bus.routes[msg_id]
         bus.outlets += 1
         self.pipe_id = -bus.outlets
-        self._route.add(bus.destination_type(self, NO_LIMIT, LOCAL, None))
+        self._route.add(Destination(self, NO_LIMIT, LOCAL, None))
 
     def close(self, value: object = None) -> None:
         """No more packets."""

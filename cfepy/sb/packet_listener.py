@@ -24,7 +24,7 @@ from cfepy.ports import PEND_FOREVER
 from cfepy.rtos import Task
 from cfepy.sb.bus import SoftwareBus
 from cfepy.sb.pipe import Pipe
-from cfepy.sb.routing import Destination
+from cfepy.sb.routing import Destination, PutHook
 
 
 class PacketListener(Protocol):
@@ -52,8 +52,6 @@ class PacketListener(Protocol):
 LONGEST_MARK = 6
 """Bytes: a record of the trace with more is a packet."""
 
-_puts: Any = Destination.__dict__["puts"]
-
 
 def listened(base: type[SoftwareBus], listener: PacketListener) -> type[SoftwareBus]:
     """A class of Software Bus that tells a listener of packets.
@@ -67,7 +65,7 @@ def listened(base: type[SoftwareBus], listener: PacketListener) -> type[Software
     class ListenedBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
         """A Software Bus with a listener."""
 
-        destination_type: type[Destination]
+        put_hook: PutHook | None
         _record: Callable[[bytes], object] | None
 
         def __init__(self, *args: Any) -> None:
@@ -75,7 +73,7 @@ def listened(base: type[SoftwareBus], listener: PacketListener) -> type[Software
             self._transmissions: dict[Task, list[bytes | None]] = {}  # of each task; the innermost is the last
             self._record_before = self._record
             self._record = self._recorded
-            self.destination_type = _telling(self, self.destination_type)
+            self.put_hook = _Telling(self._put, self.put_hook)
 
         def _recorded(self, record: bytes) -> None:
             """Get what goes into the trace, which is a packet at the moment before the first receiver gets it."""
@@ -86,7 +84,7 @@ def listened(base: type[SoftwareBus], listener: PacketListener) -> type[Software
                 listener.made(record)
 
         def _put(self, pipe: Pipe) -> None:
-            """A destination counts a packet in."""
+            """A packet is about to go into a pipe."""
             packet = self._packet_of_caller()
             if packet is not None:
                 listener.put(packet, pipe)
@@ -146,24 +144,14 @@ def listened(base: type[SoftwareBus], listener: PacketListener) -> type[Software
     return ListenedBus
 
 
-def _telling(bus: Any, base: type[Destination]) -> type[Destination]:
-    """A kind of destination that tells its bus of each packet, where the bus counts it."""
+class _Telling(PutHook):
+    """Tells a bus of each packet that is about to go into a pipe."""
 
-    class TellingDestination(base):  # type: ignore[misc, valid-type]
-        """One whose count of puts is watched."""
+    def __init__(self, told: Callable[[Pipe], None], inner: PutHook | None) -> None:
+        super().__init__(inner)
+        self._told = told
 
-        __slots__ = ()
-
-        @property
-        def puts(self) -> int:
-            """Packets that got in."""
-            count: int = _puts.__get__(self)
-            return count
-
-        @puts.setter
-        def puts(self, count: int) -> None:
-            if count and count == _puts.__get__(self) + 1:
-                bus._put(self.pipe)
-            _puts.__set__(self, count)
-
-    return TellingDestination
+    def put(self, destination: Destination) -> None:
+        """See `PutHook.put`."""
+        super().put(destination)
+        self._told(destination.pipe)

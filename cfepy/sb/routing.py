@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any
 
 from cfepy.msg import MAX_SEQUENCE_COUNT
 from cfepy.ports import Block
@@ -55,32 +54,24 @@ class Destination:
         return next((each for each in reversed(self.kin) if each.puts > each.gets), self)
 
 
-_limit: Any = Destination.__dict__["limit"]
-
-
-def asked_before_puts(base: type[Destination], limit_of: Callable[[Destination, int], int]) -> type[Destination]:
-    """A kind of destination whose message limit is another's to say, right before each put into its pipe.
+class PutHook:
+    """Stands before each put into a pipe; one that does nothing is the base of those that do.
 
     Args:
-        base: the kind to start from.
-        limit_of: gets the destination and its own limit, and gives the one that counts for this put.
+        inner: the hook that was there before; None for none.
     """
 
-    class AskedDestination(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
-        """One whose message limit is asked for right before each put."""
+    def __init__(self, inner: PutHook | None = None) -> None:
+        self._inner = inner
 
-        __slots__ = ()
+    def limit(self, destination: Destination) -> int:
+        """The message limit for the put that comes: that of the subscription, unless a hook says another."""
+        return destination.limit if self._inner is None else self._inner.limit(destination)
 
-        @property
-        def limit(self) -> int:
-            """The message limit for the put that comes."""
-            return limit_of(self, int(_limit.__get__(self)))
-
-        @limit.setter
-        def limit(self, limit: int) -> None:
-            _limit.__set__(self, limit)
-
-    return AskedDestination
+    def put(self, destination: Destination) -> None:
+        """The running task is about to put its packet into the pipe, or to hand it to a task that waits there."""
+        if self._inner is not None:
+            self._inner.put(destination)
 
 
 class Route:
