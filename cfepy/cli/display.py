@@ -6,9 +6,11 @@ dozen milliseconds later, and shown in one go, so that drawing costs the run nex
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from typing import TYPE_CHECKING, Protocol, TextIO
 
+from cfepy.cli.failures import tell
 from cfepy.cli.options import LONGEST_S
 from cfepy.rtos import Stopwatch
 from cfepy.units import NS_PER_S
@@ -26,6 +28,9 @@ class Display(Protocol):
 
     def line(self, text: str) -> None:
         """A line of the mission's console; called from inside the simulation."""
+
+    def tell(self, text: str) -> None:
+        """What the user should know of this computer, such as where a port is open; called by the host."""
 
     def update(self, mission: Mission) -> None:
         """The run goes on; called by the host between pieces of it."""
@@ -55,6 +60,12 @@ class PlainDisplay:
             except ValueError as error:  # an app closed it
                 self._broken = BrokenPipeError(str(error))
 
+    def tell(self, text: str) -> None:
+        """See `Display.tell`; whoever reads a pipe may wait for it."""
+        self.line(text)
+        with contextlib.suppress(OSError, ValueError):  # which `line` has kept, or will meet
+            self._stream.flush()
+
     def update(self, mission: Mission) -> None:
         """See `Display.update`.
 
@@ -69,10 +80,14 @@ class PlainDisplay:
 
 
 class SilentDisplay:
-    """Nothing at all."""
+    """Nothing of the run."""
 
     def line(self, text: str) -> None:
         """See `Display.line`."""
+
+    def tell(self, text: str) -> None:
+        """See `Display.tell`; not of the run, so it is shown, and is not in the way of a report that is piped."""
+        tell([text])
 
     def update(self, mission: Mission) -> None:
         """See `Display.update`."""
@@ -107,6 +122,8 @@ class LiveDisplay:
     def line(self, text: str) -> None:
         """See `Display.line`."""
         self._lines.append(text)
+
+    tell = line
 
     def update(self, mission: Mission) -> None:
         """See `Display.update`."""

@@ -60,3 +60,8 @@ def tell(texts: Iterable[object]) -> None:
     sys.stdout.flush()
     for text in texts:
         print(f"cfepy: {text}", file=sys.stderr, flush=True)
+
+
+def note(text: str) -> None:
+    """A line for the user that is no failure goes the same way."""
+    tell([text])

@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from cfepy.cli.display import Display, SilentDisplay
+from cfepy.cli.failures import note
 from cfepy.cli.main import FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import LONGEST_S
 from cfepy.console import Console
@@ -30,10 +31,6 @@ PATIENCE_NS = 2 * NS_PER_S  # wall time after the second Ctrl-C in which no othe
 STDERR = 2
 
 MakeDisplay = Callable[[float], Display]
-
-
-def _to_stderr(note: str) -> None:
-    print(f"cfepy: {note}", file=sys.stderr, flush=True)
 
 
 def silent(seconds: float) -> Display:
@@ -72,7 +69,7 @@ class WatchedHost(Host):
         ros_master: str | None = None,
         viewers: Viewers | None = None,
         pause: Callable[[], object] = lambda: None,
-        note: Callable[[str], object] = _to_stderr,
+        note: Callable[[str], object] = note,
     ) -> None:
         self.console = Console(sink=self._line)
         self.longest_s = None if realtime is None else LONGEST_S
@@ -107,8 +104,8 @@ class WatchedHost(Host):
     def begin(self, run: LiveRun) -> None:
         """See `Host.begin`; what the user should know is said before anything runs."""
         super().begin(run)
-        for note in run.notes:
-            self._note(note)
+        for each in run.notes:
+            self._note(each)
         self._display = self._make_display(run.course.until_ns / NS_PER_S)
         self._watch = Stopwatch()
         if self._realtime is not None:
@@ -120,6 +117,11 @@ class WatchedHost(Host):
         self._go(until_ns)
         self._pause()
         self._display.update(self._mission)
+
+    def stand(self) -> None:
+        """Time stands still between two pieces; what viewers ask is answered all the same."""
+        for each in self._guests:
+            each.exchange()
 
     def wall_ns(self) -> int:
         """See `Host.wall_ns`; from when it began."""
@@ -150,6 +152,9 @@ class WatchedHost(Host):
     def _line(self, text: str) -> None:
         self._display.line(text)
 
+    def _tell(self, text: str) -> None:
+        self._display.tell(text)
+
     def _free_piece(self, until_ns: int) -> None:
         """As fast as it goes."""
         self._run_until(min(until_ns, self._mission.kernel.now + self._piece.ns))
@@ -170,11 +175,11 @@ class WatchedHost(Host):
         from cfepy.io import HostNetwork
 
         self._mission.kernel.context.be_prompt()
-        self._network = self._bridge.enter_context(HostNetwork(self._mission, dict(self._ports), self._line))
+        self._network = self._bridge.enter_context(HostNetwork(self._mission, dict(self._ports), self._tell))
         if self._ros_master is not None:
             from cfepy.ros_host import RosHost, world_at
 
-            ros = RosHost(self._mission, world_at(self._ros_master), tell=self._line)
+            ros = RosHost(self._mission, world_at(self._ros_master), tell=self._tell)
             self._network.join(self._bridge.enter_context(ros))
         for each in self._guests:
             self._network.join(each)
@@ -184,11 +189,10 @@ class WatchedHost(Host):
         watch, length_ns = Stopwatch(), until_ns - self._mission.kernel.now
         self._mission.run_until(until_ns)
         self._piece.took(length_ns, watch.elapsed_ns())
-        if self._network is not None:
+        if self._network is None:
+            self.stand()
+        else:
             self._network.exchange()
-            return
-        for each in self._guests:
-            each.exchange()
 
 
 class Interrupts:

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 Options = argparse._ActionsContainer  # a parser, or a group of its options
 LONGEST_S = 1e9  # virtual time is a signed 64-bit number of ns
 SLOWEST, FASTEST = 1e-3, 1e9  # times real time
-HIGHEST_PORT = 65_535
 DEFAULT_SEED, DEFAULT_TASKS, DEFAULT_SCHEDULE, DEFAULT_STALL_S = 0, "thread", "fifo", 10.0
 
 POINTS_HELP = (
@@ -267,7 +266,6 @@ def plan_of_mission(arguments: argparse.Namespace) -> RunPlan:
         UsageError: as of `plan_of`; words behind what is no node's .py.
     """
     from cfepy.pilot import NODE
-    from cfepy.status import UsageError
 
     plan = plan_of(arguments, [arguments.mission, *arguments.node_args])
     if len(plan.words) > 1 and plan.command != NODE:
@@ -291,8 +289,6 @@ def refuse_run_options(arguments: argparse.Namespace, why: str, but: Sequence[st
     Raises:
         UsageError: there is such an option.
     """
-    from cfepy.status import UsageError
-
     for name, (option, usual) in _USUAL.items():
         if name not in but and getattr(arguments, name, usual) not in (usual, [], ""):
             raise UsageError(why, field=option)
@@ -376,7 +372,7 @@ def add_from_disk(parser: argparse.ArgumentParser) -> None:
     )
 
 
-# -- what a run leaves behind, and what it has to do with this computer ------------------------------------------------
+# -- files, and where to begin and end --------------------------------------------------------------------------------
 
 
 def add_json(parser: Options, what: str) -> None:
@@ -436,84 +432,6 @@ def add_perfetto(parser: argparse.ArgumentParser) -> None:
 def add_from(parser: argparse.ArgumentParser) -> None:
     """What is shown begins there."""
     parser.add_argument("--from", dest="from_s", type=seconds_of, metavar="SECONDS", help="begin at this virtual time")
-
-
-def add_outputs(parser: argparse.ArgumentParser) -> None:
-    """What the run leaves behind, and what it shows."""
-    run = parser.add_argument_group("what the run leaves behind")
-    add_json(run, "the report's numbers")
-    run.add_argument(
-        "--save-files",
-        metavar="DIR",
-        help="at the end write the files that the mission wrote, such as /ram/x.log, to this folder, as DIR/ram/x.log",
-    )
-    run.add_argument("--bag", metavar="FILE", help="record the ROS topics of the run into a bag (rosbag record -a)")
-    run.add_argument(
-        "--bag-topics",
-        nargs="+",
-        action="extend",
-        default=[],
-        metavar="TOPIC",
-        help="record only these, such as /odom or '/arm/*' (default: all)",
-    )
-    run.add_argument("--trace", metavar="FILE", help="write everything that happened to a file, a line each")
-    run.add_argument("--quiet", action="store_true", help="no console and no status line, only the report")
-
-
-def add_recording(parser: argparse.ArgumentParser) -> None:
-    """The journal of the run."""
-    run = parser.add_argument_group("the journal of the run")
-    run.add_argument(
-        "--record", metavar="FILE", help="write a journal, from which `cfepy replay FILE` does the same run again"
-    )
-    run.add_argument(
-        "--record-no-files",
-        action="store_true",
-        help="leave the mission's files out of the journal; it still has their checksums",
-    )
-
-
-def add_pace(parser: argparse.ArgumentParser) -> None:
-    """The wall clock, and the ports that are open meanwhile."""
-    pace = parser.add_argument_group("the wall clock and this computer")
-    pace.add_argument(
-        "--realtime",
-        nargs="?",
-        type=factor_of,
-        const=1.0,
-        metavar="FACTOR",
-        help="pace virtual time to the wall clock, FACTOR times as fast (default: 1); the mission's UDP and TCP ports "
-        "are then open on 127.0.0.1",
-    )
-    pace.add_argument(
-        "--port",
-        action="append",
-        type=ports_of,
-        default=[],
-        metavar="PORT=HERE",
-        help="open the mission's port PORT, or send to it, as port HERE of this computer; 0 takes any free one",
-    )
-    pace.add_argument(
-        "--ros-master",
-        type=ros_master_of,
-        metavar="URI",
-        help="with --realtime: be one graph with ROS on this computer. URI is that of a running roscore, such as "
-        "http://localhost:11311; serve or serve:PORT serves a ROS master for others",
-    )
-
-
-def check_pace(arguments: argparse.Namespace) -> None:
-    """Check what `add_pace` has added.
-
-    Raises:
-        UsageError: something in it is for a run in real time, and this one is none.
-    """
-    if arguments.realtime is not None:
-        return
-    if arguments.port:
-        raise UsageError("without --realtime no port is opened on this computer", field="--port")
-    if arguments.ros_master:
-        raise UsageError("without --realtime no ROS node of this computer can keep pace; add it", field="--ros-master")
 
 
 # -- types of arguments ------------------------------------------------------------------------------------------------
@@ -580,20 +498,3 @@ def factor_of(text: str) -> float:
     if not SLOWEST <= factor <= FASTEST:
         raise argparse.ArgumentTypeError(f"{text!r} is not a factor; give {SLOWEST:g} to {FASTEST:g}")
     return factor
-
-
-def ros_master_of(text: str) -> str:
-    """The URI of a ROS master, or `serve` with or without a port, for argparse."""
-    word, mark, port = text.partition(":")
-    serves = word == "serve" and (not mark or (port.isdecimal() and int(port) <= HIGHEST_PORT))
-    if serves or (word == "http" and text.count(":") > 1 and text.rstrip("/").rpartition(":")[2].isdecimal()):
-        return text
-    raise argparse.ArgumentTypeError(f"{text!r} is not like http://localhost:11311, serve or serve:11312")
-
-
-def ports_of(text: str) -> tuple[int, int]:
-    """A port of the mission and what it is on this computer, for argparse."""
-    inside, _, here = text.partition("=")
-    if not (inside.isdecimal() and here.isdecimal() and 0 < int(inside) <= HIGHEST_PORT >= int(here)):
-        raise argparse.ArgumentTypeError(f"{text!r} is not like 1234=0 or 1234=5000")
-    return int(inside), int(here)

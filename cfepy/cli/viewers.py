@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import sys
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from cfepy.attachment import Attachment
@@ -17,16 +17,13 @@ if TYPE_CHECKING:
 FOXGLOVE, ROSBRIDGE, TOKEN, ORIGIN = "--foxglove", "--rosbridge", "--viewer-token", "--viewer-origin"
 
 
-def _to_stderr(line: str) -> None:
-    print(f"cfepy: {line}", file=sys.stderr, flush=True)
-
-
 class Viewers:
     """The servers that a command line asks for; use as a context manager around the run.
 
     Args:
         arguments: of a command line with `add_viewers`.
         name: of the mission.
+        tell: gets the lines that say where they listen, and the token that was made.
 
     Attributes:
         attachments: what watches the run for them.
@@ -36,11 +33,12 @@ class Viewers:
         UsageError: a port is taken, a library is not installed, or a token is none.
     """
 
-    def __init__(self, arguments: argparse.Namespace, name: str) -> None:
+    def __init__(self, arguments: argparse.Namespace, name: str, tell: Callable[[str], object]) -> None:
         self.attachments: list[Attachment] = []
         self.guests: list[Guest] = []
         self._arguments = arguments
         self._name = name
+        self._tell = tell
         self._token: str | None = arguments.viewer_token
         self._open = contextlib.ExitStack()
 
@@ -78,7 +76,7 @@ class Viewers:
         self._open.callback(viewer.close)
         self.attachments.append(viewer)
         self.guests.append(viewer)
-        _to_stderr(f"Foxglove connects to ws://{viewer.place}")
+        self._tell(f"Foxglove connects to ws://{viewer.place}")
 
     def _serve_rosbridge(self, counts: PeerCounts) -> None:
         from cfepy.viewers import RosbridgeServer
@@ -87,7 +85,7 @@ class Viewers:
         self._open.callback(server.close)
         self.attachments.append(server)
         self.guests.append(server)
-        _to_stderr(f"rosbridge clients connect to ws://{server.place}")
+        self._tell(f"rosbridge clients connect to ws://{server.place}")
 
     def _who_and_where(self, text: str, option: str) -> tuple[ListenPlace, Admission]:
         """Where a server listens, and whom it lets in."""
@@ -97,6 +95,6 @@ class Viewers:
             place = listen_place_of(text)
         except ValueError as error:
             raise UsageError(str(error), field=option) from None
-        admission = admission_to(place, self._token, self._arguments.viewer_origin, tell=_to_stderr)
+        admission = admission_to(place, self._token, self._arguments.viewer_origin, tell=self._tell)
         self._token = admission.token or self._token  # one for all servers
         return place, admission

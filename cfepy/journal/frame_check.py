@@ -81,6 +81,11 @@ def _gaps(value: Any) -> bool:
     return _list(_whole)(value) and len(value) % 2 == 0
 
 
+def _instant(value: Any) -> bool:
+    """-1 is before the first piece of the run (`Outside.until_ns`)."""
+    return _whole(value) or (value == -1 and isinstance(value, int))
+
+
 def _size(value: Any) -> bool:
     return _whole(value) and value <= JOURNAL_FILE_BYTES
 
@@ -109,12 +114,12 @@ FRAMES: dict[str, dict[str, Check]] = {
         "time_ns": _whole,
         "target": _text,
     },
-    "pause": {"until_ns": _whole, "visits": _whole, "events": _list(_named)},
+    "pause": {"until_ns": _instant, "visits": _whole, "events": _list(_named)},
     "answer": {"values": _list(_any)},
     "check": {"at": _point, "decisions": _gaps, "decided": _whole},
     "end": {
         "reason": _text,
-        "until_ns": _whole,
+        "until_ns": _instant,
         "visits": _whole,
         "now_ns": _whole,
         "records": _whole,

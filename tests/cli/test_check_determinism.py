@@ -228,7 +228,14 @@ LAUNCH = """
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "words", [["node.py", "--", "a", "b"], ["n.launch", "--arg", "n:=3"], ["pk", "n.launch", "--arg", "n:=3"]]
+    "words",
+    [
+        ["run", "node.py", "--", "a", "b"],
+        ["run", "n.launch", "--arg", "n:=3"],
+        ["run", "pk", "n.launch", "--arg", "n:=3"],
+        ["node", "node.py", "--", "a", "b"],
+        ["launch", "pk", "n.launch", "n:=3"],
+    ],
 )
 def test_nodes_and_launch_files_are_checked_like_missions(
     words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -239,8 +246,9 @@ def test_nodes_and_launch_files_are_checked_like_missions(
     (tmp_path / "n.launch").write_text(LAUNCH)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
-    assert main(["run", "--for", "1", "--check-determinism", "2", *words]) == 0
+    command = [words[0], "--for", "1"]
+    assert main([*command, "--check-determinism", "2", *words[1:]]) == 0
     assert "all made the same" in capsys.readouterr().out
-    assert main(["run", "--for", "1", *words]) == 0
+    assert main([*command, *words[1:]]) == 0
     (said,) = (line for line in capsys.readouterr().out.splitlines() if "got" in line)
     assert "['a', 'b'] None" in said if "a" in words else said.endswith(" 3")

@@ -116,12 +116,17 @@ def test_the_run_ends_with_its_time_and_an_application_that_died_is_told(console
     assert "DIES died: ValueError: boom" in output
 
 
-def test_a_journal_has_what_was_typed(console: Console, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("lines", ["run 1\nSAMPLE_APP_NOOP\nrun 0.5\n", "CFE_ES_NOOP\nrun 0.1\n", "CFE_ES_NOOP\n"])
+def test_a_journal_has_what_was_typed(
+    lines: str, console: Console, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Also before time has begun, when nobody hears it yet."""
     journal = tmp_path / "run.cfepy"
-    status, output = console("lab", "--record", str(journal), lines="run 1\nSAMPLE_APP_NOOP\nrun 0.5\n")
-    assert status == 0
+    _, output = console("lab", "--record", str(journal), lines=lines)
     assert main(["replay", str(journal), "--quiet"]) == 0
     assert trace_of(capsys.readouterr().out) == trace_of(output)
+    assert main(["replay", str(journal), "--info"]) == 0
+    assert "-" not in capsys.readouterr().out.partition("goes to:")[2].splitlines()[0]
 
 
 def test_a_paced_session_is_repeated_by_its_script(

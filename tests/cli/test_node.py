@@ -62,3 +62,15 @@ def test_a_node_by_its_package(demo: Path, monkeypatch: pytest.MonkeyPatch, caps
 def test_no_such_node(capsys: pytest.CaptureFixture[str], words: list[str], said: str) -> None:
     assert main(["node", *words]) == 2
     assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [["node"], ["node", "--quiet"], ["run"], ["run", "--quiet"], ["launch"]])
+def test_where_the_master_serves_is_told_once(
+    words: list[str], demo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "node.py").write_text("import rospy\nrospy.init_node('n')\n")
+    (tmp_path / "nodes.launch").write_text('<launch><node pkg="demo" type="talker.py" name="talker"/></launch>')
+    what = tmp_path / ("nodes.launch" if words == ["launch"] else "node.py")
+    assert main([*words, str(what), "--for", "0.1", "--realtime", "1000", "--ros-master", "serve:0"]) == 0
+    shown = capsys.readouterr()
+    assert (shown.out + shown.err).count("ROS master at http://127.0.0.1:") == 1

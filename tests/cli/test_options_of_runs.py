@@ -49,6 +49,7 @@ def words(tmp_path: Path, demo: Path, write_launch: Launch) -> dict[str, list[st
         "run --record": ["run", mission, "--record", str(tmp_path / "run.cfepy")],
         "launch": ["launch", launch],
         "node": ["node", node],
+        "node --check-determinism": ["node", node, "--check-determinism", "2"],
         "rostest": ["rostest", launch],
         "topic list": ["topic", "list", mission],
         "topic echo": ["topic", "echo", mission, "/chatter"],
@@ -73,8 +74,9 @@ def words(tmp_path: Path, demo: Path, write_launch: Launch) -> dict[str, list[st
 
 
 COMMANDS = (
-    *("run", "run --check-determinism", "run --record", "launch", "node", "rostest", "topic list", "topic echo"),
-    *("topic pub", "service list", "service call", "rosnode list", "tf echo", "param", "cmd", "tlm", "console"),
+    *("run", "run --check-determinism", "run --record", "launch", "node", "node --check-determinism", "rostest"),
+    *("topic list", "topic echo", "topic pub", "service list", "service call", "rosnode list", "tf echo", "param"),
+    *("cmd", "tlm", "console"),
     *("mids", "graph", "explore", "trace", "report"),
     *("plot", "export csv", "export parquet"),
 )
@@ -103,6 +105,7 @@ SAID_OTHERWISE = {
     ("launch", "launch_args"): "its words have them, as for roslaunch",
     ("rostest", "launch_args"): "its words have them, as for rostest",
     ("node", "launch_args"): "a node has none",
+    ("node --check-determinism", "launch_args"): "a node has none",
     ("rostest", "seconds"): "each test has a time limit of its own",
     ("rosnode list", "seconds"): "is when it is asked; the run may take as long as the answer",
     ("cmd", "seconds"): "counts from the command on; the run may take as long as its boot",
@@ -186,7 +189,7 @@ LIBRARY: dict[str, Callable[[RunPlan], object]] = {
 }
 
 
-@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "run --check-determinism"])
+@pytest.mark.parametrize("command", [name for name in COMMANDS if "--check-determinism" not in name])
 def test_greenlet_that_is_not_installed(
     command: str,
     words: dict[str, list[str]],
@@ -207,7 +210,7 @@ def test_greenlet_that_is_not_installed_in_the_library(
         LIBRARY[way](RunPlan((str(tmp_path),), tasks="greenlet"))
 
 
-@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "run --check-determinism"])
+@pytest.mark.parametrize("command", [name for name in COMMANDS if "--check-determinism" not in name])
 def test_faults_that_do_not_fit_or_never_strike(
     command: str,
     words: dict[str, list[str]],

@@ -55,6 +55,7 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--record-no-files": (None, "leave the mission's files out of the journal"),
     "--results": ("FILE", "write the result of every (schedule|test) to a file"),
     "--save-files": ("DIR", "at the end write the files that the mission wrote"),
+    "--check-determinism": ("N", "run it N times side by side"),
     "--ros-master": ("URI", "be one graph with ROS on this computer"),
     "--schedule": ("TEXT", "who runs next where there is a choice"),
     "--script": ("FILE", "send commands and check what comes of them"),

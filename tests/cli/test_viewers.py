@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
 import re
 import sys
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -20,6 +23,27 @@ from tests.viewers.foxglove.runs import TALKER, spec_of
 def mission(tmp_path: Path) -> str:
     spec_of(tmp_path, {"talker": TALKER})
     return str(tmp_path)
+
+
+@contextlib.contextmanager
+def served(monkeypatch: pytest.MonkeyPatch, words: list[str]) -> Iterator[str]:
+    """A command that flies in a thread of its own, and the URL at which it serves; at the end, it is over."""
+    told = threading.Event()
+    urls: list[str] = []
+
+    def note(line: str) -> None:
+        urls.extend(re.findall(r"ws://\S+", line))
+        told.set()
+
+    for user in ("cfepy.cli.run.run", "cfepy.cli.ground.console"):
+        monkeypatch.setattr(f"{user}.note", note)
+    flight = threading.Thread(target=main, args=(words,))
+    flight.start()
+    try:
+        assert told.wait(60)
+        yield urls[0]
+    finally:
+        flight.join(60)
 
 
 def digest(text: str) -> str:
@@ -88,20 +112,12 @@ def test_a_journal_of_a_run_with_rosbridge_is_replayed_without_clients(
 ) -> None:
     """At the pace of the wall clock, and as fast as it goes; the token is in no journal."""
     file, token = tmp_path / "run.cfepy", "a-long-secret"
-    told = threading.Event()
-    urls: list[str] = []
-
-    def to_stderr(line: str) -> None:
-        urls.extend(re.findall(r"ws://\S+", line))
-        told.set()
-
-    monkeypatch.setattr("cfepy.cli.viewers._to_stderr", to_stderr)
     length = "4" if pace else "6000"
     command = ["run", mission, "--for", length, "--quiet", "--rosbridge", "0", "--viewer-token", token]
-    flight = threading.Thread(target=main, args=([*command, "--record", str(file), *pace],))
-    flight.start()
-    assert told.wait(60)
-    with connect(f"{urls[0]}/?token={token}") as client:
+    with (
+        served(monkeypatch, [*command, "--record", str(file), *pace]) as url,
+        connect(f"{url}/?token={token}") as client,
+    ):
         client.send(json.dumps({"op": "subscribe", "topic": "/chatter", "type": "std_msgs/String"}))
         hearers: list[str] = []
         while not hearers:  # the talker has not come up yet
@@ -109,7 +125,6 @@ def test_a_journal_of_a_run_with_rosbridge_is_replayed_without_clients(
             hearers = json.loads(client.recv(60))["values"]["subscribers"]
         client.send(json.dumps({"op": "publish", "topic": "/orders", "msg": {"data": "hi"}}))
         assert json.loads(client.recv(60))["topic"] == "/chatter"
-    flight.join(60)
     out = capsys.readouterr().out
     assert re.search(r"/orders +rosbridge 127\.0\.0\.1 +in +1 +0 ", out)
     assert token.encode() not in file.read_bytes()
@@ -133,20 +148,9 @@ def test_a_journal_of_a_run_with_viewers_is_replayed_without_them(
 ) -> None:
     """At the pace of the wall clock, and as fast as it goes."""
     file = str(tmp_path / "run.cfepy")
-    told = threading.Event()
-    urls: list[str] = []
-
-    def to_stderr(line: str) -> None:
-        urls.extend(re.findall(r"ws://\S+", line))
-        told.set()
-
-    monkeypatch.setattr("cfepy.cli.viewers._to_stderr", to_stderr)
     length = "4" if pace else "6000"
     command = ["run", mission, "--for", length, "--quiet", "--foxglove", "0", "--record", file, *pace]
-    flight = threading.Thread(target=main, args=(command,))
-    flight.start()
-    assert told.wait(60)
-    with FoxgloveClient(urls[0]) as client:
+    with served(monkeypatch, command) as url, FoxgloveClient(url) as client:
         client.subscribe("/chatter", "/cfe/events")
         client.advertise(1, "/orders", "std_msgs/String", "json")
         client.advertise(2, "/cfe/CFE_ES_NOOP", "", "json")
@@ -158,8 +162,38 @@ def test_a_journal_of_a_run_with_viewers_is_replayed_without_them(
             client.wait_for(lambda before=before: len(client.messages) > before)  # type: ignore[misc]  # a loop's
         client.take_rest()
         assert any(b"No-op" in each for each in client.of("/cfe/events"))
-    flight.join(60)
     out = capsys.readouterr().out
     assert re.search(r"/orders +foxglove +in +\d+ +0 ", out)
     assert main(["replay", file, "--quiet"]) == 0
     assert digest(capsys.readouterr().out) == digest(out)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pace", [["--realtime"], []])
+def test_a_session_of_the_console_serves_viewers_also_while_time_stands_still(
+    mission: str, tmp_path: Path, pace: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In virtual time it stands at first, and is told to go on only when the client is connected and has subscribed."""
+    file = str(tmp_path / "run.cfepy")
+    typed, typing = os.pipe()
+    words = ["console", mission, "--plain", "--rosbridge", "0", "--record", file, *pace]
+    with os.fdopen(typed) as stdin:
+        monkeypatch.setattr(sys, "stdin", stdin)
+        with served(monkeypatch, words) as url, os.fdopen(typing, "w", buffering=1) as keys:
+            keys.write("pause\n")
+            with connect(url) as client:
+                client.send(json.dumps({"op": "subscribe", "topic": "/latched", "type": "std_msgs/String"}))
+                client.send(json.dumps({"op": "call_service", "service": "/rosapi/topics"}))
+                assert json.loads(client.recv(60))["values"]["topics"] == ["/latched"]
+                keys.write("run 3\n")
+                assert json.loads(client.recv(60))["topic"] == "/latched"
+                client.send(json.dumps({"op": "publish", "topic": "/orders", "msg": {"data": "hi"}}))
+            keys.write("quit\n")
+    out = capsys.readouterr().out
+    assert main(["replay", file, "--quiet"]) == 0
+    assert digest(capsys.readouterr().out) == digest(out)
+
+
+def test_a_computer_elsewhere_is_shown_by_nobody(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["console", "--udp", "127.0.0.1", "--rosbridge", "0"]) == 2
+    assert "--rosbridge: 127.0.0.1 is a computer, which is not flown" in capsys.readouterr().err

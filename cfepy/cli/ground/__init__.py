@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 
+from cfepy.cli.flight_options import add_pace, add_recording, add_viewers
 from cfepy.cli.options import (
     LOOK_STATUS,
     VALUES_HELP,
@@ -18,8 +19,6 @@ from cfepy.cli.options import (
     add_looked_at,
     add_mission,
     add_output,
-    add_pace,
-    add_recording,
     add_run_options,
     seconds_of,
 )
@@ -129,6 +128,7 @@ def _add_console(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_run_options(console)
     add_recording(console)
     add_pace(console)
+    add_viewers(console)
     console.set_defaults(module="ground.console")
 
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import argparse
 
-from cfepy.cli.options import add_from_disk, add_outputs, add_until
+from cfepy.cli.flight_options import add_outputs
+from cfepy.cli.options import add_from_disk, add_until
 
 _REPLAY_STATUS = """exit status:
   0    the same run as far as it is known: every checkpoint, and at the end the digests of trace and numbers

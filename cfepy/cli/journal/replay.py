@@ -40,7 +40,7 @@ def show_info(journal: Journal, stream: TextIO) -> None:
         "files": f"{len(journal.files)}, of which the journal carries {carried}; hash {journal.mission_hash}",
         "from outside": f"{events} events" + (f", paced {header.paced:g} times real time" if header.paced else ""),
         "schedule": f"{len(journal.decisions):,} of {journal.decided:,} decisions were not fifo's",
-        "goes to": f"{journal.known_until_ns / NS_PER_S:g} s of virtual time",
+        "goes to": f"{max(0, journal.known_until_ns) / NS_PER_S:g} s of virtual time",
         "end": "none: its process came to a sudden end" if end is None else end.reason,
     }
     if end is not None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 
+from cfepy.cli.flight_options import add_flight
 from cfepy.cli.options import (
     MISSION_HELP,
     STATUS_HELP,
@@ -15,20 +16,19 @@ from cfepy.cli.options import (
     add_json,
     add_mission,
     add_output,
-    add_outputs,
-    add_pace,
-    add_recording,
     add_run_options,
     count_of,
     factor_of,
     seconds_of,
 )
-from cfepy.cli.viewer_options import add_viewers
 
 _LAUNCH_WORDS = "a launch file, or a package and the name of a launch file in it; then its arguments, as NAME:=VALUE"
 _NODE_WORDS = "a script, or a package and the name of a node in it; then what the node gets (options of it after --)"
 _TEST_STATUS = "exit status: 0 all tests passed, 1 a test failed or could not be run, 2 bad usage, 130 ended by Ctrl-C"
-_NODE_STATUS = "exit status: that of the node, 0 when it still runs at the end; 2 bad usage, 130 ended by Ctrl-C"
+_NODE_STATUS = (
+    "exit status: that of the node, 0 when it still runs at the end; 2 bad usage, 130 ended by Ctrl-C; with "
+    "--check-determinism 0 when all runs were the same, 1 when two differed"
+)
 _SOURCE_HELP = f"a bag, or {MISSION_HELP}"
 _TOPIC_HELP = "such as /odom, or with a field: /odom/pose/pose/position/x"
 _TOPIC_STATUS = "exit status: 0 well, 1 nothing was found or something failed, 2 bad usage"
@@ -63,10 +63,7 @@ def _add_launch(commands: _Actions[argparse.ArgumentParser]) -> None:
     launch.add_argument("--console", action="store_true", help="show the flight computer's console and report as well")
     launch.add_argument("--dump-params", action="store_true", help="only show the parameters, as YAML")
     add_run_options(launch)
-    add_pace(launch)
-    add_viewers(launch)
-    add_outputs(launch)
-    add_recording(launch)
+    add_flight(launch)
     launch.set_defaults(module="ros.launch")
 
 
@@ -80,10 +77,7 @@ def _add_node(commands: _Actions[argparse.ArgumentParser]) -> None:
     )
     node.add_argument("words", metavar="WORD", nargs="+", help=_NODE_WORDS)
     add_run_options(node, without=["launch_args"])
-    add_pace(node)
-    add_viewers(node)
-    add_outputs(node)
-    add_recording(node)
+    add_flight(node)
     node.set_defaults(module="ros.node", hint="; what the node itself is to get comes after --")
 
 

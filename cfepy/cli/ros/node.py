@@ -38,6 +38,10 @@ class NodeDisplay:
         elif text.startswith(FAULT):
             print(text, file=sys.stderr, flush=True)
 
+    def tell(self, text: str) -> None:
+        """See `Display.tell`; standard output is the node's."""
+        tell([text])
+
     def update(self, mission: Mission) -> None:
         """Nothing is drawn between pieces of the run."""
 

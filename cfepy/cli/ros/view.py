@@ -30,6 +30,7 @@ class NodesDisplay:
 
     def __init__(self, display: Display) -> None:
         self._display = display
+        self.tell = display.tell
         self.update = display.update
         self.close = display.close
 

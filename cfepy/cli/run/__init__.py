@@ -8,21 +8,17 @@ from __future__ import annotations
 
 import argparse
 
+from cfepy.cli.flight_options import add_flight
 from cfepy.cli.options import (
     RUN_OPTIONS,
     STATUS_HELP,
     add_json,
     add_mission,
     add_mission_or_node,
-    add_outputs,
-    add_pace,
-    add_recording,
     add_run_options,
     seconds_of,
 )
-from cfepy.cli.viewer_options import add_viewers
 
-DEFAULT_RUNS, MOST_RUNS = 3, 64
 FASTEST_CPU_HZ = 1e11
 
 
@@ -45,19 +41,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     )
     add_mission_or_node(run)
     add_run_options(run)
-    add_pace(run)
-    add_viewers(run)
-    add_outputs(run)
-    add_recording(run)
-    run.add_argument(
-        "--check-determinism",
-        nargs="?",
-        type=_runs_of,
-        const=DEFAULT_RUNS,
-        metavar="N",
-        help="run the mission N times side by side, each time under another hash seed and both on threads and on "
-        f"greenlets, and show the first thing that differs (default: {DEFAULT_RUNS} runs)",
-    )
+    add_flight(run)
     run.set_defaults(module="run.run")
 
 
@@ -142,10 +126,3 @@ def _cycles_of(text: str) -> int:
     if not 1 <= rate <= FASTEST_CPU_HZ:
         raise argparse.ArgumentTypeError(f"{text!r} is no clock rate in Hz, such as 120e6")
     return round(rate)
-
-
-def _runs_of(text: str) -> int:
-    """How many runs to compare, for argparse."""
-    if not text.isdecimal() or not 2 <= int(text) <= MOST_RUNS:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number of runs; give 2 to {MOST_RUNS}")
-    return int(text)

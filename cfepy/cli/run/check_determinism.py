@@ -1,4 +1,4 @@
-"""`cfepy run --check-determinism`: the mission is flown several times, and the first difference is printed.
+"""`--check-determinism`: a mission is flown several times, and the first difference is printed.
 
 The runs differ in what must not matter: the hash seed of the process, the addresses of its objects, the kind of tasks.
 """
@@ -50,7 +50,7 @@ def check(arguments: argparse.Namespace, plan: RunPlan) -> int:
     """Run and compare.
 
     Args:
-        arguments: of `cfepy run`.
+        arguments: with the options of `add_flight`.
         plan: what is run.
 
     Returns:
@@ -59,6 +59,9 @@ def check(arguments: argparse.Namespace, plan: RunPlan) -> int:
     Raises:
         UsageError: the mission cannot run, or an option does not go with this one.
     """
+    for option, place in (("--foxglove", arguments.foxglove), ("--rosbridge", arguments.rosbridge)):
+        if place is not None:
+            raise UsageError("runs that are compared are not shown; leave one of the two out", field=option)
     for name in _NOT_TOGETHER:
         if getattr(arguments, name) is not None:
             raise UsageError("does not go with --check-determinism", field=f"--{name.replace('_', '-')}")

@@ -7,15 +7,15 @@ import sys
 from typing import TYPE_CHECKING
 
 from cfepy.cli.display import Display, make_display
-from cfepy.cli.failures import tell
+from cfepy.cli.failures import note, tell
+from cfepy.cli.flight_options import check_pace
 from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
-from cfepy.cli.options import check_pace, plan_of_mission
+from cfepy.cli.options import plan_of_mission
 from cfepy.cli.run import report
 from cfepy.cli.run.outputs import Outputs, recording
 from cfepy.cli.viewers import Viewers
 from cfepy.pilot import Flown, RunPlan, fly
-from cfepy.status import UsageError
 from cfepy.trace import TimedRecords, Trace
 
 if TYPE_CHECKING:
@@ -71,22 +71,14 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: it cannot run like this.
     """
-    plan = plan_of_mission(arguments)
-    if arguments.check_determinism is not None:
-        for option, place in (("--foxglove", arguments.foxglove), ("--rosbridge", arguments.rosbridge)):
-            if place is not None:
-                raise UsageError("runs that are compared are not shown; leave one of the two out", field=option)
-        from cfepy.cli.run.check_determinism import check
-
-        return check(arguments, plan)
-    return fly_and_tell(arguments, plan, View(arguments.quiet))
+    return fly_and_tell(arguments, plan_of_mission(arguments), View(arguments.quiet))
 
 
 def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> int:
-    """Fly a plan as the command line says, and report.
+    """Fly a plan as the command line says, and report; or compare several runs of it.
 
     Args:
-        arguments: with the options of `add_outputs`, `add_recording`, `add_pace` and `add_viewers`.
+        arguments: with the options of `add_flight`.
         plan: what to fly.
         view: what is shown of it.
 
@@ -97,10 +89,14 @@ def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> in
         UsageError: it cannot run like this.
     """
     check_pace(arguments)
+    if arguments.check_determinism is not None:
+        from cfepy.cli.run.check_determinism import check
+
+        return check(arguments, plan)
     with recording(arguments, plan) as journal, Interrupts() as interrupts, Outputs(arguments, plan) as outputs:
         spec = plan.spec()  # a journal has the files that are read for it
         with (
-            Viewers(arguments, spec.name) as viewers,
+            Viewers(arguments, spec.name, note) as viewers,
             WatchedHost(
                 interrupts,
                 view.display,

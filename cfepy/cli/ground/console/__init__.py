@@ -14,14 +14,16 @@ from dataclasses import replace
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, NamedTuple
 
-from cfepy.cli.failures import check_writable, tell
+from cfepy.cli.failures import check_writable, note, tell
+from cfepy.cli.flight_options import check_pace
 from cfepy.cli.ground.console.pages import PacketBoard
 from cfepy.cli.ground.console.saved import SavedScript
 from cfepy.cli.ground.console.session import REPLY, ConsoleSession
 from cfepy.cli.ground.target import RemoteHost, host_of
 from cfepy.cli.host import Interrupts
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
-from cfepy.cli.options import check_pace, plan_of, refuse_run_options
+from cfepy.cli.options import plan_of, refuse_run_options
+from cfepy.cli.viewers import FOXGLOVE, ORIGIN, ROSBRIDGE, TOKEN, Viewers
 from cfepy.ground import CI_PORT, TO_PORT, dictionary_of, packet_of
 from cfepy.io import TypedLines, own_address, send
 from cfepy.mission import MissionSpec, read_mission
@@ -87,18 +89,22 @@ class Opening:
             spec = plan.spec()
             dictionary = dictionary_of(spec)
             saved = SavedScript(dictionary)
-            with FlownCraft(
-                plan,
-                spec,
-                dictionary,
-                saved,
-                self._interrupts,
-                realtime=arguments.realtime,
-                ports=dict(arguments.port),
-                ros_master=arguments.ros_master,
-                journal=journal,
-                note=note,
-            ) as craft:
+            with (
+                Viewers(arguments, spec.name, note) as viewers,
+                FlownCraft(
+                    plan,
+                    spec,
+                    dictionary,
+                    saved,
+                    self._interrupts,
+                    realtime=arguments.realtime,
+                    ports=dict(arguments.port),
+                    ros_master=arguments.ros_master,
+                    viewers=viewers,
+                    journal=journal,
+                    note=note,
+                ) as craft,
+            ):
                 session = ConsoleSession(
                     craft, PacketBoard(dictionary), saved, arguments.realtime, arguments.stop_on_failure
                 )
@@ -224,6 +230,10 @@ _NOT_OF_A_COMPUTER = (
     ("record", "--record"),
     ("port", "--port"),
     ("ros_master", "--ros-master"),
+    ("foxglove", FOXGLOVE),
+    ("rosbridge", ROSBRIDGE),
+    ("viewer_token", TOKEN),
+    ("viewer_origin", ORIGIN),
 )
 
 
@@ -248,7 +258,7 @@ def _check(arguments: argparse.Namespace) -> None:
 def _plain(opening: Opening) -> None:
     from cfepy.cli.ground.console.plain import PlainConsole
 
-    with opening.session(lambda text: tell([text])) as session:
+    with opening.session(note) as session:
         console = PlainConsole(session, TypedLines(sys.stdin), sys.stdout)
         console.run()
     console.print()

@@ -11,6 +11,7 @@ from cfepy.cli.display import SilentDisplay
 from cfepy.cli.ground.console.saved import SavedScript
 from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.cli.options import LONGEST_S
+from cfepy.cli.viewers import Viewers
 from cfepy.ground import Dictionary
 from cfepy.journal import JournalRecorder
 from cfepy.mission import PACKET, Mission, MissionSpec, PacketWatch, Seen
@@ -55,6 +56,8 @@ class News(SilentDisplay):
         """See `Display.line`."""
         self._news.append(text)
 
+    tell = line
+
     def packet(self, seen: Seen) -> None:
         """A packet was sent."""
         self._news.append(seen)
@@ -75,7 +78,7 @@ class FlownCraft:
         saved: gets what is sent.
         interrupts: whether Ctrl-C was pressed.
         realtime: as of `WatchedHost`.
-        ports, ros_master: as of `WatchedHost`.
+        ports, ros_master, viewers: as of `WatchedHost`.
         journal: records the run; None for nobody.
         note: gets what the user should know.
 
@@ -94,6 +97,7 @@ class FlownCraft:
         realtime: float | None = None,
         ports: Mapping[int, int] | None = None,
         ros_master: str | None = None,
+        viewers: Viewers | None = None,
         journal: JournalRecorder | None = None,
         note: Callable[[str], object] = print,
     ) -> None:
@@ -104,6 +108,7 @@ class FlownCraft:
         self._spec = spec
         self._dictionary = dictionary
         self._saved = saved
+        self._attachments = [] if viewers is None else viewers.attachments
         self._journal = journal
         self._packets = Collected(MOST_PACKETS)
         self._news = News()
@@ -114,6 +119,7 @@ class FlownCraft:
             realtime=realtime,
             ports=ports,
             ros_master=ros_master,
+            viewers=viewers,
             pause=(lambda: None) if journal is None else journal.mark,
             note=note,
         )
@@ -127,7 +133,7 @@ class FlownCraft:
             flight = takeoff(
                 self._plan,
                 spec=self._spec,
-                attachments=[PacketWatch(self._sent), *([] if journal is None else [journal])],
+                attachments=[PacketWatch(self._sent), *self._attachments, *([] if journal is None else [journal])],
                 console=self._host.console,
                 policy=None if journal is None else journal.policy,
                 make_course=StandingCourse,
@@ -166,6 +172,11 @@ class FlownCraft:
     def step(self, until_ns: int) -> bool:
         """See `Craft.step`."""
         return self._run.step(until_ns)
+
+    def stand(self) -> None:
+        """See `Craft.stand`."""
+        if not self.is_over:
+            self._host.stand()
 
     def next_event(self) -> int | None:
         """See `Craft.next_event`."""

@@ -121,6 +121,9 @@ class RemoteCraft:
         self.script.advance()
         return True
 
+    def stand(self) -> None:
+        """See `Craft.stand`: what arrives waits in the socket."""
+
     def next_event(self) -> int | None:
         """See `Craft.next_event`."""
         return None

@@ -72,6 +72,9 @@ class Craft(Protocol):
     def step(self, until_ns: int) -> bool:
         """Go on for a short while, to a virtual time in ns at the most; whether it did."""
 
+    def stand(self) -> None:
+        """Its time stands still for a short while."""
+
     def next_event(self) -> int | None:
         """Virtual time in ns of the next thing to happen; None when there is nothing, or it is not known."""
 
@@ -194,6 +197,7 @@ class ConsoleSession:
         self._look_for_the_end()
         if not self.moves:
             self._stood = True
+            self.craft.stand()
             self.gather()
             return False
         if self._stood:
