@@ -76,7 +76,7 @@ def test_the_guide_s_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     space: dict[str, Any] = {}
     for example in EXAMPLES:
         exec(compile(example.replace("seconds=20", "seconds=3").replace("seeds=20", "seeds=6"), GUIDE, "exec"), space)
-    assert space["run"].trace == cfepy.run("capture", seconds=3, seed=3, tasks="greenlet").trace
+    assert space["run"].trace == cfepy.run("capture", seconds=3, seed=3, tasks="thread").trace
     assert space["positions"].shape == (len(space["joints"]), 7)
     assert space["again"].problems
 

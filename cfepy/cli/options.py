@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 Options = argparse._ActionsContainer  # a parser, or a group of its options
 LONGEST_S = 1e9  # virtual time is a signed 64-bit number of ns
 SLOWEST, FASTEST = 1e-3, 1e9  # times real time
-DEFAULT_SEED, DEFAULT_TASKS, DEFAULT_SCHEDULE, DEFAULT_STALL_S = 0, "thread", "fifo", 10.0
+DEFAULT_SEED, DEFAULT_TASKS, DEFAULT_SCHEDULE, DEFAULT_STALL_S = 0, "auto", "fifo", 10.0
+TASK_KINDS = (DEFAULT_TASKS, "thread", "greenlet")
 
 POINTS_HELP = (
     "before each of its lines, before each access to attributes, items and variables that tasks may share, or behind "
@@ -65,8 +66,8 @@ def _add_board(parser: Options) -> None:
 
 
 def _add_tasks(parser: Options) -> None:
-    text = f"what tasks run on (default: {DEFAULT_TASKS})"
-    parser.add_argument("--tasks", choices=("thread", "greenlet"), default=DEFAULT_TASKS, help=text)
+    text = "what tasks run on (default: auto, greenlets where they are installed, else threads); the run is the same"
+    parser.add_argument("--tasks", choices=TASK_KINDS, default=DEFAULT_TASKS, help=text)
 
 
 def _add_schedule(parser: Options) -> None:

@@ -26,7 +26,7 @@ from cfepy.exploration.shrink import NotedFlight, fly_noting
 from cfepy.exploration.trial import Trial, told_as
 from cfepy.exploration.verdict import Verdict
 from cfepy.mission import Mission
-from cfepy.rtos import Decision, From, Policy, Schedule
+from cfepy.rtos import GREENLET, Decision, From, Policy, Schedule, task_kind
 
 LENGTH_BYTES = 8
 
@@ -255,7 +255,7 @@ class Forks(Generic[T]):
     @staticmethod
     def can_fork(trial: object, schedule: Schedule) -> bool:
         """Whether it goes on from an instant, on greenlets, on a system that can fork."""
-        has_instant = schedule.from_ns and isinstance(trial, Trial) and trial.plan.tasks == "greenlet"
+        has_instant = schedule.from_ns and isinstance(trial, Trial) and task_kind(trial.plan.tasks).name == GREENLET
         return bool(has_instant and hasattr(os, "fork"))
 
     def close(self) -> None:

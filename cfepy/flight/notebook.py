@@ -72,7 +72,7 @@ def page_of_run(
         events: all events.
         console: all lines.
     """
-    about = f"{results.virtual_s:.3f} virtual s, seed {results.seed}, board {results.board}, {results.tasks} tasks"
+    about = f"{results.virtual_s:.3f} virtual s, seed {results.seed}, board {results.board}, {results.task_kind}"
     about += f", {results.speed:.1f} x real time" if results.trace else ", flies"
     parts = [headline(results.mission, about), *map(trouble, problems)]
     parts += [headline("note", note) for note in notes]

@@ -31,7 +31,7 @@ class MissionOptions(TypedDict, total=False):
     Attributes:
         seed: of everything random.
         board: name of a board, or its file.
-        tasks: "thread" or "greenlet".
+        tasks: "thread", "greenlet", or "auto", which is greenlets where they are installed, else threads.
         schedule: which task goes first, such as "random:7".
         faults: what goes wrong: a plan's file, "seed:N", a `cfepy.faults.FaultPlan` or a dictionary of that form.
         play: a bag or an MCAP file that is played into the mission.

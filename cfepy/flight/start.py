@@ -116,7 +116,7 @@ def replay(journal: str | os.PathLike[str], *, tasks: str | None = None) -> Run:
 
     Args:
         journal: the file.
-        tasks: "thread" or "greenlet"; None is that of the journal.
+        tasks: "thread", "greenlet" or "auto"; None is that of the journal.
 
     Returns:
         The run. Its trace is the journal's when it was the same.

@@ -14,7 +14,6 @@ import stat
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +27,7 @@ from cfepy.journal.mission_files import MissionFile
 from cfepy.mission import LAUNCH_FILES, Mission, MissionSpec
 from cfepy.nodes import NodeConfig
 from cfepy.pilot import LAUNCH, NODE, RUN, RunPlan, boot_of
+from cfepy.rtos import GREENLET, THREAD, has_greenlets
 from cfepy.status import UsageError
 
 MOST_NAMED = 8
@@ -89,10 +89,10 @@ def staged(journal: Journal, from_disk: bool = False) -> Iterator[Stage]:
 
 def _on_tasks_here(plan: RunPlan) -> tuple[RunPlan, tuple[str, ...]]:
     """The plan with tasks that this Python has, since all kinds make the same run; what to say of the change."""
-    if plan.tasks != "greenlet" or find_spec("greenlet") is not None:
+    if plan.tasks != GREENLET or has_greenlets():
         return plan, ()
     note = "recorded on greenlets, and greenlet is not installed here: replayed on threads, which make the same run"
-    return replace(plan, tasks="thread"), (note,)
+    return replace(plan, tasks=THREAD), (note,)
 
 
 def _note(changed: Sequence[MissionFile], from_disk: bool, left_out: Sequence[MissionFile]) -> str:

@@ -33,7 +33,7 @@ from cfepy.nodes import Accesses
 from cfepy.osal import FileSystem, Network
 from cfepy.own_code import is_own_code
 from cfepy.psp import EEPROM_BYTES, BoardProfile, MemoryBudget, PanicError, Retained, load_profile
-from cfepy.rtos import Policy, StallWatch, Stopwatch, Task, make_kernel
+from cfepy.rtos import AUTO, Policy, StallWatch, Stopwatch, Task, make_kernel, task_kind
 from cfepy.sb import SoftwareBus
 from cfepy.status import StallError
 from cfepy.trace import Trace
@@ -73,7 +73,7 @@ class Mission:
         mission: a startup script, a mission's folder, the name of a shipped mission, or a `MissionSpec`.
         seed: of everything random in the mission.
         board: name or file of a board profile; None takes the mission's own.
-        tasks: "thread" or "greenlet".
+        tasks: "thread", "greenlet" or "auto": greenlets where they are installed (`cfepy.rtos.context_choice`).
         console: where lines go; None prints them.
         policy: decides which task runs next where there is a choice (`cfepy.rtos.policy`); None is first come, first
             served.
@@ -82,6 +82,7 @@ class Mission:
 
     Attributes:
         spec, seed, tasks, board, config, console: as given, or as found.
+        why_tasks: why "auto" left installed greenlets alone; empty when it did not.
         kernel, trace, files, network: the parts that outlive a reset.
         outside: the door through which anything comes in while it runs.
         record: what the report tells; `record.resets` are the resets so far.
@@ -99,7 +100,7 @@ class Mission:
         *,
         seed: int = 0,
         board: str | BoardProfile | None = None,
-        tasks: str = "thread",
+        tasks: str = AUTO,
         console: Console | None = None,
         policy: Policy | None = None,
         trace: Trace | None = None,
@@ -107,7 +108,7 @@ class Mission:
     ) -> None:
         self.spec = mission if isinstance(mission, MissionSpec) else read_mission(mission)
         self.seed = seed
-        self.tasks = tasks
+        self.tasks, self.why_tasks = kind = task_kind(tasks)
         self.board = board if isinstance(board, BoardProfile) else load_profile(board or self.spec.board)
         limits = self.spec.limits.config(self.board, self.spec.has_nodes)
         ids = self.spec.ids
@@ -119,7 +120,7 @@ class Mission:
         self.files = FileSystem(self.spec.folder)
         self.network = Network()
         switch_ns = self.board.cpu_costs().switch_ns
-        self.kernel = kernel = make_kernel(tasks, self.trace, policy, self.board.tick_ns, switch_ns, seed)
+        self.kernel = kernel = make_kernel(kind.name, self.trace, policy, self.board.tick_ns, switch_ns, seed)
         self.trace.take_times(lambda: kernel.now)
         self.outside = Outside(self.kernel, self.network, self.trace)
         self.outside.do = HostActs(self).do

@@ -29,7 +29,7 @@ from cfepy.mission import (
 from cfepy.nodes import CppNode
 from cfepy.pilot.company import boot_of
 from cfepy.pilot.course import BOOT_S, DEFAULT_S, LONGEST_S, NODE_S
-from cfepy.rtos import STALL_S, Schedule
+from cfepy.rtos import AUTO, STALL_S, Schedule
 from cfepy.status import UsageError
 
 RUN, LAUNCH, NODE = "run", "launch", "node"
@@ -72,7 +72,7 @@ class RunPlan:
             node; None is as long as the script takes, or what each command takes by itself.
         seed: of everything random in the mission.
         board: name or file; None takes the mission's own.
-        tasks: "thread" or "greenlet".
+        tasks: "thread", "greenlet", or "auto": greenlets where they are installed, else threads.
         schedule: which task goes first among equals.
         script: path of a mission script; None without one.
         stop_on_failure: the run ends with the first step of the script that fails.
@@ -98,7 +98,7 @@ class RunPlan:
     seconds: float | None = None
     seed: int = 0
     board: str | None = None
-    tasks: str = "thread"
+    tasks: str = AUTO
     schedule: Schedule = field(default_factory=Schedule)
     script: str | None = None
     stop_on_failure: bool = False

@@ -15,6 +15,7 @@ from cfepy.ground import kind_of, names_in
 from cfepy.mission import CORE_APPS, Mission, Reset, Traffic, described, endless_waits
 from cfepy.monitors.record import DeadlineRecord, InvariantRecord, InvariantRecords, InversionRecord
 from cfepy.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
+from cfepy.rtos import TaskKind
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
@@ -184,7 +185,8 @@ class Results:
     `ros_peers` one for each ROS node outside that the run was joined to, `viewer_peers` one for what went each way
     between each viewer and each topic, `beside` one for each mission that flew beside this one, `script_problems` what
     of the startup script could not be started, `endless_waits` a line for each task that nobody can wake any more,
-    `missed_moves` which moves of the schedule were not possible.
+    `missed_moves` which moves of the schedule were not possible, `why_tasks` why tasks are threads where
+    nobody asked for them and greenlets are installed.
     """
 
     mission: str
@@ -194,6 +196,7 @@ class Results:
     seed: int
     board: str
     tasks: str
+    why_tasks: str
     trace: str
     booted_s: float | None
     resets: list[ResetResult]
@@ -237,6 +240,7 @@ class Results:
             seed=mission.seed,
             board=mission.board.name,
             tasks=mission.tasks,
+            why_tasks=mission.why_tasks,
             trace=trace,
             booted_s=None if mission.booted is None else mission.booted / NS_PER_S,
             resets=[_reset(each) for each in mission.record.resets],
@@ -263,6 +267,11 @@ class Results:
                 *(f"deadlock: {circle}" for circle in at.deadlocks),
             ],
         )
+
+    @property
+    def task_kind(self) -> TaskKind:
+        """What its tasks ran on, and why not on greenlets that are installed."""
+        return TaskKind(self.tasks, self.why_tasks)
 
     @property
     def never_happened(self) -> list[str]:

@@ -140,7 +140,7 @@ def _header(flown: Flown, numbers: Numbers, about: About, collector: Collector) 
         "Schedule": escaped(about.schedule),
         "Virtual time": f"{numbers.show('virtual_s', f'{results.virtual_s:,.3f}')} s",
         "OPERATIONAL at": booted,
-        "Tasks": escaped(results.tasks),
+        "Tasks": escaped(str(results.task_kind)),
         "Made from": escaped(about.source),
         "Versions": escaped(f"cfepy {__version__}, Python {platform.python_version()}"),
         "Trace": element("code", escaped(results.trace)),

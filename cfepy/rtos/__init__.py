@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from cfepy.rtos.abreast import Abreast
 from cfepy.rtos.aims import Aim, child_name
+from cfepy.rtos.context_choice import AUTO, GREENLET, THREAD, TaskKind, has_greenlets, task_kind
 from cfepy.rtos.costs import CpuCosts
 from cfepy.rtos.cpus import allowed_cpus
 from cfepy.rtos.errors import DeadlockError, InjectedCrash
@@ -42,17 +43,20 @@ from cfepy.rtos.wait_graph import Wait, circles, endless
 from cfepy.rtos.watchdog import STALL_S, LastResort, StallWatch
 
 __all__ = [
+    "AUTO",
     "CALLS",
     "DEPTH",
     "EMPTY",
     "ENDLESS",
     "FOREVER",
+    "GREENLET",
     "HOLD",
     "ORDER",
     "PCT",
     "PLACE",
     "STALL_S",
     "STEPS",
+    "THREAD",
     "TIMEOUT",
     "Abreast",
     "Aim",
@@ -91,6 +95,7 @@ __all__ = [
     "Stopwatch",
     "Task",
     "TaskExit",
+    "TaskKind",
     "VectorClocks",
     "Wait",
     "WaitList",
@@ -98,6 +103,8 @@ __all__ = [
     "child_name",
     "circles",
     "endless",
+    "has_greenlets",
     "make_kernel",
     "plain_name",
+    "task_kind",
 ]

@@ -135,6 +135,7 @@ class StallWatch:
         self._thread: threading.Thread | None = None
         self._process = 0  # in which the thread looks
         self._host_ident = 0
+        self._waker = Waker()
         self._is_paused = self._has_lost = self._was_wanted = False
         self._stand: _Stand | None = None
         self._wanted_s = self._ending_s = 0.0
@@ -150,6 +151,7 @@ class StallWatch:
             self._process = os.getpid()
             self._arm()
             self._over = threading.Event()
+            self._waker.begin()
             self._thread = threading.Thread(target=self._look_on, name="cfepy stall watch", daemon=True)
             self._thread.start()
 
@@ -164,6 +166,7 @@ class StallWatch:
         self._process = 0
         if self._thread is not None:
             self._thread.join()
+        self._waker.end()
         if self.last_resort is not None:
             self.last_resort.disarm()
 
@@ -338,11 +341,18 @@ class StallWatch:
         """Have the running task, or a finalizer, end."""
         task = self._kernel.current
         with _quiet():
-            is_back = self._is_back(task, POLL_S) or insist(
-                lambda: self._strike(task), lambda seconds: self._is_back(task, seconds)
-            )
+            is_back = self._is_back(task, POLL_S) or self._insist(task, lambda: None)
+            if not is_back and self._thread_of(task) == self._waker.ident:
+                is_back = self._insist(task, self._waker.wake)
         if not is_back:
             self._lose(task)
+
+    def _insist(self, task: Task, then: Callable[[], None]) -> bool:
+        def strike() -> None:
+            self._strike(task)
+            then()
+
+        return insist(strike, lambda seconds: self._is_back(task, seconds))
 
     def _strike(self, task: Task) -> None:
         kernel = self._kernel
@@ -512,6 +522,45 @@ def _loop_line(code: CodeType, places: Sequence[_Place]) -> int:
     start, end = max(around, key=lambda loop: (loop[0], -loop[1]))
     lines = (step.positions.lineno for step in steps if start <= step.offset <= end and step.positions is not None)
     return min((line for line in lines if line is not None), default=places[0].line)
+
+
+# -- out of a wait -----------------------------------------------------------------------------------------------------
+
+
+class Waker:
+    """Lets Python's main thread look up from a function in C that waits, such as `time.sleep` or `input`.
+
+    What is to be raised in a thread waits until that executes Python. A signal lets the main thread do so: its handler,
+    in the middle of the wait. SIGURG is one that means nothing to a process that has no handler for it.
+
+    Attributes:
+        ident: of the main thread, while it can be woken; 0 else.
+    """
+
+    def __init__(self) -> None:
+        self.ident = 0
+
+    def begin(self) -> None:
+        """From now on the calling thread can be woken, if it is the main one and the system has such signals."""
+        if not hasattr(signal, "pthread_kill") or threading.current_thread() is not threading.main_thread():
+            return
+        if signal.getsignal(signal.SIGURG) in (signal.SIG_DFL, _look_up):
+            signal.signal(signal.SIGURG, _look_up)
+            self.ident = threading.get_ident()
+
+    def wake(self) -> None:
+        """Wake it, from another thread."""
+        signal.pthread_kill(self.ident, signal.SIGURG)
+
+    def end(self) -> None:
+        """Leave it alone."""
+        if self.ident == threading.get_ident() and signal.getsignal(signal.SIGURG) is _look_up:
+            signal.signal(signal.SIGURG, signal.SIG_DFL)
+        self.ident = 0
+
+
+def _look_up(*_: object) -> None:
+    """At the first step of this, Python raises what it was told to."""
 
 
 # -- the last resort ---------------------------------------------------------------------------------------------------

@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +18,7 @@ from cfepy.attachment import Attachment
 from cfepy.flight import SEED, ExpectationError, Faults, Flight, fault_attachments, fault_text, schedule_of
 from cfepy.host_system import command_line
 from cfepy.pilot import RunPlan
-from cfepy.rtos import NotingPolicy, Policy, Schedule
+from cfepy.rtos import AUTO, NotingPolicy, Policy, Schedule
 from cfepy.status import UsageError
 from cfepy.testing.hypothesis_tests import ExampleTests
 
@@ -117,7 +116,7 @@ class Missions:
             board: name or file of a board; None takes the mission's own.
             seed: of everything random in it; None takes --cfepy-seed.
             schedule: which task goes first, such as "random:7"; None takes that of @explore or --cfepy-schedule.
-            tasks: "thread" or "greenlet"; None takes --cfepy-tasks.
+            tasks: "thread", "greenlet" or "auto"; None takes --cfepy-tasks.
             faults: what goes wrong: a plan's path, "seed:N", a `cfepy.faults.FaultPlan` or a dictionary of that form.
             args: of a launch file.
             races: accesses of Python code that nothing orders let the test fail; None is as @explore says.
@@ -131,7 +130,7 @@ class Missions:
             launch_args=tuple((key, str(value)) for key, value in (args or {}).items()),
             seed=self._config.getoption("--cfepy-seed") if seed is None else seed,
             board=board,
-            tasks=tasks or self._config.getoption("--cfepy-tasks") or self._usual_tasks(),
+            tasks=tasks or self._config.getoption("--cfepy-tasks") or AUTO,
             schedule=self._schedule(schedule),
             faults=self._fault_text(faults),
             stall=self._stall(),
@@ -229,10 +228,6 @@ class Missions:
         if not 0 <= seconds < float("inf"):
             raise UsageError(f"{text!r} is no number of seconds; give 0 for never, or more", field="cfepy_stall")
         return seconds
-
-    def _usual_tasks(self) -> str:
-        """Greenlets are quicker where there are many runs, and the runs are the same."""
-        return "greenlet" if self._conditions is not None and find_spec("greenlet") is not None else "thread"
 
     def command(self, item: pytest.Item, schedule: Schedule | None = None, example: str | None = None) -> str:
         """The command that does a test again.

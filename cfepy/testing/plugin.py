@@ -31,7 +31,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help="schedule of missions that a test gives none: fifo, random:SEED, pct:SEED:DEPTH, at:DECISION=CHOICE,...;"
         " of several missions in one test with ';' between them. Tests with @explore are run under this one alone",
     )
-    group.addoption("--cfepy-tasks", choices=["thread", "greenlet"], default=None, help="what missions' tasks run on")
+    group.addoption("--cfepy-tasks", choices=["auto", "thread", "greenlet"], help="what missions' tasks run on")
     stall = (
         "seconds of wall time after which a task that does not give up the CPU fails its test; 0: never (default: 10)"
     )

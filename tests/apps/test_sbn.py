@@ -269,7 +269,7 @@ def test_a_mission_does_not_fly_beside_itself() -> None:
 def test_a_journal_is_replayed_without_the_other_mission(tmp_path: Path) -> None:
     journal = tmp_path / "run.cfepy"
     flown = record(RunPlan(("pair",), seconds=3, beside=(CLIENT,)), str(journal))
-    again = replay(read_journal(str(journal)), tasks="greenlet")
+    again = replay(read_journal(str(journal)), tasks="thread")
     assert flown.results.beside[0]["taken"] > 10
     assert again.verdict.same
     assert again.flown.trace == flown.trace

@@ -50,7 +50,7 @@ def test_every_option_of_every_command(monkeypatch: pytest.MonkeyPatch) -> None:
         ("cfepy topic echo --for 2 capt", {"capture"}),
         ("cfepy tbl show --mission capt", {"capture"}),
         ("cfepy run lab --board rx", {"rx64m"}),
-        ("cfepy run lab --tasks ", {"thread", "greenlet"}),
+        ("cfepy run lab --tasks ", {"auto", "thread", "greenlet"}),
         ("cfepy run lab --for ", set()),
         ("cfepy cmd lab CFE_ES_NO", {"CFE_ES_NOOP"}),
         ("cfepy cmd lab CFE_ES_RESTART Re", {"RestartType="}),

@@ -49,7 +49,7 @@ def trace_of(text: str) -> str:
     return found[1]
 
 
-@pytest.mark.parametrize("tasks", [[], ["--tasks", "greenlet"]])
+@pytest.mark.parametrize("tasks", [[], ["--tasks", "thread"]])
 def test_a_run_is_replayed_with_its_console_and_report(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], tasks: list[str]
 ) -> None:

@@ -89,7 +89,9 @@ def test_the_debugger_of_python(
     typed = "p number\nc\n"
     options = ["--pdb", name, "--break", "msg.data == 3"]
     assert replayed(journal, *options, typed=typed, monkeypatch=monkeypatch) == 0
-    assert "(Pdb) 3\n" in capsys.readouterr().out
+    out, err = capsys.readouterr()
+    assert "(Pdb) 3\n" in out
+    assert "tasks run on threads, since Python's debugger in one of them needs a thread of its own" in err
 
 
 def test_an_application_that_there_is_not(

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
+from cfepy.rtos import AUTO, task_kind
 from tests.cli.conftest import Write
 
 SMALL_BOARD = "name: small\nsram: [{name: all, size: 100 KiB}]\nlimits: {tbl_buf_memory_bytes: 200000}\n"
@@ -154,7 +155,7 @@ def test_numbers_as_json(make_mission: Write, tmp_path: Path) -> None:
     numbers = json.loads(file.read_text())
     assert numbers["virtual_s"] == pytest.approx(2, abs=0.001)
     assert numbers["speed"] == pytest.approx(numbers["virtual_s"] / numbers["wall_s"])
-    assert (numbers["seed"], numbers["board"], numbers["tasks"]) == (7, "rx64m", "thread")
+    assert (numbers["seed"], numbers["board"], numbers["tasks"]) == (7, "rx64m", task_kind(AUTO).name)
     assert len(numbers["trace"]) == 32
     topic = next(topic for topic in numbers["topics"] if topic["msg_id"] == 0x0890)
     assert topic["dropped"] == topic["dropped_limit"] == topic["sent"] - 4
@@ -202,7 +203,7 @@ def test_one_digest_however_it_is_run(make_mission: Write, tmp_path: Path, capsy
     folder = make_mission("Chatty", "Quiet", yaml="board: rx64m\n")
     expected = digest(capsys, folder)
     for options in (
-        ("--tasks", "greenlet"),
+        ("--tasks", "thread"),
         ("--realtime", "50"),
         ("--quiet",),
         ("--trace", str(tmp_path / "trace.txt")),
@@ -287,10 +288,11 @@ def test_ctrl_c_ends_a_run_with_its_report(make_mission: Write, options: tuple[s
         ("    import time\n    time.sleep(1000)\n", "task QUIET has waited for something outside of the simulation"),
     ],
 )
-def test_ctrl_c_ends_the_run_whatever_a_task_does(make_mission: Write, body: str, told: str) -> None:
+@pytest.mark.parametrize("tasks", [pytest.param("thread", marks=pytest.mark.slow), "greenlet"])
+def test_ctrl_c_ends_the_run_whatever_a_task_does(make_mission: Write, body: str, told: str, tasks: str) -> None:
     folder = make_mission("Quiet")
     (folder / "apps.py").write_text(f"def Quiet(cfe):\n{body}")
-    process = start("run", str(folder), "--for", "1000000")
+    process = start("run", str(folder), "--for", "1000000", "--tasks", tasks)
     assert process.stdout is not None
     while "Loading file" not in process.stdout.readline():
         pass

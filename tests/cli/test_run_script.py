@@ -87,7 +87,7 @@ def test_one_trace_however_it_is_run(
     make_mission: Write, script: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder, traces = make_mission("Quiet", "Chatty"), set()
-    for options in ((), ("--realtime", "50"), ("--tasks", "greenlet"), ("--trace", str(tmp_path / "trace.txt"))):
+    for options in ((), ("--realtime", "50"), ("--tasks", "thread"), ("--trace", str(tmp_path / "trace.txt"))):
         assert run(folder, script, GOOD, *options) == 0
         traces.add(capsys.readouterr().out.splitlines()[-1])
     assert len(traces) == 1

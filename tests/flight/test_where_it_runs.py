@@ -65,13 +65,13 @@ def usual(counter: str) -> str:
     return digest(counter, "thread")
 
 
-def in_thread(work: Callable[..., Any], *args: Any) -> Future[Any]:
+def in_thread(work: Callable[..., Any], *args: Any, **options: Any) -> Future[Any]:
     """Begin something in another thread, which ends with the process at the latest."""
     result: Future[Any] = Future()
 
     def run() -> None:
         try:
-            result.set_result(work(*args))
+            result.set_result(work(*args, **options))
         except BaseException as error:
             result.set_exception(error)
 
@@ -128,6 +128,16 @@ def test_a_mission_on_threads_goes_on_in_another_thread(counter: str, usual: str
 
     with flying(counter, "thread") as flight:
         assert in_thread(go_on).result(LONGEST_S) == usual
+
+
+def test_a_mission_that_began_in_another_thread_goes_on_in_a_third(counter: str, usual: str) -> None:
+    """As with asyncio.to_thread, which takes any thread of a pool."""
+    flight = in_thread(cfepy.boot, counter, seed=7).result(LONGEST_S)
+    with flight:
+        in_thread(flight.run_until, SECONDS).result(LONGEST_S)
+        assert flight.trace == usual
+    run = in_thread(lambda: cfepy.run(counter, seconds=0.1)).result(LONGEST_S)
+    assert str(run.results.task_kind) == "thread tasks (begun outside of Python's main thread)"
 
 
 def test_greenlets_of_another_thread_say_so(counter: str) -> None:

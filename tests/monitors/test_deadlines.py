@@ -325,8 +325,8 @@ def test_every_overrun_is_in_the_trace_and_the_run_is_deterministic(tmp_path: Pa
     text = "deadlines: {apps: {WORKER: {period: 100 ms, jitter: 5 ms}}}\n"
     with_them = [fly(tmp_path, text).trace for _ in range(2)]
     path = mission(tmp_path, text)
-    greenlets = pilot.fly(RunPlan((path,), seconds=3.0, tasks="greenlet")).trace
-    assert with_them[0] == with_them[1] == greenlets != fly(tmp_path, "name: plain\n").trace
+    threads = pilot.fly(RunPlan((path,), seconds=3.0, tasks="thread")).trace
+    assert with_them[0] == with_them[1] == threads != fly(tmp_path, "name: plain\n").trace
 
 
 def test_deadlines_that_are_kept_leave_no_mark(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ import pytest
 from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.pilot.results import AppResult, Results, TopicResult, mark
+from cfepy.rtos import AUTO, task_kind
 
 APP = """
 def Sender(cfe):
@@ -88,7 +89,7 @@ def test_an_app_that_is_not_there(tmp_path: Path) -> None:
 def test_the_run_itself(tmp_path: Path) -> None:
     results = results_of(tmp_path, "Sender")
     assert (results.virtual_s, results.wall_s, results.speed) == (3.0, 0.5, 6.0)
-    assert (results.seed, results.board, results.tasks) == (4, "linux", "thread")
+    assert (results.seed, results.board, results.tasks) == (4, "linux", task_kind(AUTO).name)
     assert results.events["INFORMATION"] > 20
     assert results.sb["MsgLimitErrorCounter"] == 1
     assert results.sb["PipeOverflowErrorCounter"] == 3

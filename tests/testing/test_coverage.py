@@ -27,14 +27,14 @@ RUN = ["-m", "coverage", "run", "-m", "cfepy", "run", "m", "--for", "1", "--quie
 TEST = ["-m", "pytest", "-q", "-p", "cfepy.testing.plugin", "--cov", "--cov-report="]
 
 
-@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+@pytest.mark.parametrize("tasks", ["auto", "thread", "greenlet"])
 @pytest.mark.parametrize("command", [RUN, [*TEST, "--cfepy-tasks"], [*TEST, "-n2", "--cfepy-tasks"]])
 def test_every_line_that_ran_is_counted(command: list[str], tasks: str, tmp_path: Path) -> None:
     for name, text in FILES.items():
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
         path.write_text(text)
-    concurrency = "thread" if tasks == "thread" else "thread, greenlet"
+    concurrency = "thread, greenlet" if tasks == "greenlet" else "thread"
     (tmp_path / ".coveragerc").write_text(f"[run]\nsource = m\nconcurrency = {concurrency}\n")
     unasked = {name: value for name, value in os.environ.items() if not name.startswith(("COV_", "COVERAGE_"))}
     environ = {**unasked, "PYTHONPATH": import_path()}

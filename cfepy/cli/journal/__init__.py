@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 
 from cfepy.cli.flight_options import add_outputs
-from cfepy.cli.options import add_from_disk, add_until
+from cfepy.cli.options import TASK_KINDS, add_from_disk, add_until
 
 _REPLAY_STATUS = """exit status:
   0    the same run as far as it is known: every checkpoint, and at the end the digests of trace and numbers
@@ -38,7 +38,7 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     add_until(replay, "the replay")
     _add_stops(replay)
     add_from_disk(replay)
-    replay.add_argument("--tasks", choices=("thread", "greenlet"), help="what tasks run on (default: as recorded)")
+    replay.add_argument("--tasks", choices=TASK_KINDS, help="what tasks run on (default: as recorded)")
     replay.add_argument("--console", action="store_true", help="show the flight computer's console of a launch, too")
     add_outputs(replay)
     replay.set_defaults(module="journal.replay")

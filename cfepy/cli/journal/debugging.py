@@ -21,6 +21,7 @@ from cfepy.debugger import Debugger, GdbSession, Journey, Keepers
 from cfepy.journal import Replay
 from cfepy.mission import CORE_APPS, MissionSpec
 from cfepy.pilot import Flown
+from cfepy.rtos import GREENLET, task_kind
 from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
 from cfepy.units import NS_PER_S
@@ -75,7 +76,7 @@ def _may_fork(arguments: argparse.Namespace, replay: Replay) -> bool:
     """Whether processes may be forked on the way, so that the way back is short."""
     wanted = arguments.back or arguments.back_to is not None
     writes = arguments.bag is not None or arguments.trace is not None  # while the run goes on
-    is_alone = replay.plan.tasks == "greenlet" and arguments.pdb is None and hasattr(os, "fork")
+    is_alone = task_kind(replay.plan.tasks).name == GREENLET and arguments.pdb is None and hasattr(os, "fork")
     return wanted and is_alone and not writes and sys.stdin is sys.__stdin__
 
 

@@ -7,7 +7,6 @@ import contextlib
 import os
 import sys
 from collections.abc import Iterator
-from importlib.util import find_spec
 from itertools import islice
 from typing import TextIO
 
@@ -19,7 +18,8 @@ from cfepy.cli.run.run import View, fly_again
 from cfepy.cli.trace_text import TraceText
 from cfepy.journal import Journal, Replay, ReplayVerdict, read_journal, staged
 from cfepy.mission import Mission
-from cfepy.pilot import LAUNCH, NODE, STALLED, SUDDEN
+from cfepy.pilot import LAUNCH, NODE, STALLED, SUDDEN, RunPlan
+from cfepy.rtos import GREENLET, THREAD, has_greenlets, task_kind
 from cfepy.trace import TimedRecords
 from cfepy.units import NS_PER_S
 
@@ -109,9 +109,7 @@ def replaying(arguments: argparse.Namespace, journal: Journal) -> Iterator[Repla
             print(f"cfepy: {note}", file=sys.stderr, flush=True)
         begins_there = (arguments.step or _looks_into(arguments)) and not arguments.stops
         until_ns = None if arguments.until is None or begins_there else round(arguments.until * NS_PER_S)
-        tasks = arguments.tasks if arguments.pdb is None else "thread"  # only a thread has a debugger of its own
-        if tasks is None and _goes_back(arguments) and arguments.gdb is None and find_spec("greenlet") is not None:
-            tasks = "greenlet"  # which the way back is shorter with, and the run is the same
+        tasks = _tasks(arguments, stage.plan)
         replay = Replay(journal, stage, tasks=tasks, until_ns=until_ns, describe=lines.describe)
         replay.attachments.append(lines)
         yield replay
@@ -135,6 +133,19 @@ def _fly(arguments: argparse.Namespace, replay: Replay) -> tuple[int, Replay]:
 
     looking_on = [each for each in replay.attachments if isinstance(each, RecordLines)]
     return fly_with_debugger(arguments, replay, view, looking_on)
+
+
+def _tasks(arguments: argparse.Namespace, plan: RunPlan) -> str | None:
+    """What tasks run on, with which the run is the same; None for what the run was recorded with."""
+    asked: str | None = arguments.tasks
+    if arguments.pdb is not None:
+        if task_kind(asked or plan.tasks).name != THREAD:
+            text = "tasks run on threads, since Python's debugger in one of them needs a thread of its own"
+            print(f"cfepy: {text}", file=sys.stderr, flush=True)
+        return THREAD
+    if asked is None and _goes_back(arguments) and arguments.gdb is None and has_greenlets():
+        return GREENLET  # which the way back is shorter with
+    return asked
 
 
 def _goes_back(arguments: argparse.Namespace) -> bool:

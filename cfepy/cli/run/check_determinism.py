@@ -11,7 +11,6 @@ import dataclasses
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.util import find_spec
 from typing import Any
 
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
@@ -20,6 +19,7 @@ from cfepy.cli.run.compared_runs import FirstDifference, RunInProcess, facts_of,
 from cfepy.pilot import RunPlan
 from cfepy.pilot.determinism import RunEndedError, first_parting
 from cfepy.pilot.determinism_look import Look
+from cfepy.rtos import AUTO, GREENLET, THREAD, has_greenlets
 from cfepy.status import UsageError
 
 MOST_CONTACTS = 20
@@ -104,9 +104,9 @@ def _tell_contacts(contacts: Sequence[str]) -> None:
 
 
 def _variants(count: int, tasks: str) -> list[Variant]:
-    kinds = [tasks]
-    if find_spec("greenlet") is not None:
-        kinds.append("thread" if tasks == "greenlet" else "greenlet")
+    kinds = [THREAD if tasks == AUTO else tasks]
+    if has_greenlets():
+        kinds.append(THREAD if tasks == GREENLET else GREENLET)
     return [Variant(number, kinds[number % len(kinds)]) for number in range(count)]
 
 

@@ -33,7 +33,7 @@ def show_speed(results: Results, stream: TextIO) -> None:
     """Print how long the run was, and what it was on."""
     line = f"{results.virtual_s:.3f} virtual s in {results.wall_s:.3f} s: {results.speed:.1f} x real time"
     stream.write("\n")
-    show_paragraph(f"{line}, board {results.board}, {results.tasks} tasks, seed {results.seed}", stream)
+    show_paragraph(f"{line}, board {results.board}, {results.task_kind}, seed {results.seed}", stream)
 
 
 def _topics(results: Results) -> Table:

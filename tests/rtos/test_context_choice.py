@@ -1,0 +1,39 @@
+"""Which kind of tasks a run gets that names none."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from cfepy.rtos import AUTO, GREENLET, THREAD, task_kind
+from cfepy.rtos.context_choice import ELSEWHERE, FOLLOWED
+
+
+def test_greenlets_where_they_are_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert task_kind(AUTO) == (GREENLET, "")
+    monkeypatch.setitem(sys.modules, "greenlet", None)
+    assert task_kind(AUTO) == (THREAD, "")
+
+
+@pytest.mark.parametrize("kind", ["trace", "profile"])
+def test_a_tool_that_follows_threads_gets_threads(kind: str) -> None:
+    before, set_ = getattr(threading, f"get{kind}")(), getattr(threading, f"set{kind}")
+    set_(lambda frame, event, arg: None)
+    try:
+        assert task_kind(AUTO) == (THREAD, FOLLOWED)
+        assert task_kind(GREENLET) == (GREENLET, "")
+    finally:
+        set_(before)
+
+
+def test_a_run_of_another_thread_may_go_on_in_yet_another() -> None:
+    with ThreadPoolExecutor(1) as pool:
+        assert pool.submit(task_kind, AUTO).result() == (THREAD, ELSEWHERE)
+
+
+def test_what_the_report_says_of_it() -> None:
+    assert str(task_kind(THREAD)) == "thread tasks"
+    assert str(task_kind(THREAD)._replace(why=FOLLOWED)) == f"thread tasks ({FOLLOWED})"
