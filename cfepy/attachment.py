@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from cfepy.rtos import Kernel
 from cfepy.sb import SoftwareBus
 from cfepy.trace import Trace
 
@@ -16,6 +17,14 @@ class Attachment:
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """The class of Software Bus that it needs, made of another one; every processor gets a bus of it.
+
+        Args:
+            base: what the attachments before this one need.
+        """
+        return base
+
+    def kernel(self, base: type[Kernel]) -> type[Kernel]:
+        """The class of kernel that it needs, made of another one; the mission's kernel is of it.
 
         Args:
             base: what the attachments before this one need.

@@ -26,7 +26,7 @@ from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
     from cfepy.debugger.gdb import GdbSession
-    from cfepy.rtos import Task
+    from cfepy.rtos import Kernel, Task
     from cfepy.sb import Pipe
 
 TRACEBACK = "Traceback (most recent call last)"
@@ -105,7 +105,7 @@ class Debugger(Observer):
         self._on_quit = on_quit
         self._commands = sys.stdin if commands is None else commands
         self._stream = sys.stdout if stream is None else stream
-        self._is_over = False
+        self._has_begun = self._is_over = False
         self._names: LiveNames
         self._mission: Mission
 
@@ -117,6 +117,27 @@ class Debugger(Observer):
             base = each.bus(base)
         return super().bus(base)
 
+    def kernel(self, base: type[Kernel]) -> type[Kernel]:
+        """See `Attachment.kernel`: a task that begins, or goes on with what it was doing, may stop."""
+        debugger = self
+
+        class StoppingKernel(super().kernel(base)):  # type: ignore[misc]  # mypy follows no class that is a result
+            """A kernel whose tasks a debugger can stop."""
+
+            def block(self) -> Any:
+                """See `Scheduler.block`."""
+                value = super().block()
+                debugger._look_around("goes on")
+                return value
+
+            def spawn(self, name: str, entry: Callable[[], object], *args: Any, **options: Any) -> Task:
+                """See `Kernel.spawn`."""
+                first = debugger._beginning(entry) if debugger._has_begun else entry
+                task: Task = super().spawn(name, first, *args, **options)
+                return task
+
+        return StoppingKernel
+
     def begin(self, mission: Mission) -> None:
         """See `Attachment.begin`."""
         super().begin(mission)
@@ -124,35 +145,20 @@ class Debugger(Observer):
         self._names = LiveNames(mission)
         for each in (*self._breakpoints, *self._finders):
             each.begin(mission)
-        kernel: Any = mission.kernel
-        kernel.frames_wanted = True
-        kernel.block = self._returning(kernel.block)
-        kernel.spawn = self._starting(kernel.spawn)
+        mission.kernel.frames_wanted = True
+        self._has_begun = True
 
-    def _returning(self, block: Callable[[], Any]) -> Callable[[], Any]:
-        """The kernel's `block`: a task that comes out of it goes on with what it was doing."""
+    def _beginning(self, entry: Callable[[], object]) -> Callable[[], object]:
+        """What a task does, with a look before it begins."""
 
-        def wait() -> Any:
-            value = block()
-            self._look_around("goes on")
-            return value
+        def begin() -> object:
+            task = self._kernel.current
+            if self._journey is not None and app_of(task) == self._app and self._gdb is None:
+                self._debugger_of(task).count_lines()
+            self._look_around("begins")
+            return entry()
 
-        return wait
-
-    def _starting(self, spawn: Callable[..., Task]) -> Callable[..., Task]:
-        """The kernel's `spawn`: a task begins."""
-
-        def start(name: str, entry: Callable[[], object], *args: Any, **options: Any) -> Task:
-            def begin() -> object:
-                task = self._kernel.current
-                if self._journey is not None and app_of(task) == self._app and self._gdb is None:
-                    self._debugger_of(task).count_lines()
-                self._look_around("begins")
-                return entry()
-
-            return spawn(name, begin, *args, **options)
-
-        return start
+        return begin
 
     def conclude(self) -> None:
         """See `Attachment.conclude`: at the end of the run there is a way back, too."""

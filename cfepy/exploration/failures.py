@@ -29,7 +29,7 @@ from cfepy.mission import (
 from cfepy.monitors.record import DeadlineRecord, InvariantRecords
 from cfepy.own_code import is_own_code
 from cfepy.pilot import end_of, ended_badly
-from cfepy.rtos import DeadlockError, InjectedCrash, Task, Wait
+from cfepy.rtos import DeadlockError, InjectedCrash, Kernel, Task, Wait, wrapping
 from cfepy.sb import SoftwareBus
 from cfepy.script import OVER, Outcome
 from cfepy.units import NS_PER_S
@@ -69,11 +69,14 @@ class FailureWatch(Attachment):
         """See `Attachment.bus`."""
         return self._events.bus(base) if self._levels else base
 
+    def kernel(self, base: type[Kernel]) -> type[Kernel]:
+        """See `Attachment.kernel`."""
+        return wrapping(base, {"interrupt": self._noting})
+
     def begin(self, mission: Mission) -> None:
         """See `Attachment.begin`."""
         self._mission = mission
         mission.kernel.on_task_error = self._watched(mission.kernel.on_task_error)
-        mission.kernel.interrupt = self._noting(mission.kernel.interrupt)  # type: ignore[method-assign,assignment]
         mission.console.record = self._reading(mission.console.record)
 
     def conclude(self) -> None:
@@ -107,13 +110,13 @@ class FailureWatch(Attachment):
             first.setdefault(failure.group, failure)
         return tuple(first.values())
 
-    def _noting(self, interrupt: Callable[[Task, BaseException], None]) -> Callable[[Task, BaseException], None]:
+    def _noting(self, interrupt: Callable[..., None]) -> Callable[..., None]:
         """What the fault plan calls to let an application crash, with a note of it."""
 
-        def crash(task: Task, error: BaseException) -> None:
+        def crash(kernel: Kernel, task: Task, error: BaseException) -> None:
             if isinstance(error, InjectedCrash) and task.owner is not None:
                 self._crashed.add(task.owner.name)
-            interrupt(task, error)
+            interrupt(kernel, task, error)
 
         return crash
 

@@ -17,7 +17,7 @@ from cfepy.exploration.steps import GIVES, READS, TAKES, WRITES, StepLog, TaskSt
 from cfepy.mission import Mission, MissionSpec, Processor, find_compiled
 from cfepy.nodes import WHOLE, Touch
 from cfepy.ports import PEND_FOREVER
-from cfepy.rtos import ExploringKernel, Kernel, Task, WaitList
+from cfepy.rtos import ExploringKernel, Kernel, Task, WaitList, wrapping
 from cfepy.sb import Destination, Pipe, PutHook, SoftwareBus
 from cfepy.status import UsageError
 from cfepy.tbl import TableServices
@@ -61,8 +61,7 @@ class Footprints(Attachment):
     """
 
     def __init__(self, from_ns: int = 0) -> None:
-        self._from_ns = from_ns
-        self._log: StepLog | None = None
+        self._log = StepLog(from_ns)
         self._services: dict[int, Any] = {}  # of the processor, by identity
         self._numbers: dict[int, tuple[int, Any]] = {}  # by identity: of locks, which are kept for that
         self._pipes = _Pipes(self)
@@ -70,23 +69,25 @@ class Footprints(Attachment):
     @property
     def steps(self) -> tuple[TaskStep, ...]:
         """In the order in which they were made."""
-        return () if self._log is None else self._log.steps
+        return self._log.steps
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """See `Attachment.bus`."""
         return _touching(base, self._pipes)
 
+    def kernel(self, base: type[Kernel]) -> type[Kernel]:
+        """See `Attachment.kernel`."""
+        about_waits = dict.fromkeys(("wait_on", "wake_first", "wake_all"), self._about_waits)
+        return wrapping(self._log.kernel(base), {"charge": self._charging, **about_waits})
+
     def begin(self, mission: Mission) -> None:
         """See `Attachment.begin`."""
         kernel = mission.kernel
         assert isinstance(kernel, ExploringKernel)
-        self._log = StepLog(kernel, self._from_ns)
+        self._log.begin_with(kernel)
         self._pipes.kernel = kernel
         mission.accesses.observers.append(self._take)
         kernel.watch(self)
-        _also(kernel, "charge", self._calls, self._calls)
-        for name in ("wait_on", "wake_first", "wake_all"):
-            _also(kernel, name, self._waits)
 
     def power_up(self, processor: Processor) -> None:
         """See `Attachment.power_up`."""
@@ -106,22 +107,19 @@ class Footprints(Attachment):
 
     def conclude(self) -> None:
         """See `Attachment.conclude`: what nodes do when they are ended is no part of it."""
-        if self._log is not None:
-            self._log.close()
+        self._log.close()
 
     def touch(self, thing: str, how: str = WRITES) -> None:
         """The current task touches something; see `StepLog.touch`."""
-        if self._log is not None:
-            self._log.touch(thing, how)
+        self._log.touch(thing, how)
 
     def leave(self, task: Task) -> None:
         """What a task does from now on is no part of it; see `StepLog.leave`."""
-        if self._log is not None:
-            self._log.leave(task)
+        self._log.leave(task)
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
         """See `CallObserver.called`: a service of cFE, or a lock of a node."""
-        if self._log is not None and self._is_of_calls(subject):
+        if self._is_of_calls(subject):
             wanted = self._name(subject, args) if call in _TAKING else ""
             self._log.begin(self._things(subject, call, args), wanted)
 
@@ -129,7 +127,7 @@ class Footprints(Attachment):
         """See `CallObserver.returned`: a lock is taken when a call comes back with it."""
         if call == "is_set" or not self._is_of_calls(subject):  # told of without a call
             return
-        if self._log is None or not self._log.end():
+        if not self._log.end():
             return
         if call in _ADDRESSES and isinstance(subject, TableServices):
             for handle in args if call == "get_address" else args[0]:
@@ -153,8 +151,7 @@ class Footprints(Attachment):
 
     def failed(self, subject: Any, call: str) -> None:
         """See `CallObserver.failed`."""
-        if self._log is not None:
-            self._log.fail()
+        self._log.fail()
 
     def _is_of_calls(self, subject: Any) -> bool:
         """Whether calls of its methods are told of with their ends: it is a service, or a lock of Python's."""
@@ -193,15 +190,30 @@ class Footprints(Attachment):
             self.touch(f"all in {touch.thing}", READS)
         self.touch(f"{touch.key} of {touch.thing}", how)
 
-    def _calls(self, duration_ns: int) -> None:
+    def _charging(self, charge: Callable[[Kernel, int], None]) -> Callable[[Kernel, int], None]:
+        def pay(kernel: Kernel, duration_ns: int) -> None:
+            self._calls()
+            charge(kernel, duration_ns)
+            self._calls()
+
+        return pay
+
+    def _about_waits(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        def call(kernel: Kernel, waits: WaitList, *args: Any, **options: Any) -> Any:
+            self._waits(waits)
+            return original(kernel, waits, *args, **options)
+
+        return call
+
+    def _calls(self) -> None:
         """A node calls something of ROS or Python, which may look at the ROS graph before and after others got in."""
-        if self._log is not None and not self._log.is_in_a_call:
+        if not self._log.is_in_a_call:
             self.touch(GRAPH, READS)
 
-    def _waits(self, waits: WaitList, *others: Any) -> None:
+    def _waits(self, waits: WaitList) -> None:
         """Waits within calls are those of what these are about."""
         self._pipes.wakes(waits)
-        if self._log is not None and not self._pipes.waits() and not self._log.is_in_a_call:
+        if not self._pipes.waits() and not self._log.is_in_a_call:
             self.touch(f"wait for {waits.what}")
 
 
@@ -282,16 +294,13 @@ def _things_of_bus(bus: SoftwareBus, call: str, args: tuple[Any, ...]) -> list[T
     return [(PIPES, READS)] if call == "get_pipe_id_by_name" else []
 
 
-def _also(subject: Any, name: str, before: Callable[..., object], after: Callable[..., object] | None = None) -> None:
-    """Have something called before a method of an object, and after it."""
+def _also(subject: Any, name: str, before: Callable[..., object]) -> None:
+    """Have something called before a method of an object."""
     original = getattr(subject, name)
 
     def both(*args: Any, **options: Any) -> Any:
         before(*args, **options)
-        result = original(*args, **options)
-        if after is not None:
-            after(*args, **options)
-        return result
+        return original(*args, **options)
 
     setattr(subject, name, both)
 

@@ -15,10 +15,9 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from cfepy.rtos import PLACE, ExploringKernel, Task
+from cfepy.rtos import PLACE, ExploringKernel, Kernel, Task, wrapping
 
 PLACES = ("point", "charge", "yield_cpu")
-QUIET = ("make_ready", "preempt", "wake_all")
 TIMER, OVERTAKING = -1, -2
 READS, WRITES, TAKES, GIVES, TRIES = "reads", "writes", "takes", "gives", "tries"
 HANDED, ENDS, PENDS = "handed", "ends", "pends"
@@ -93,16 +92,15 @@ _Entry = tuple[Task, int, dict[Touched, None], int, int, bool]
 
 
 class StepLog:
-    """Keeps the steps of a run.
+    """Keeps the steps of a run, of a kernel of the class that it derives.
 
     Args:
-        kernel: whose methods are wrapped; nothing of it has run.
         from_ns: virtual time from which on steps are kept; before it places are only counted.
     """
 
-    def __init__(self, kernel: ExploringKernel, from_ns: int = 0) -> None:
-        self._is_open = True
-        self._kernel = kernel
+    def __init__(self, from_ns: int = 0) -> None:
+        self._is_open = False
+        self._kernel: ExploringKernel
         self._from_ns = from_ns
         self._log: list[_Entry] = []
         self._idle = 0  # how many steps were over when nobody had anything to do the last time
@@ -112,14 +110,32 @@ class StepLog:
         self._ready: dict[Task, tuple[int, int]] = {}  # when and by which step it was woken, until its next step
         self._calls: dict[Task, _Call] = {}
         self._quiet: dict[Task, int] = {}  # in the middle of what makes others ready, if somebody waits
-        for name in PLACES:
-            setattr(kernel, name, self._passing(getattr(kernel, name)))
-        for name in QUIET:
-            setattr(kernel, name, self._quietly(getattr(kernel, name), parts=name == "preempt"))
-        hooks: dict[str, Callable[..., Any]] = {"enqueue": self._woken, "wait_on": self._waiting, "kill": self._ending}
-        hooks |= {"_time_out": self._timed_out, "_advance": self._idling}
-        for name, hook in hooks.items():
-            setattr(kernel, name, hook(getattr(kernel, name)))
+
+    def kernel(self, base: type[Kernel]) -> type[Kernel]:
+        """A class of kernel that tells of its steps.
+
+        Args:
+            base: the class to start from.
+        """
+        return wrapping(
+            base,
+            {
+                **dict.fromkeys(PLACES, self._passing),
+                "make_ready": self._quietly,
+                "wake_all": self._quietly,
+                "preempt": self._quietly_in_parts,
+                "enqueue": self._woken,
+                "wait_on": self._waiting,
+                "kill": self._ending,
+                "_time_out": self._timed_out,
+                "_advance": self._idling,
+            },
+        )
+
+    def begin_with(self, kernel: ExploringKernel) -> None:
+        """This is the kernel; nothing of it has run, and what was made with it before is no step."""
+        self._kernel = kernel
+        self._is_open = True
 
     @property
     def steps(self) -> tuple[TaskStep, ...]:
@@ -235,9 +251,11 @@ class StepLog:
 
     def _step(self) -> _Entry | None:
         """The step that the current task makes; None where none are kept."""
+        if not self._is_open:
+            return None
         kernel, log = self._kernel, self._log
         task = self._runner
-        if kernel.now < self._from_ns or task is kernel.host or kernel.current in self._gone or not self._is_open:
+        if kernel.now < self._from_ns or task is kernel.host or kernel.current in self._gone:
             return None
         is_shut, self._shut = self._shut is task, task
         if log and log[-1][0] is task:
@@ -253,38 +271,41 @@ class StepLog:
     # -- what the kernel does ------------------------------------------------------------------------------------------
 
     def _passing(self, original: Callable[..., Any]) -> Callable[..., Any]:
-        def passing(*args: Any) -> Any:
-            task = self._kernel.current
+        def passing(kernel: ExploringKernel, *args: Any) -> Any:
+            task = kernel.current
             is_quiet = self._quiet.get(task)
             if not is_quiet:
                 self._step()
-            if not self._kernel.is_hushed:
+            if not kernel.is_hushed:
                 self._shut = None
             if is_quiet:
-                return original(*args)
+                return original(kernel, *args)
             call = self._calls.get(task)
             task.passed += 1 if call is not None else PLACE - task.passed % PLACE
-            result = original(*args)
+            result = original(kernel, *args)
             if call is not None:
                 self._note(call)
             return result
 
         return passing
 
-    def _quietly(self, original: Callable[..., Any], parts: bool) -> Callable[..., Any]:
-        def quietly(*args: Any) -> Any:
-            task = self._kernel.current
+    def _quietly_in_parts(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        return self._quietly(original, parts=True)
+
+    def _quietly(self, original: Callable[..., Any], parts: bool = False) -> Callable[..., Any]:
+        def quietly(kernel: Kernel, *args: Any) -> Any:
+            task = kernel.current
             self._quiet[task] = self._quiet.get(task, 0) + 1
             task.passed += parts  # whether somebody waited or not
             try:
-                return original(*args)
+                return original(kernel, *args)
             finally:
                 self._quiet[task] -= 1
 
         return quietly
 
     def _woken(self, original: Callable[..., Any]) -> Callable[..., Any]:
-        def enqueue(task: Task, value: Any) -> None:
+        def enqueue(kernel: Kernel, task: Task, value: Any) -> None:
             step = self._step()
             if step is None:
                 self._ready[task] = 0, TIMER
@@ -292,43 +313,43 @@ class StepLog:
                 step[2][f"wakes {task.path}", READS] = None  # no conflict by itself
                 self._ready[task] = len(self._log), len(self._log) - 1
                 self._kernel.current.passed += 1
-            original(task, value)
+            original(kernel, task, value)
 
         return enqueue
 
-    def _ending(self, original: Callable[[Task], None]) -> Callable[[Task], None]:
-        def kill(task: Task) -> None:
+    def _ending(self, original: Callable[..., None]) -> Callable[..., None]:
+        def kill(kernel: Kernel, task: Task) -> None:
             step = None if task is self._kernel.current or task.done or task in self._gone else self._step()
             if step is not None:
                 step[2][task.path, ENDS] = None
                 if not self._kernel.is_waiting(task):
                     self._log.append((task, task.passed, {(task.path, PENDS): None}, 0, TIMER, False))
                     self._kernel.current.passed += 1
-            original(task)
+            original(kernel, task)
 
         return kill
 
     def _timed_out(self, original: Callable[..., Any]) -> Callable[..., Any]:
-        def time_out(task: Task) -> None:
+        def time_out(kernel: Kernel, task: Task) -> None:
             self._ready[task] = len(self._log), OVERTAKING if self._idle < len(self._log) else TIMER
-            original(task)
+            original(kernel, task)
 
         return time_out
 
-    def _idling(self, original: Callable[[], Task]) -> Callable[[], Task]:
-        def advance() -> Task:
+    def _idling(self, original: Callable[[Kernel], Task]) -> Callable[[Kernel], Task]:
+        def advance(kernel: Kernel) -> Task:
             self._idle = len(self._log)
-            return original()
+            return original(kernel)
 
         return advance
 
     def _waiting(self, original: Callable[..., Any]) -> Callable[..., Any]:
-        def wait_on(*args: Any) -> Any:
-            task = self._kernel.current
+        def wait_on(kernel: Kernel, *args: Any) -> Any:
+            task = kernel.current
             self._step()
             task.passed += 1
             self._shut = None
-            result = original(*args)
+            result = original(kernel, *args)
             if task in self._calls:
                 self._calls[task].is_noted, self._calls[task].has_waited = False, True
             return result

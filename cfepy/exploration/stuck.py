@@ -21,7 +21,7 @@ from cfepy.exploration.verdict import STUCK, Failure
 from cfepy.mission import CORE_APPS, Mission
 from cfepy.own_code import is_library, is_shown
 from cfepy.pilot import BOOT_S, RUN, RunPlan, fly
-from cfepy.rtos import Policy, Task
+from cfepy.rtos import Kernel, Policy, Task, wrapping
 from cfepy.units import NS_PER_S
 
 SHORTEST_NS = NS_PER_S // 10  # a task that waits for less may have got there just before the end
@@ -82,11 +82,14 @@ class WaitWatch(Attachment):
         self._accounts: dict[WaitPlace, _Account] = {}
         self._mission: Mission | None = None
 
+    def kernel(self, base: type[Kernel]) -> type[Kernel]:
+        """See `Attachment.kernel`; every wait goes through `block`."""
+        return wrapping(base, {"block": self._blocking})
+
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`; every wait goes through the kernel's `block`, which is looked up anew each time."""
+        """See `Attachment.begin`."""
         self._mission = mission
         mission.kernel.frames_wanted = True
-        mission.kernel.block = self._blocking(mission.kernel.block)  # type: ignore[method-assign]
 
     def conclude(self) -> None:
         """See `Attachment.conclude`: note the tasks that wait now."""
@@ -100,22 +103,19 @@ class WaitWatch(Attachment):
                 left += [Left(place, task.name, since_ns, idle_ns) for task, since_ns in account.begun.items()]
         self.waits = Waits({place: account.longest_ns for place, account in self._accounts.items()}, tuple(left))
 
-    def _blocking(self, block: Callable[[], Any]) -> Callable[[], Any]:
-        assert self._mission is not None
-        kernel = self._mission.kernel
-
-        def wait() -> Any:
+    def _blocking(self, block: Callable[[Kernel], Any]) -> Callable[[Kernel], Any]:
+        def wait(kernel: Kernel) -> Any:
             task = kernel.current
             waits = task.waits
             if waits is None or task.timer or not _AWAITED.match(waits.what) or _is_core(task):
-                return block()
+                return block(kernel)
             place = (task.owner.name, place_of(sys._getframe(1), waits.what))
             account = self._accounts.setdefault(place, _Account())
             if not account.begun:
                 account.since_ns = kernel.now
             account.begun[task] = kernel.now
             try:
-                return block()
+                return block(kernel)
             finally:
                 del account.begun[task]
                 self._note(account, kernel.now)

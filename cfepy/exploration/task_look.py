@@ -23,7 +23,7 @@ from cfepy.monitors import Heard, MessageWatch
 from cfepy.nodes import WHOLE, Touch
 from cfepy.own_code import is_shown
 from cfepy.pilot.determinism_look import place_text
-from cfepy.rtos import TIMEOUT, AskingPolicy, Decision, ExploringKernel, Policy, Task
+from cfepy.rtos import TIMEOUT, AskingPolicy, Decision, ExploringKernel, Kernel, Policy, Task, wrapping
 from cfepy.sb import PEND_FOREVER, Pipe, Route, SoftwareBus
 from cfepy.status import CfeError
 
@@ -106,11 +106,14 @@ class TaskLook(Attachment):
         """See `Attachment.bus`."""
         return _told(self._messages.bus(base), self._take_bus)
 
+    def kernel(self, base: type[Kernel]) -> type[Kernel]:
+        """See `Attachment.kernel`; every wait goes through `block`."""
+        return wrapping(base, {"block": self._blocking})
+
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`; every wait goes through the kernel's `block`, which is looked up anew each time."""
+        """See `Attachment.begin`."""
         self._mission = mission
         self._messages.begin(mission)
-        mission.kernel.block = self._blocking(mission.kernel.block)  # type: ignore[method-assign]  # of this kernel only
         if isinstance(mission.kernel, ExploringKernel):
             mission.kernel.watch(self)
             mission.accesses.observers.append(self._take_touch)
@@ -283,14 +286,14 @@ class TaskLook(Attachment):
 
     # -- waits --------------------------------------------------------------------------------------------------------
 
-    def _blocking(self, block: Callable[[], Any]) -> Callable[[], Any]:
-        def wait() -> Any:
+    def _blocking(self, block: Callable[[Kernel], Any]) -> Callable[[Kernel], Any]:
+        def wait(kernel: Kernel) -> Any:
             task = self._watched()
             if task is None or not self._goes_on():
-                return block()
+                return block(kernel)
             frame = _outside(sys._getframe(1))
             deed = self._begins_to_wait(task, frame)
-            value = block()
+            value = block(kernel)
             if deed is not None and self._goes_on():
                 is_over = value is TIMEOUT
                 ended = self._done(task, do.GIVES_UP if is_over else do.WAKES, deed.thing, frame)

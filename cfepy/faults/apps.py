@@ -1,8 +1,7 @@
 """Faults on applications: crash, hang, slow, compute, stop, restart.
 
 Applications are those of Executive Services, found by name when the fault happens. For those that hang, are slow
-or compute for longer, the methods of the kernel object are wrapped, as tasks call them; only a run whose plan asks for
-it has them wrapped.
+or compute for longer, the calls of the kernel are wrapped; only a run whose plan asks for it has them wrapped.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from cfepy.faults.plan import Fault
 from cfepy.faults.report import FaultReport
 from cfepy.faults.timing import Gate
 from cfepy.mission import Processor
-from cfepy.rtos import FOREVER, InjectedCrash, Kernel, Task, WaitList
+from cfepy.rtos import FOREVER, InjectedCrash, Kernel, Task, WaitList, wrapping
 from cfepy.sb import Pipe
 from cfepy.status import CfeError
 
@@ -149,54 +148,54 @@ APP_FAULTS: dict[str, type[AppFault]] = {"crash": Crash, "stop": Stop, "restart"
 
 
 class Strain:
-    """What the kernel's calls do to some applications.
+    """What the kernel's calls do to some applications."""
 
-    Args:
-        kernel: whose calls are wrapped.
-    """
-
-    def __init__(self, kernel: Kernel) -> None:
-        self._kernel = kernel
-        self._wait_on: Callable[..., Any] = kernel.wait_on
-        self._charge: Callable[[int], None] = kernel.charge
+    def __init__(self) -> None:
+        self._wait_on: Callable[..., Any] = Kernel.wait_on
+        self._charge: Callable[[Kernel, int], None] = Kernel.charge
         self._hanging: dict[int, tuple[Any, int | None]] = {}  # by identity: the application, and when it goes on
         self.burdens: list[Callable[[str, int], int]] = []
-        for name in CALLS:
-            setattr(kernel, name, self._wrapped(getattr(kernel, name), name == "charge"))
+
+    def kernel(self, base: type[Kernel]) -> type[Kernel]:
+        """See `Attachment.kernel`."""
+        self._wait_on, self._charge = base.wait_on, base.charge
+        return wrapping(base, {**dict.fromkeys(CALLS, self._wrapped), "charge": self._charging})
 
     def hang(self, app: Any, until_ns: int | None) -> None:
         """No task of an application comes back from its next call before a time; None is never."""
         self._hanging[id(app)] = app, until_ns
 
-    def _wrapped(self, original: Callable[..., Any], is_charge: bool) -> Callable[..., Any]:
+    def _charging(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        return self._wrapped(original, is_charge=True)
+
+    def _wrapped(self, original: Callable[..., Any], is_charge: bool = False) -> Callable[..., Any]:
         """One of the kernel's methods, with what it costs before and whether it returns after."""
 
-        def call(*args: Any) -> Any:
-            kernel = self._kernel
+        def call(kernel: Kernel, *args: Any) -> Any:
             task = kernel.current
             owner = task.owner
             if owner is None or task.dying:
-                return original(*args)
+                return original(kernel, *args)
             more_ns = sum(burden(owner.name, args[0] if is_charge else 0) for burden in self.burdens)
             if more_ns:
-                self._charge(more_ns)
-            result = original(*args)
+                self._charge(kernel, more_ns)
+            result = original(kernel, *args)
             if self._hanging and not task.dying:
-                self._hold(task)
+                self._hold(kernel, task)
             return result
 
         return call
 
-    def _hold(self, task: Any) -> None:
+    def _hold(self, kernel: Kernel, task: Any) -> None:
         """Keep the calling task as long as its application hangs."""
         held = self._hanging.get(id(task.owner))
         if held is None:
             return
         until_ns = held[1]
         if until_ns is None:
-            self._wait_on(WaitList("the end of a fault: its application hangs"), FOREVER)
-        elif until_ns > self._kernel.now:
-            self._wait_on(WaitList("the end of a fault: its application hangs"), until_ns - self._kernel.now)
+            self._wait_on(kernel, WaitList("the end of a fault: its application hangs"), FOREVER)
+        elif until_ns > kernel.now:
+            self._wait_on(kernel, WaitList("the end of a fault: its application hangs"), until_ns - kernel.now)
 
 
 class Work:
@@ -209,23 +208,36 @@ class Work:
     Args:
         fault: what the plan says: with `for` a task computes for so long more, when it took the `message`, or when a
             wait is over; with `times` what it computes takes so many times as long.
-        gate: at which of these occasions.
-        report: is told each time.
-        kernel: whose calls are wrapped.
     """
 
-    def __init__(self, fault: Fault, gate: Gate, report: FaultReport, kernel: Kernel) -> None:
+    def __init__(self, fault: Fault) -> None:
         self._fault = fault
-        self._gate = gate
-        self._report = report
-        self._kernel = kernel
+        self._gate: Gate
+        self._report: FaultReport
+        self._kernel: Kernel
         self._more_ns: int = fault.options.get("for", 0)
         self._times: float = fault.options.get("times", 1.0)
         self._task: str = fault.options.get("task", "*")
-        self._compute = kernel.compute
-        names, wrapped = (COMPUTES, self._stretching) if "times" in fault.options else (WAITS, self._waiting)
-        for name in () if "message" in fault.options else names:
-            setattr(kernel, name, wrapped(getattr(kernel, name)))
+        self._compute: Callable[[Kernel, int], None] = Kernel.compute
+
+    def kernel(self, base: type[Kernel]) -> type[Kernel]:
+        """See `Attachment.kernel`."""
+        self._compute = base.compute
+        if "message" in self._fault.options:
+            return base
+        names, wrapped = (COMPUTES, self._stretching) if "times" in self._fault.options else (WAITS, self._waiting)
+        return wrapping(base, dict.fromkeys(names, wrapped))
+
+    def begin(self, fault: Fault, gate: Gate, report: FaultReport, kernel: Kernel) -> None:
+        """The mission was made.
+
+        Args:
+            fault: what the plan says, with applications by their cFE names.
+            gate: at which of its occasions it happens.
+            report: is told each time.
+            kernel: of the class that was derived.
+        """
+        self._fault, self._gate, self._report, self._kernel = fault, gate, report, kernel
 
     def on_take(self, packet: bytes | bytearray, pipe: Pipe, is_called: IsCalled) -> None:
         """An application took a message out of its pipe: what it does with it takes longer.
@@ -247,26 +259,25 @@ class Work:
         """Compute, if this is one of its occasions."""
         if self._gate.opens(self._kernel.now):
             self._report.happened(self._fault, f"lets {task.name} compute for {self._more_ns / 1e9:g} s")
-            self._compute(self._more_ns)
+            self._compute(self._kernel, self._more_ns)
 
     def _waiting(self, original: Callable[..., Any]) -> Callable[..., Any]:
         """One of the kernel's waits, behind which work begins."""
 
-        def wait(*args: Any) -> Any:
-            task = self._kernel.current
+        def wait(kernel: Kernel, *args: Any) -> Any:
+            task = kernel.current
             is_work = task.mutex is not None  # to wait for one is a part of it
-            result = original(*args)
+            result = original(kernel, *args)
             if not is_work and not task.dying and self._means(task):
                 self._works(task)
             return result
 
         return wait
 
-    def _stretching(self, original: Callable[[int], None]) -> Callable[[int], None]:
+    def _stretching(self, original: Callable[[Kernel, int], None]) -> Callable[[Kernel, int], None]:
         """The kernel's `compute`, in which work takes so many times as long."""
 
-        def compute(duration_ns: int) -> None:
-            kernel = self._kernel
+        def compute(kernel: Kernel, duration_ns: int) -> None:
             if duration_ns and self._means(kernel.current) and self._gate.opens(kernel.now):
                 longer_ns = round(duration_ns * self._times)
                 what = (
@@ -274,6 +285,6 @@ class Work:
                 )
                 self._report.happened(self._fault, what)
                 duration_ns = longer_ns
-            original(duration_ns)
+            original(kernel, duration_ns)
 
         return compute

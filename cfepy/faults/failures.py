@@ -19,7 +19,7 @@ from cfepy.faults.report import FaultReport
 from cfepy.faults.timing import Agenda, Gate
 from cfepy.ids import OS_STREAM_BASE
 from cfepy.mission import Processor
-from cfepy.rtos import Kernel, Task, WaitList
+from cfepy.rtos import Kernel, Task
 from cfepy.sb import Destination, Pipe, PutHook, SoftwareBus
 from cfepy.sb import events as ev
 from cfepy.status import OS_QUEUE_FULL, CfeError, OsalError
@@ -56,24 +56,35 @@ class CallFault:
         self._status = status_of(self._call, fault.options.get("status"))
         self._app: str | None = fault.options.get("app")
         self._object: str | None = fault.options.get("object")
+        self._processor: Processor | None = None
 
     def power_up(self, processor: Processor) -> None:
-        """Stand before the function of a new processor."""
+        """Stand before the function of a new processor; before one of the Software Bus its class stands (`failing`)."""
+        self._processor = processor
         service_name, _, method = self._call.partition(".")
         service = getattr(processor.cfe, service_name)
-        call = self._wrapped(getattr(service, method), processor)
-        setattr(service, method, MethodType(call, service))  # a method, before which others get in as before all others
+        if service is not processor.cfe.sb:
+            call = self._wrapped(getattr(service, method))
+            setattr(service, method, MethodType(call, service))  # others get in before methods, as before all others
 
-    def _wrapped(self, original: Callable[..., Any], processor: Processor) -> Callable[..., Any]:
+    def _wrapped(self, original: Callable[..., Any]) -> Callable[..., Any]:
         def call(_: object, *args: Any, **named: Any) -> Any:
-            caller = caller_of(self._kernel.current)
-            if self._is_meant(caller, args, processor) and self._gate.opens(self._kernel.now):
-                error = self._error()
-                self._report.happened(self._fault, f"lets {self._call} of {caller} fail with {error.name}")
-                raise error
+            self.strike(args)
             return original(*args, **named)
 
         return call
+
+    def strike(self, args: tuple[Any, ...]) -> None:
+        """The function is called with these arguments.
+
+        Raises:
+            CfeError: it fails.
+        """
+        caller = caller_of(self._kernel.current)
+        if self._is_meant(caller, args) and self._gate.opens(self._kernel.now):
+            error = self._error()
+            self._report.happened(self._fault, f"lets {self._call} of {caller} fail with {error.name}")
+            raise error
 
     def put_status(self, caller: str, pipe: str) -> int | None:
         """What the Software Bus's put into a pipe fails with, as one of these calls; None when it does not.
@@ -90,10 +101,10 @@ class CallFault:
         self._report.happened(self._fault, text)
         return self._status
 
-    def _is_meant(self, caller: str, args: tuple[Any, ...], processor: Processor) -> bool:
-        if self._app not in (None, caller):
+    def _is_meant(self, caller: str, args: tuple[Any, ...]) -> bool:
+        if self._processor is None or self._app not in (None, caller):
             return False
-        return self._object is None or any(self._object == name for name in _names(args, processor))
+        return self._object is None or any(self._object == name for name in _names(args, self._processor))
 
     def _error(self) -> CfeError:
         kind = OsalError if self._call.startswith(("os.", "psp.")) else CfeError
@@ -122,6 +133,23 @@ def _name_of(number: int, processor: Processor) -> list[str]:
         return [*found, os.fd_get_info(number).path] if os.identify_object(number) == OS_STREAM_BASE else found
     except OsalError:
         return []
+
+
+def failing(base: type[SoftwareBus], method: str, strike: Callable[[tuple[Any, ...]], None]) -> type[SoftwareBus]:
+    """A class of Software Bus with a function that fails.
+
+    Args:
+        base: the class to start from.
+        method: the function.
+        strike: gets the arguments of each call, before it, and may raise what it fails with.
+    """
+    original: Callable[..., Any] = getattr(base, method)
+
+    def call(bus: SoftwareBus, *args: Any, **named: Any) -> Any:
+        strike(args)
+        return original(bus, *args, **named)
+
+    return type("FailingBus", (base,), {method: call})
 
 
 class Puts:
@@ -224,25 +252,6 @@ def refusing(base: type[SoftwareBus], puts: Puts) -> type[SoftwareBus]:
     return RefusingBus
 
 
-class ShutWaitList(WaitList):
-    """The readers that wait, hidden from senders."""
-
-    __slots__ = ()
-
-    def __bool__(self) -> bool:
-        return False
-
-
-class FullPipe(Pipe):
-    """A pipe without room, which is nevertheless there."""
-
-    __slots__ = ()
-
-    def is_closed(self) -> bool:
-        """See `Pipe.is_closed`; a depth of 0 does not mean here that the pipe was deleted."""
-        return False
-
-
 class Fill:
     """Fills one pipe.
 
@@ -261,22 +270,20 @@ class Fill:
         """Do it now."""
         name, now = self._fault.target[0], processor.machine.kernel.now
         pipe = next((each for each in processor.cfe.sb.pipes if each.name == name), None)
-        if pipe is None or type(pipe) is not Pipe:
+        if pipe is None or pipe.is_filled:
             why = f"there is no pipe {name}" if pipe is None else f"pipe {name} is full already"
             self._report.missed(self._fault, f"{why} at {now / 1e9:g} s")
             return
         duration_ns = self._fault.options.get("for")
         self._report.happened(self._fault, f"fills pipe {name} of {pipe.app_name}")
         depth, keeps_newest = pipe.depth, pipe.keeps_newest
-        # The very objects stay: owners of the pipe and tasks that wait at it must not notice.
-        pipe.__class__, pipe.waits.__class__ = FullPipe, ShutWaitList
-        pipe.depth, pipe.keeps_newest = 0, False
+        pipe.is_filled, pipe.depth, pipe.keeps_newest = True, 0, False
         if duration_ns is not None:
             self._agenda.add(now + duration_ns, lambda: _empty(processor, pipe, depth, keeps_newest))
 
 
 def _empty(processor: Processor, pipe: Pipe, depth: int, keeps_newest: bool) -> None:
     """The pipe takes messages again, unless it was deleted meanwhile."""
-    pipe.__class__, pipe.waits.__class__ = Pipe, WaitList
+    pipe.is_filled = False
     if processor.cfe.sb.find_pipe(pipe.pipe_id) is pipe:
         pipe.depth, pipe.keeps_newest = depth, keeps_newest

@@ -16,7 +16,7 @@ from cfepy.attachment import Attachment
 from cfepy.faults.apps import APP_FAULTS, AppFault, Hang, Slow, Strain, Work
 from cfepy.faults.bus import MessageSwitchboard, faulty
 from cfepy.faults.calls import QUEUE_PUT, call_name
-from cfepy.faults.failures import CallFault, Fill, Puts, refusing, why_not_called
+from cfepy.faults.failures import CallFault, Fill, Puts, failing, refusing, why_not_called
 from cfepy.faults.kinds import APP, APP_OPTIONS, KINDS
 from cfepy.faults.messages import DATAGRAM_FAULTS, MESSAGE_FAULTS, MessageFault, Setting, strike_datagrams
 from cfepy.faults.names import MissionNames
@@ -25,7 +25,7 @@ from cfepy.faults.processor import MEMORY_FAULTS, Drift, Jump, LostSignal, Proce
 from cfepy.faults.report import FaultReport
 from cfepy.faults.timing import Agenda, Gate, OpenCalls, asker
 from cfepy.mission import Mission, Processor
-from cfepy.rtos import WaitList
+from cfepy.rtos import Kernel, WaitList
 from cfepy.sb import Pipe, SoftwareBus
 
 Strike = Callable[[Processor], object]
@@ -51,8 +51,10 @@ class FaultInjector(Attachment):
         self._puts = Puts()
         self._power_ups: list[Strike] = []
         self._first: list[Strike] = []
-        self._strain: Strain | None = None
-        self._calls: OpenCalls | None = None
+        self._strain = Strain()
+        self._calls = OpenCalls()
+        self._works: dict[str, Work] = {}
+        self._failing: dict[str, CallFault] = {}
         self._gates: dict[str, Gate] = {}
         self._faults: list[Fault] = []  # of the plan, with applications by their cFE names
         self._processor: Processor
@@ -61,7 +63,33 @@ class FaultInjector(Attachment):
         """See `Attachment.bus`."""
         if any(_is_put(fault) for fault in self.plan.faults):
             base = refusing(base, self._puts)
-        return faulty(base, self._board) if any(_needs_bus(fault) for fault in self.plan.faults) else base
+        if any(_needs_bus(fault) for fault in self.plan.faults):
+            base = faulty(base, self._board)
+        for fault in self.plan.faults:
+            service, _, method = call_name(fault.target[0]).partition(".") if fault.kind == "fail" else ("", "", "")
+            if service == "sb":
+                base = failing(base, method, partial(self._strike_call, fault.name))
+        return base
+
+    def _strike_call(self, name: str, args: tuple[Any, ...]) -> None:
+        """A function of the Software Bus is called that a fault may let fail."""
+        self._failing[name].strike(args)
+
+    def kernel(self, base: type[Kernel]) -> type[Kernel]:
+        """See `Attachment.kernel`; what comes later in the plan is wrapped around what comes earlier."""
+        self._strain, self._calls, self._works = Strain(), OpenCalls(), {}
+        hooks: dict[Strain | OpenCalls | Work, None] = {}
+        for fault in self.plan.faults:
+            if fault.kind in ("slow", "hang"):
+                hooks[self._strain] = None
+            if fault.kind == "compute":
+                self._works[fault.name] = Work(fault)
+                hooks[self._works[fault.name]] = None
+            if _is_at_calls(fault):
+                hooks[self._calls] = None
+        for hook in hooks:
+            base = hook.kernel(base)
+        return base
 
     def begin(self, mission: Mission) -> None:
         """See `Attachment.begin`."""
@@ -69,7 +97,7 @@ class FaultInjector(Attachment):
         self.report = FaultReport(self.plan.faults, lambda: kernel.now, mission.console.write, mission.trace.note)
         mission.record.tables["faults"] = self.rows
         self._agenda = Agenda(kernel)
-        self._power_ups, self._first, self._strain, self._calls = [], [], None, None
+        self._power_ups, self._first = [], []
         self._gates = {
             fault.name: Gate(fault.when, Random(f"{mission.seed}:{fault.name}"), asker(kernel, fault.name))
             for fault in self.plan.faults
@@ -83,7 +111,7 @@ class FaultInjector(Attachment):
         datagrams = [self._message(f, DATAGRAM_FAULTS, setting) for f in self._faults if _is_datagram(f)]
         if datagrams:
             strike_datagrams(mission.network, datagrams)
-        calls = {fault.name: self._call(fault) for fault in self._faults if fault.kind == "fail"}
+        calls = self._failing = {fault.name: self._call(fault) for fault in self._faults if fault.kind == "fail"}
         self._puts.begin([calls[fault.name] for fault in self._faults if _is_put(fault)])
         for fault in self._faults:
             if not _is_message(fault) and not _is_datagram(fault) and fault.name not in calls:
@@ -116,7 +144,7 @@ class FaultInjector(Attachment):
         elif fault.kind == "drift_clock":
             self._at(fault.when.after_ns, Drift(fault, gate, report, self._at).strike)
         elif fault.kind == "slow":
-            self._kernel_strain().burdens.append(Slow(fault, gate, report, kernel).burden)
+            self._strain.burdens.append(Slow(fault, gate, report, kernel).burden)
         elif fault.kind == "compute":
             self._prepare_work(fault)
         elif fault.kind in MEMORY_FAULTS:
@@ -147,13 +175,14 @@ class FaultInjector(Attachment):
 
     def _prepare_work(self, fault: Fault) -> None:
         """Where a wait ends, or a message is taken, or a task says how long it computes."""
-        work = Work(fault, self._gates[fault.name], self.report, self._kernel)
+        work = self._works[fault.name]
+        work.begin(fault, self._gates[fault.name], self.report, self._kernel)
         if "message" in fault.options:
             self._board.on_take.append(lambda packet, pipe: work.on_take(packet, pipe, self._board.is_called))
 
     def _app_fault(self, fault: Fault, name: str) -> AppFault:
         if fault.kind == "hang":
-            return Hang(fault, name, self.report, self._kernel_strain())
+            return Hang(fault, name, self.report, self._strain)
         return APP_FAULTS[fault.kind](fault, name, self.report)
 
     def _on_take(self, fault: Fault, app_name: str, strike: Strike, packet: bytes, pipe: Pipe) -> None:
@@ -166,15 +195,8 @@ class FaultInjector(Attachment):
         if self._gates[fault.name].opens(self._kernel.now):
             self._strike_now(fault, strike)
 
-    def _kernel_strain(self) -> Strain:
-        if self._strain is None:
-            self._strain = Strain(self._kernel)
-        return self._strain
-
     def _at_calls(self, fault: Fault, app_name: str | None, strike: Strike) -> None:
         """Before whichever call of an application, or of any, the schedule chooses."""
-        if self._calls is None:
-            self._calls = OpenCalls(self._kernel)
         self._calls.add(app_name, self._gates[fault.name], partial(self._strike_now, fault, strike))
 
     def _strike_now(self, fault: Fault, strike: Strike) -> None:

@@ -14,7 +14,7 @@ from heapq import heapify, heappop, heappush
 from random import Random
 from typing import Any
 
-from cfepy.rtos import ExploringKernel, Kernel, Question, WaitList
+from cfepy.rtos import ExploringKernel, Kernel, Question, WaitList, wrapping
 from cfepy.status import CfeError
 
 PRIORITY = 0
@@ -117,20 +117,20 @@ def asker(kernel: Kernel, name: str) -> Callable[[], bool]:
 
 
 class OpenCalls:
-    """The calls of applications as occasions of faults. Its kernel's methods are wrapped, if that explores.
+    """The calls of applications as occasions of faults, if the kernel explores.
 
     An occasion is before each call, and before each bit of CPU time that is paid for: wherever others could get in.
-
-    Args:
-        kernel: whose calls they are.
     """
 
-    def __init__(self, kernel: Kernel) -> None:
-        self._kernel = kernel
+    def __init__(self) -> None:
         self._open: list[tuple[str | None, Gate, Callable[[], object]]] = []
         self._is_asking = False
-        for name in CALLS if isinstance(kernel, ExploringKernel) else ():
-            setattr(kernel, name, self._wrapped(getattr(kernel, name)))
+
+    def kernel(self, base: type[Kernel]) -> type[Kernel]:
+        """See `Attachment.kernel`."""
+        if not issubclass(base, ExploringKernel):
+            return base
+        return wrapping(base, dict.fromkeys(CALLS, self._wrapped))
 
     def add(self, app_name: str | None, gate: Gate, strike: Callable[[], object]) -> None:
         """Let a fault happen at calls.
@@ -143,25 +143,22 @@ class OpenCalls:
         self._open.append((app_name, gate, strike))
 
     def _wrapped(self, original: Callable[..., Any]) -> Callable[..., Any]:
-        def call(*args: Any) -> Any:
-            task = self._kernel.current
+        def call(kernel: Kernel, *args: Any) -> Any:
+            task = kernel.current
             if task.owner is not None and not task.dying and not self._is_asking:
-                self._ask(task.owner.name)
-            return original(*args)
+                self._ask(task.owner.name, kernel.now)
+            return original(kernel, *args)
 
         return call
 
-    def _ask(self, app_name: str) -> None:
+    def _ask(self, app_name: str, now: int) -> None:
         self._is_asking = True  # what strikes makes calls of its own
         try:
-            due = [strike for app, gate, strike in self._open if app in (None, app_name) and self._opens(gate)]
+            due = [strike for app, gate, strike in self._open if app in (None, app_name) and gate.opens(now)]
         finally:
             self._is_asking = False
         for strike in due:
             strike()
-
-    def _opens(self, gate: Gate) -> bool:
-        return gate.opens(self._kernel.now)
 
 
 class Agenda:

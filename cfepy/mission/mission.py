@@ -33,7 +33,7 @@ from cfepy.nodes import Accesses
 from cfepy.osal import FileSystem, Network
 from cfepy.own_code import is_own_code
 from cfepy.psp import EEPROM_BYTES, BoardProfile, MemoryBudget, PanicError, Retained, load_profile
-from cfepy.rtos import AUTO, Policy, StallWatch, Stopwatch, Task, make_kernel, task_kind
+from cfepy.rtos import AUTO, Kernel, Policy, StallWatch, Stopwatch, Task, make_kernel, task_kind
 from cfepy.sb import SoftwareBus
 from cfepy.status import StallError
 from cfepy.trace import Trace
@@ -120,7 +120,9 @@ class Mission:
         self.files = FileSystem(self.spec.folder)
         self.network = Network()
         switch_ns = self.board.cpu_costs().switch_ns
-        self.kernel = kernel = make_kernel(kind.name, self.trace, policy, self.board.tick_ns, switch_ns, seed)
+        self._attachments = tuple(attachments)
+        tick_ns = self.board.tick_ns
+        self.kernel = kernel = make_kernel(kind.name, self.trace, policy, tick_ns, switch_ns, seed, self._kernel_class)
         self.trace.take_times(lambda: kernel.now)
         self.outside = Outside(self.kernel, self.network, self.trace)
         self.outside.do = HostActs(self).do
@@ -130,7 +132,6 @@ class Mission:
         self.meet: Callable[[], int] | None = None
         self._first_boot: int | None = None
         self._resetting = self._is_closed = False
-        self._attachments = tuple(attachments)
         self._provide_tables()
         self._machine = self._make_machine()
         self.processor = Processor(self._machine)
@@ -145,6 +146,11 @@ class Mission:
     def forget_files(self) -> None:
         """What the run wrote is gone; for a process that leaves it in the middle."""
         self._machine.run_files.close()
+
+    def _kernel_class(self, base: type[Kernel]) -> type[Kernel]:
+        for each in self._attachments:
+            base = each.kernel(base)
+        return base
 
     def _make_machine(self) -> Machine:
         bus = SoftwareBus

@@ -15,7 +15,7 @@ from cfepy.attachment import Attachment
 from cfepy.mission import HOST, Mission, Processor
 from cfepy.msg import MAX_SEQUENCE_COUNT, PRIMARY_HEADER_SIZE
 from cfepy.ports import PEND_FOREVER
-from cfepy.rtos import Kernel, Task
+from cfepy.rtos import Kernel, Task, wrapping
 from cfepy.sb import Pipe, SoftwareBus
 from cfepy.sb import events as ev
 
@@ -88,8 +88,12 @@ class Observer(Attachment):
         """A Software Bus that tells of what passes it."""
         return _observed(self, base)
 
+    def kernel(self, base: type[Kernel]) -> type[Kernel]:
+        """A kernel that tells of its waits."""
+        return wrapping(base, {"block": self._blocking})
+
     def begin(self, mission: Mission) -> None:
-        """Wrap the console, the trace, the kernel's record and its waits: they are looked up for every call."""
+        """Listen to what the console, the trace and the kernel record."""
         self.mission = mission
         self._kernel = kernel = mission.kernel
         trace, console = mission.trace, mission.console
@@ -97,7 +101,6 @@ class Observer(Attachment):
         console.record = self._writing(console.record or trace.note)
         if kernel.record is not None:
             kernel.record = self._recording(kernel.record)
-        kernel.block = self._blocking(kernel.block)  # type: ignore[method-assign]  # of this kernel only
 
     def power_up(self, processor: Processor) -> None:
         """A reset: no packet of before will arrive."""
@@ -140,16 +143,15 @@ class Observer(Attachment):
 
         return look
 
-    def _blocking(self, block: Callable[[], Any]) -> Callable[[], Any]:
+    def _blocking(self, block: Callable[[Kernel], Any]) -> Callable[[Kernel], Any]:
         """The kernel's `block`, in which every wait takes place; a task that follows itself leaves no other trace."""
 
-        def wait() -> Any:
-            kernel = self._kernel
+        def wait(kernel: Kernel) -> Any:
             task: Task = kernel.current
             if self._running is task:
                 self._running = None
                 self.on_leave(task, kernel.now, True)
-            value = block()
+            value = block(kernel)
             if self._running is not task and kernel.current is task:
                 self._dispatched()
             return value

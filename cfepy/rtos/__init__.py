@@ -41,6 +41,7 @@ from cfepy.rtos.semaphore import Semaphore
 from cfepy.rtos.task import FOREVER, PLACE, TIMEOUT, Task, TaskExit, WaitList
 from cfepy.rtos.wait_graph import Wait, circles, endless
 from cfepy.rtos.watchdog import STALL_S, LastResort, StallWatch
+from cfepy.rtos.wrapped_calls import wrapping
 
 __all__ = [
     "AUTO",
@@ -107,4 +108,5 @@ __all__ = [
     "make_kernel",
     "plain_name",
     "task_kind",
+    "wrapping",
 ]

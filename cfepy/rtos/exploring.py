@@ -30,12 +30,20 @@ def make_kernel(
     tick_ns: int = 0,
     switch_cost_ns: int = 0,
     seed: int = 0,
+    derived: Callable[[type[Kernel]], type[Kernel]] = lambda base: base,
 ) -> Kernel:
-    """The kernel for a run: the plain one without a policy. The arguments are those of `ExploringKernel`."""
+    """The kernel for a run: the plain one without a policy.
+
+    Args:
+        context: see `Kernel`, as for the arguments not named here.
+        policy: decides which task runs next; None for first come, first served.
+        derived: gives the class of the kernel, made of the one that it would have been.
+    """
     if policy is None:
-        return Kernel(context, trace, tick_ns, switch_cost_ns, seed)
-    kind = CallPointKernel if Points.parse(policy.points).kind == CALLS else ExploringKernel
-    return kind(context, trace, policy, tick_ns, switch_cost_ns, seed)
+        return derived(Kernel)(context, trace, tick_ns, switch_cost_ns, seed)
+    kind: Any = derived(CallPointKernel if Points.parse(policy.points).kind == CALLS else ExploringKernel)
+    made: Kernel = kind(context, trace, policy, tick_ns, switch_cost_ns, seed)
+    return made
 
 
 class CallObserver(Protocol):

@@ -60,7 +60,6 @@ class Task:
     """One thread of control, with a priority from 0 (most urgent) to 255."""
 
     __slots__ = (
-        "__weakref__",
         "alias",
         "awaits",
         "base_priority",
@@ -128,10 +127,6 @@ class Task:
 
     def __repr__(self) -> str:
         return f"<Task {self.ident} {self.name!r} priority {self.priority}>"
-
-    def __lt__(self, other: Task) -> bool:
-        """Only reached for equal keys in the ready heap; creation order then decides."""
-        return self.ident < other.ident
 
 
 def _not_bound() -> None:

@@ -19,7 +19,6 @@ import signal
 import sys
 import threading
 import time
-import weakref
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from types import CodeType, FrameType
@@ -236,14 +235,14 @@ class StallWatch:
         now_ns, sequence, front = kernel.progress()
         task, calls = kernel.current, sequence - front
         if stand is None or stand.now_ns != now_ns:
-            return _Stand(now_ns, calls, calls, weakref.ref(task))
+            return _Stand(now_ns, calls, calls, task.ident)
         stand.standing_s += wall_s if is_busy else 0.0
-        if stand.calls == calls and stand.seen() is task:
+        if stand.calls == calls and stand.seen == task.ident:
             stand.still_s += wall_s if is_busy else 0.0
             stand.idle_s += 0.0 if is_busy else wall_s
         else:
             stand.still_s = stand.idle_s = 0.0
-        stand.calls, stand.seen = calls, weakref.ref(task)
+        stand.calls, stand.seen = calls, task.ident
         stand.names[task.name] = None
         return stand
 
@@ -273,7 +272,7 @@ class StallWatch:
         now_ns, sequence, front = kernel.progress()
         if self._stand is not stand or not kernel.is_running or now_ns != stand.now_ns:
             return False
-        return stand.is_turning or (sequence - front == stand.calls and kernel.current is stand.seen())
+        return stand.is_turning or (sequence - front == stand.calls and kernel.current.ident == stand.seen)
 
     def _error(self, stand: _Stand, end: str) -> StallError:
         """What is told of it."""
@@ -303,7 +302,8 @@ class StallWatch:
         return f"{who} has not given up the CPU"
 
     def _task_of(self, stand: _Stand) -> Task:
-        return stand.seen() or self._kernel.current
+        tasks = list(self._kernel.tasks)
+        return next((task for task in tasks if task.ident == stand.seen), self._kernel.current)
 
     def _thread_of(self, task: Task) -> int:
         kernel = self._kernel
@@ -398,8 +398,8 @@ class _Stand:
     Attributes:
         now_ns: where it stands.
         first_calls, calls: number of calls that may let another task go on: at first, and now.
-        seen: the task that has the CPU; not held, since one that has ended would hold its whole processor until the
-            next look.
+        seen: number of the task that has the CPU. The task itself is not held: one that has ended would hold its whole
+            processor until the next look.
         standing_s: for how long it stands; wall time in which the CPU was used.
         still_s: for how long this task has made no such call, and used the CPU.
         idle_s: for how long it has made none, and used no CPU.
@@ -410,7 +410,7 @@ class _Stand:
     now_ns: int
     first_calls: int
     calls: int
-    seen: weakref.ref[Task]
+    seen: int
     standing_s: float = 0.0
     still_s: float = 0.0
     idle_s: float = 0.0

@@ -307,7 +307,7 @@ class SoftwareBus(SubscriptionServices):
                 failures = [*(failures or ()), (ev.MSGID_LIM_ERR_EID, destination)]
                 continue
             waits = pipe.waits
-            if waits:
+            if waits and not pipe.is_filled:
                 if not pipe.peak:
                     pipe.peak = 1
                 if hook is not None:

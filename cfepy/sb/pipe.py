@@ -12,7 +12,8 @@ class Pipe(Queue):
     `send_errors` counts what a message limit kept out, as NASA's SendErrors does; `overflows` what did not fit in. One
     that `keeps_newest` makes room for a message by dropping the oldest one, as the queue of a ROS subscriber does.
     Messages of the applications in `unheard` do not come in: its own, by an option of the pipe, and those of ROS nodes
-    that are not connected with it yet. One that `is_called` has its reader come back without a message.
+    that are not connected with it yet. One that `is_called` has its reader come back without a message. One that
+    `is_filled` takes no message, not even for a reader that waits, and is nevertheless there.
 
     Args:
         kernel: where its readers wait.
@@ -27,6 +28,7 @@ class Pipe(Queue):
         "claim",
         "drop_mark",
         "is_called",
+        "is_filled",
         "keeps_newest",
         "opts",
         "overflows",
@@ -45,7 +47,7 @@ class Pipe(Queue):
         self.app_name: str = getattr(owner, "name", "host")
         self.opts = 0
         self.unheard: tuple[object, ...] = ()
-        self.keeps_newest = self.is_called = False
+        self.keeps_newest = self.is_called = self.is_filled = False
         self.send_errors = self.overflows = 0
         self.claim = 0
         self.identify(0)
@@ -79,4 +81,4 @@ class Pipe(Queue):
 
     def is_closed(self) -> bool:
         """Whether the pipe was deleted: nothing fits in any more."""
-        return self.depth == 0
+        return self.depth == 0 and not self.is_filled

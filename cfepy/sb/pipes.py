@@ -99,7 +99,10 @@ class PipeServices(BufferServices):
                 self.remove_destination(route, destination)
         self.pipes.delete(pipe.pipe_id)
         self.ports.memory.release(pipe.claim)
-        pipe.depth = 0  # so that a transmission that is under way finds it full, and no longer there
+        pipe.depth, pipe.is_filled = (
+            0,
+            False,
+        )  # so that a transmission that is under way finds it full, and no longer there
         pipe.close(None)
 
     def _report_deleted(self, pipe: Pipe, owner: str) -> None:

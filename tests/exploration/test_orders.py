@@ -32,10 +32,11 @@ class Flown(NamedTuple):
 class World:
     """Two variables, mutexes, queues and semaphores, and tasks that do something to them."""
 
-    def __init__(self, kernel: Kernel, program: Program) -> None:
+    def __init__(self, kernel: Kernel, program: Program, log: StepLog) -> None:
         assert isinstance(kernel, ExploringKernel)
         self.kernel = kernel
-        self.log = StepLog(kernel)
+        self.log = log
+        log.begin_with(kernel)
         self.values: dict[str, tuple[str, ...]] = {"x": (), "y": ()}
         self.mutexes = {name: Mutex(kernel, name) for name in "xy"}
         self.queues = {name: Queue(kernel, 1, name) for name in "xy"}
@@ -163,8 +164,9 @@ class World:
 
 def fly(program: Program, schedule: Schedule, context: str = "greenlet", world: type[World] = World) -> Flown:
     recorded = NotingPolicy(schedule.policy())
-    with make_kernel(context, None, recorded) as kernel:
-        flown = world(kernel, program)
+    log = StepLog()
+    with make_kernel(context, None, recorded, derived=log.kernel) as kernel:
+        flown = world(kernel, program, log)
         kernel.run(1000 * US)
         return Flown(repr(flown.outcome), recorded, flown.log.steps)
 

@@ -380,14 +380,17 @@ def test_the_watch_does_not_hold_a_task_that_has_ended() -> None:
             watch._look(0.0, False, 0.0)
             looked.set()
 
-        task = weakref.ref(kernel.spawn("task", body))
+        application = type("Application", (), {})()
+        held = weakref.ref(application)
+        kernel.spawn("task", body, owner=application)
+        del application
         kernel.run(100)
         assert looked.is_set()
         assert watch._stand is not None
         kernel.unwind()
         drain()
         gc.collect()
-        assert task() is None
+        assert held() is None
 
 
 def test_time_in_which_others_have_the_cpu_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
