@@ -9,9 +9,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from .app import HK_AppMain, run
+from .combined import combined_telemetry
 from .copy_table import find_fault
 from .packets import COMMANDS, COPY_TABLE, RUNTIME_TABLE, TELEMETRY
 
-TABLES = (replace(COPY_TABLE, fault=find_fault), RUNTIME_TABLE)
+TABLES = (replace(COPY_TABLE, fault=find_fault, telemetry=combined_telemetry), RUNTIME_TABLE)
 
 __all__ = ["COMMANDS", "TABLES", "TELEMETRY", "HK_AppMain", "run"]

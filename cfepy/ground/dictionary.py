@@ -13,7 +13,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cfepy import msg
+from cfepy import msg, tbl
+from cfepy.contained_files import is_contained
+from cfepy.fs import HEADER_SIZE, TABLE_HEADER_SIZE
 from cfepy.ground.names import CORE_PACKETS
 from cfepy.ground.topics import Topic
 from cfepy.ground.values import int_of, line_of, texts_of
@@ -26,6 +28,8 @@ from cfepy.suggestions import did_you_mean
 from cfepy.tbl import TableType
 
 DECLARATIONS = ("COMMANDS", "TELEMETRY")
+TABLES = "TABLES"
+CF = "/cf/"
 ROS_PACKETS = "rospy_shim.parameters.table"
 """The code in which the application ROS declares its packets, as a loader finds it."""
 
@@ -73,6 +77,24 @@ class Dictionary:
             else:
                 self.telemetry.setdefault(each.name, each)
                 self._by_id.setdefault(each.msg_id, each)
+
+    def add_from_table(self, kind: TableType, image: bytes | None) -> None:
+        """Take in the packets that follow from a table; a topic that is known from the mission file stays one by name.
+
+        Args:
+            kind: of the table.
+            image: the whole table; None takes in nothing.
+        """
+        if kind.telemetry is None or image is None:
+            return
+        known = {
+            msg_id: each if isinstance(each, Telemetry) else Telemetry(each.name, msg_id)
+            for msg_id, each in self._by_id.items()
+        }
+        for each in kind.telemetry(image, known):
+            self.telemetry.setdefault(each.name, each)
+            if not isinstance(self._by_id.get(each.msg_id), Telemetry):
+                self._by_id[each.msg_id] = each
 
     def learn(self, topics: Iterable[Topic]) -> None:
         """Take in what a running mission knows of its topics; a packet that an application declares stays as it is."""
@@ -171,11 +193,36 @@ def dictionary_of(spec: MissionSpec | None) -> Dictionary:
     found = Dictionary()
     for packets in CORE_PACKETS.values():
         found.add([*packets.COMMANDS, *packets.TELEMETRY])
+    tables: list[tuple[MissionSpec, TableType]] = []
     for each in (spec, *(() if spec is None else spec.beside)):
-        found.add(declared(each, DECLARATIONS, found.problems))
+        items = declared(each, (*DECLARATIONS, TABLES), found.problems)
+        found.add(item for item in items if not isinstance(item, TableType))
+        if each is not None:
+            tables += [(each, kind) for kind in items if isinstance(kind, TableType) and kind.telemetry is not None]
     if spec is not None:
         found.add(Topic(topic.name, topic.msg_id, raw=topic.raw) for topic in spec.ros.topics.values())
+    for owner, kind in tables:
+        found.add_from_table(kind, _default_image(owner, kind, found.problems))
     return found
+
+
+def _default_image(spec: MissionSpec, kind: TableType, problems: list[str]) -> bytes | None:
+    """The whole image of a table as a mission loads it at first, of a file in its folder or with its application."""
+    name = kind.file.removeprefix(CF)
+    if name == kind.file or not is_contained(f"/{name}"):
+        return None
+    packages = [code.parent for _, code in _codes(spec) if isinstance(code, Path)]
+    places = [spec.folder / name, *(package / "tables" / name for package in packages)]
+    file = next((place for place in places if place.is_file()), None)
+    if file is None:
+        return None
+    try:
+        with open(file, "rb") as opened:
+            image = tbl.read(opened.read(HEADER_SIZE + TABLE_HEADER_SIZE + kind.size))
+    except (CfeError, OSError) as error:
+        problems.append(f"{file} is no table file: {error}")
+        return None
+    return (bytes(image.offset) + image.data)[: kind.size].ljust(kind.size, b"\0")
 
 
 def declared(spec: MissionSpec | None, attributes: Sequence[str], problems: list[str]) -> list[Any]:

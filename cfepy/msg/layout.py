@@ -194,6 +194,7 @@ class Layout:
         fields: (name, type) pairs in order, types as the module says.
         on_the_wire: big-endian and without padding, as an application packs it by hand; for a payload, not for a struct
             inside of another one.
+        packed: without padding, as `__attribute__((packed))` of C compilers.
 
     Attributes:
         size: bytes, padding at the end included (sizeof).
@@ -210,7 +211,9 @@ class Layout:
 
     __slots__ = ("_fields", "_struct", "align", "code", "leaves", "name", "offsets", "on_the_wire", "size", "sizes")
 
-    def __init__(self, name: str, fields: Iterable[tuple[str, Any]], *, on_the_wire: bool = False) -> None:
+    def __init__(
+        self, name: str, fields: Iterable[tuple[str, Any]], *, on_the_wire: bool = False, packed: bool = False
+    ) -> None:
         self.name: str = name
         self.on_the_wire: bool = on_the_wire
         self._fields: dict[str, _Type] = {}
@@ -219,7 +222,7 @@ class Layout:
                 raise UsageError("is declared twice", field=f"{name}.{field}")
             self._fields[field] = _parse_type(kind, f"{name}.{field}")
         self.sizes: dict[str, int] = {field: kind.size for field, kind in self._fields.items()}
-        aligns = [] if on_the_wire else [kind.align for kind in self._fields.values()]
+        aligns = [] if on_the_wire or packed else [kind.align for kind in self._fields.values()]
         self.align: int = max(aligns, default=1)
         self.leaves: int = sum(kind.leaves for kind in self._fields.values())
         self._place()

@@ -6,11 +6,11 @@ says in its table header and in CFE_TBL_FILEDEF.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, cast
 
-from cfepy.msg import Layout
+from cfepy.msg import Layout, Telemetry
 from cfepy.status import UsageError
 from cfepy.tbl.image import TableImage, pack_rows, unpack_rows
 
@@ -31,6 +31,8 @@ class TableType:
         description: of its file, at most 31 characters.
         fault: the application's validation, for those who cannot ask the application: given a whole image, it says
             what the application refuses it for, or None.
+        telemetry: for those who cannot ask the application, the packets that it makes as the table says: given a whole
+            image, and the telemetry that is declared otherwise, by MsgId.
 
     >>> point = TableType("APP.Points", Layout("Point", [("X", "u8"), ("Y", "u8")]), rows=3)
     >>> point.pack({1: {"X": 7}}).hex()
@@ -45,6 +47,9 @@ class TableType:
     file: str = ""
     description: str = ""
     fault: Callable[[bytes | memoryview], str | None] | None = field(default=None, compare=False)
+    telemetry: Callable[[bytes | memoryview, Mapping[int, Telemetry]], Iterable[Telemetry]] | None = field(
+        default=None, compare=False
+    )
 
     @property
     def own_name(self) -> str:

@@ -9,10 +9,11 @@ import pytest
 
 from apps.hk import COMMANDS, TABLES, HK_AppMain, packets, run
 from apps.hk import TELEMETRY as TLM
+from apps.hk.combined import combined_telemetry
 from apps.hk.copy_table import find_fault
 from apps.hk.tables import hk_cpy_tbl
 from cfepy.es import APP_ERROR, APP_EXIT
-from cfepy.msg import Layout, get_msg_id, get_size, telemetry
+from cfepy.msg import Layout, Telemetry, get_msg_id, get_size, telemetry
 from cfepy.status import (
     CFE_SB_BAD_ARGUMENT,
     CFE_SB_PIPE_RD_ERR,
@@ -35,6 +36,7 @@ TELEMETRY = {
     packet["mid"]: bytes.fromhex(packet["hex"])
     for packet in json.loads((DATA / "packets.json").read_text())["telemetry"]
 }
+COPY_TABLE = packets.COPY_TABLE
 SEND_1 = packets.SEND_COMBINED_PKT.packet(OutMsgToSend=0x089C)
 SEND_HK = packets.SEND_HK.packet()
 CORE = hk_cpy_tbl.CORE_HK_MIDS
@@ -303,3 +305,29 @@ def test_table_calls_that_fail(
     assert hk.events[-1][:2] == event[:2]
     assert hk.events[-1][2].startswith(event[2])
     assert hk.exit_status == (APP_EXIT if function == "validate" else APP_ERROR)
+
+
+def test_what_is_in_combined_packets_follows_from_the_table() -> None:
+    """Whole fields have their names, the rest is bytes; what overlaps or lies in the header is left out."""
+    source = Telemetry("SRC_HK_TLM", 0x0880, Layout("Src", [("A", "u8"), ("B", "u32"), ("C", "char[4]")]))
+    copies = [  # from packet, byte, to packet, byte, bytes
+        (0x0880, 20, 0x089C, 17, 8),
+        (0x0880, 22, 0x089C, 26, 2),
+        (0x0880, 20, 0x089C, 28, 4),
+        (0x0880, 16, 0x089C, 16, 2),
+        (0x0881, 18, 0x08A1, 12, 6),
+    ]
+    rows = [dict(zip(COPY_TABLE.row.fields, (a, b, c, d, e), strict=True)) for a, b, c, d, e in copies]
+    one, other = combined_telemetry(COPY_TABLE.pack(rows), {0x0880: source})
+    assert (one.name, one.msg_id, other.name, other.msg_id) == ("HK_COMBINED_PKT1", 0x089C, "HK_COMBINED_08A1", 0x08A1)
+    assert list(one.payload.offsets.items()) == [
+        ("SRC_HK_TLM_A", 0),
+        ("SRC_HK_TLM_B", 1),
+        ("SRC_HK_TLM_C", 5),
+        ("spare_9", 9),
+        ("SRC_HK_TLM_from_22", 10),
+        ("SRC_HK_TLM_B_2", 12),
+    ]
+    assert one.payload.size == 16
+    assert list(other.payload.offsets.items()) == [("MID_0881_from_22", 0)]
+    assert (other.payload.size, next(other.payload.cells()).type) == (2, "u8")

@@ -12,8 +12,10 @@ import pytest
 from apps.to_lab import packets as to_lab
 from cfepy.cli.main import main
 from cfepy.console import Console
+from cfepy.ground import dictionary_of, topics_of
 from cfepy.ground.link import GroundLink
-from cfepy.mission import Mission, shipped_missions
+from cfepy.mission import Mission, PacketWatch, Seen, read_mission, shipped_missions
+from cfepy.msg import MsgType, get_type
 from cfepy.pilot import pilot
 from cfepy.pilot.plan import RunPlan
 from cfepy.resources import shipped
@@ -200,3 +202,22 @@ def test_lab_is_nasas_sample_mission() -> None:
     assert down == housekeeping | {0x0808}
     assert not flight.record.resets
     assert flight.cfe.evs.errors_by_app == {}
+
+
+# -- the dictionary ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", shipped_missions())
+def test_the_dictionary_has_all_telemetry_that_is_sent(name: str) -> None:
+    """No packet of theirs is opaque."""
+    seen: dict[int, Seen] = {}
+    spec = read_mission(name)
+    watch = PacketWatch(lambda each: seen.setdefault(each.msg_id, each))
+    with Mission(spec, console=Console(quiet=True), attachments=[watch]) as flight:
+        flight.run_for(25)
+        dictionary = dictionary_of(spec)
+        dictionary.learn(topics_of(flight))
+    decoded = [dictionary.decode(each.packet) for each in seen.values() if get_type(each.packet) == MsgType.TLM]
+    assert len(decoded) >= 3
+    assert {each.name: each.problem for each in decoded if each.problem} == {}
