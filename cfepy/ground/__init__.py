@@ -29,18 +29,31 @@ if TYPE_CHECKING:
     from cfepy.ground.node import GroundConsole, empty_mission, ground_node_ended, with_ground_node, with_player
     from cfepy.ground.recording import RecordingSummary, rewrite, summary_of
     from cfepy.ground.series import Samples, Series, SeriesRecorder, SeriesSet, bag_series, candidates, packet_series
+    from cfepy.ground.shown_packets import (
+        APPLICATIONS,
+        CLOCK,
+        PACKAGE,
+        TOO_SHORT,
+        ShownPacket,
+        ShownPackets,
+        definitions_of,
+    )
     from cfepy.ground.survey import LOOK_S, MidRow, Survey, lock_path, lock_text, locked, spread_out, surveyed_topics
     from cfepy.ground.topics import Topic, library_of, plain, topic_id, topics_of
     from cfepy.ground.values import flat, int_of, line_of, number_of, packet_of, text_of, unknown_field
 
 __all__ = [
+    "APPLICATIONS",
     "CI_PORT",
+    "CLOCK",
     "EVENTS",
     "EVENT_IDS",
     "EVENT_TYPES",
     "LOOK_S",
+    "PACKAGE",
     "PACKETS",
     "ROS",
+    "TOO_SHORT",
     "TO_PORT",
     "BagReader",
     "CommandTrial",
@@ -58,10 +71,13 @@ __all__ = [
     "Series",
     "SeriesRecorder",
     "SeriesSet",
+    "ShownPacket",
+    "ShownPackets",
     "Survey",
     "Topic",
     "bag_series",
     "candidates",
+    "definitions_of",
     "dictionary_of",
     "empty_mission",
     "event_json",
@@ -178,6 +194,15 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "bag_series",
                 "packet_series",
                 "candidates",
+            ),
+            ".shown_packets": (
+                "APPLICATIONS",
+                "CLOCK",
+                "PACKAGE",
+                "TOO_SHORT",
+                "ShownPacket",
+                "ShownPackets",
+                "definitions_of",
             ),
             ".survey": (
                 "LOOK_S",

@@ -16,12 +16,12 @@ from selectors import EVENT_READ, DefaultSelector
 from typing import TYPE_CHECKING, Any, NamedTuple
 from xmlrpc.client import dumps
 
+from cfepy.ground import APPLICATIONS, CLOCK, TOO_SHORT, ShownPackets
 from cfepy.io import OUT_OF, PeerCounts
 from cfepy.mission import Mission
 from cfepy.ros_host.errands import Errands
 from cfepy.ros_host.mission_node import ANY, MissionNode, OutsideClient
 from cfepy.ros_host.peers import OutsideCall, OutsidePublisher
-from cfepy.ros_host.shown import APPLICATIONS, CLOCK, ShownPackets
 from cfepy.ros_host.tcpros import frame
 from cfepy.status import CfeError
 from cfepy.units import NS_PER_S
@@ -423,7 +423,7 @@ class RosHost:
             count = self.counts.of(topic, client.caller, OUT_OF)
             if payload is None:
                 count.dropped += 1
-                count.why = "a packet is shorter than its layout"
+                count.why = TOO_SHORT
                 continue
             client.send(frame(payload))
             count.messages += 1

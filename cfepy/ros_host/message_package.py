@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from cfepy.ground import PACKAGE, definitions_of
 from cfepy.markup import escaped
 from cfepy.msg import Telemetry
-from cfepy.ros_host.shown import PACKAGE, definitions_of
 
 
 def telemetry_package(telemetry: Iterable[Telemetry], mission: str) -> dict[str, str]:

@@ -9,8 +9,8 @@ import socket
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from cfepy.ground import APPLICATIONS
 from cfepy.io import ENDED, INTO, OUT_OF, Listening, PeerSocket, listening_socket
-from cfepy.ros_host.shown import APPLICATIONS
 from cfepy.ros_host.tcpros import LONGEST_FRAME, TcprosFrames, frame, pack_header, parse_header
 from cfepy.ros_host.xmlrpc_server import XmlRpcServer
 from rospy_shim.master.calls import Answer, call

@@ -11,9 +11,9 @@ import pytest
 
 from cfepy.cli.main import main
 from cfepy.ground import dictionary_of
+from cfepy.ground.shown_packets import type_of
 from cfepy.mission import read_mission
 from cfepy.msg import Telemetry
-from cfepy.ros_host.shown import type_of
 
 PYTHON, GENERATOR = "/usr/bin/python3", Path("/usr/lib/genpy/genmsg_py.py")  # Debian's python3-genpy
 HEADER = "uint32 seq\ntime stamp\nstring frame_id\n"

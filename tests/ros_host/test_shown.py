@@ -8,12 +8,12 @@ import pytest
 
 from cfepy.console import Console
 from cfepy.ground import dictionary_of
+from cfepy.ground.shown_packets import PacketSerializer, type_of
 from cfepy.io.host_network import HostNetwork
 from cfepy.mission import Mission
 from cfepy.msg import Layout, Telemetry, command
 from cfepy.pilot.check import check_mission
 from cfepy.ros_host import RosHost, ServedMaster
-from cfepy.ros_host.shown import PacketSerializer, type_of
 from cfepy.ros_host.tcpros import frame
 from cfepy.status import UsageError
 from rospy_shim.msgs import from_full_text

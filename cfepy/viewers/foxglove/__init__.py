@@ -14,9 +14,9 @@ import time
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from cfepy.ground import Dictionary, dictionary_of
+from cfepy.ground import TOO_SHORT, Dictionary, ShownPackets, dictionary_of
 from cfepy.io import INTO, OUT_OF, PeerCounts
-from cfepy.mission import Mission, Seen, TopicWatch
+from cfepy.mission import Mission, Seen, TopicMessage, TopicWatch
 from cfepy.msg import get_header_version
 from cfepy.viewers.foxglove.client_listener import ClientListener
 from cfepy.viewers.foxglove.client_topics import PEER, ClientTopics
@@ -93,6 +93,11 @@ class FoxgloveViewer(TopicWatch):
         mission.record.tables[TABLE] = self._counts.rows
         self._dictionary = dictionary_of(mission.spec)
         self._channels = ShownChannels(self._server.channel, self._dictionary, self._listener.listeners, self._counts)
+        self._shown = shown = ShownPackets(mission.spec)
+        self._shown_as: dict[int, list[str]] = {}
+        for topic, packet in shown.packets.items():
+            self._shown_as.setdefault(packet.msg_id, []).append(topic)
+            self._channels.announce(topic, shown.header(topic) or {})
         self._incoming = ClientTopics(mission, self._dictionary, self._counts, self, self._server.tell_problem)
 
     def _is_wanted(self, msg_id: int) -> bool:
@@ -101,10 +106,25 @@ class FoxgloveViewer(TopicWatch):
     def take_packet(self, seen: Seen) -> None:
         """See `TopicWatch.take_packet`."""
         super().take_packet(seen)
+        for topic in self._shown_as.get(seen.msg_id, ()):
+            self._show_as(topic, seen)
         declared = None if get_header_version(seen.packet) else self._dictionary.declared_as(seen.packet)
         if declared is None and self._topic(seen.msg_id) is not None:
             return  # the message of a ROS topic, which has been shown
         self._channels.show_packet(seen, declared, self._stamp(seen.at_ns) or 0)
+
+    def _show_as(self, topic: str, seen: Seen) -> None:
+        """Show the packet of an application as the message that the mission file makes of it."""
+        header = self._shown.header(topic) or {}
+        if not self._channels.announce(topic, header).is_heard:
+            return
+        payload = self._shown.packets[topic].serialize(seen.packet)
+        if payload is None:
+            row = self._counts.of(topic, PEER, OUT_OF)
+            row.dropped += 1
+            row.why = TOO_SHORT
+        else:
+            self._channels.show_message(TopicMessage(topic, header, payload, seen.at_ns, self._stamp(seen.at_ns)))
 
     def _known_parameters(self) -> Mapping[str, Any]:
         return self._parameters.values

@@ -8,11 +8,13 @@ put aside while its tasks run, and handed on between two pieces of the run.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 from xmlrpc.client import dumps
 
+from cfepy.ground import APPLICATIONS, TOO_SHORT, ShownPacket
 from cfepy.mission import Mission
+from cfepy.msg import get_msg_id
 from cfepy.status import CfeError, UsageError
 from cfepy.units import NS_PER_S
 from cfepy.viewers.rosbridge.json_values import Reading, json_values
@@ -78,15 +80,24 @@ class BridgeNode:
     Args:
         mission: the mission.
         uri: where the node answers, for the master.
-        lost: told of each message that was left out because too much was put aside, by its topic.
+        lost: told of each message that was left out: its topic, and why.
+        packets: those of applications that are shown, by topic.
 
     Attributes:
         types: what is known of types.
         reading: makes messages of what clients send.
+        packets: as given.
     """
 
-    def __init__(self, mission: Mission, uri: str, lost: Callable[[str], object]) -> None:
-        self.types = KnownTypes(mission)
+    def __init__(
+        self,
+        mission: Mission,
+        uri: str,
+        lost: Callable[[str, str], object],
+        packets: Mapping[str, ShownPacket],
+    ) -> None:
+        self.types = KnownTypes(mission, packets)
+        self.packets = packets
         self.reading = Reading(self.types.message_class, self.ros_time)
         self._lost = lost
         self._mission = mission
@@ -182,7 +193,7 @@ class BridgeNode:
                 self._register_publisher(topic, published)
             except UsageError:
                 del self._published[topic]
-        for topic, heard in self._heard.items():
+        for topic, heard in self._heard_in_graph():
             heard.publishers.clear()
             heard.latched.clear()
             try:
@@ -308,9 +319,12 @@ class BridgeNode:
         found = None if raw else self._fitting(topic, kind)
         if heard is None:
             heard = _Heard(found)
-            self._register_subscriber(topic, heard)
-            self._heard[topic] = heard
-            self._connect(topic, heard, self._publishers_of(topic))
+            if topic in self.packets:
+                self._heard[topic] = heard
+            else:
+                self._register_subscriber(topic, heard)
+                self._heard[topic] = heard
+                self._connect(topic, heard, self._publishers_of(topic))
         if heard.kind is None and found is not None:
             heard.kind = found
             for message in heard.latched.values():
@@ -353,7 +367,7 @@ class BridgeNode:
         if self._ros is None or not (self._heard or self._calls):
             return
         publishers = self._ros.switchboard.master.registry.publishers()
-        for topic, heard in self._heard.items():
+        for topic, heard in self._heard_in_graph():
             others = {*publishers.get(topic, {})} - {NODE}
             if others != heard.publishers:
                 self._connect(topic, heard, others)
@@ -369,15 +383,33 @@ class BridgeNode:
         del heard.clients[client]
         if not heard.clients:
             del self._heard[topic]
+            if topic in self.packets:
+                return
             for publisher in ("", *sorted(heard.publishers)):
                 self._act("subscribe no more", topic, NODE, publisher)
             self.ask("unregisterSubscriber", topic, self._uri)
+
+    def _heard_in_graph(self) -> list[tuple[str, _Heard]]:
+        """What clients hear of nodes; packets of applications are watched, and the mission does not see it."""
+        return [(topic, heard) for topic, heard in self._heard.items() if topic not in self.packets]
+
+    def show(self, packet: bytes) -> None:
+        """An application has sent a packet; called inside the simulation."""
+        msg_id = get_msg_id(packet)
+        for topic, shown in self.packets.items():
+            if shown.msg_id != msg_id or topic not in self._heard:
+                continue
+            payload = shown.serialize(packet)
+            if payload is None:
+                self._lost(topic, TOO_SHORT)
+            else:
+                self._put(topic, APPLICATIONS, payload)
 
     def _put(self, topic: str, publisher: str, payload: bytes) -> None:
         """Put a message aside."""
         self._waiting += len(payload)
         if self._waiting > MOST_WAITING:
-            self._lost(topic)
+            self._lost(topic, "too much between two pieces of the run")
         else:
             self._messages.append((topic, publisher, payload))
 
@@ -394,6 +426,8 @@ class BridgeNode:
     def _latches(self, topic: str, publisher: str) -> bool:
         if publisher == NODE:
             return topic in self._published and self._published[topic].latching
+        if topic in self.packets:
+            return False
         assert self._ros is not None
         node = self._ros.graph.nodes.get(publisher)
         link = self._ros.outside.links.get((topic, publisher)) if node is None else node.links.get(topic)
@@ -521,7 +555,7 @@ class BridgeNode:
         self._put(topic, publisher, payload)
 
     def packet(self, topic: str, packet: bytes) -> None:
-        """See `WayOut.packet`; packets of applications are not shown here."""
+        """See `WayOut.packet`; packets of applications are watched (`show`), and not asked for."""
 
     def request(self, service: str, number: int, header: dict[str, str], body: bytes) -> None:
         """See `WayOut.request`."""

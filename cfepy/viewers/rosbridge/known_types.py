@@ -5,9 +5,10 @@ Texts of errors are those of rosbridge_library's ros_loader, where they fit.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Literal
 
+from cfepy.ground import ShownPacket
 from cfepy.mission import Mission
 from cfepy.status import UsageError
 from rospy_shim.graph.compiled import CompiledService
@@ -28,10 +29,12 @@ class KnownTypes:
 
     Args:
         mission: the mission.
+        packets: those of applications that are shown, by topic.
     """
 
-    def __init__(self, mission: Mission) -> None:
+    def __init__(self, mission: Mission, packets: Mapping[str, ShownPacket]) -> None:
         self._mission = mission
+        self._packets = packets
 
     @property
     def _ros(self) -> RosRuntime | None:
@@ -41,6 +44,8 @@ class KnownTypes:
         """The type of a topic; "" as long as it is not known."""
         ros = self._ros
         found = "" if ros is None else ros.switchboard.master.registry.topic_types().get(topic, "")
+        if found in ("", ANY) and topic in self._packets:
+            return self._packets[topic].type.name
         return "" if found == ANY else found
 
     def message_class(self, name: str) -> MessageClass:
@@ -56,6 +61,10 @@ class KnownTypes:
         for topic in () if self._ros is None else self._ros.graph.topics.values():
             if topic.type == full_name and topic.definition:
                 return library_of(full_name, topic.definition).message_class(full_name)
+        for shown in self._packets.values():
+            own = library_of(shown.type.name, shown.type.definition)
+            if own.has(full_name):
+                return own.message_class(full_name)
         raise self._unknown(full_name, "msg")
 
     def _libraries(self) -> Iterator[Library]:

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any
 from urllib.parse import urlsplit
 
+from cfepy.ground import APPLICATIONS
 from cfepy.status import UsageError
 from cfepy.viewers.rosbridge.bridge_node import NODE, BridgeNode, fields_of
 from cfepy.viewers.rosbridge.known_types import ANY, NotPossible
@@ -98,8 +99,10 @@ class Rosapi:
     # -- the graph -----------------------------------------------------------------------------------------------------
 
     def _publishers(self) -> Entries:
+        """The master's, and the node that stands for applications whose packets are shown."""
         ros = self._node.ros
-        return {} if ros is None else ros.switchboard.master.registry.publishers()
+        found = {} if ros is None else ros.switchboard.master.registry.publishers()
+        return found | {topic: {APPLICATIONS: "", **found.get(topic, {})} for topic in self._node.packets}
 
     def _subscribers(self) -> Entries:
         ros = self._node.ros
@@ -128,6 +131,7 @@ class Rosapi:
     def _topics_for_type(self, asked: Any) -> Values:
         ros = self._node.ros
         types = {} if ros is None else ros.switchboard.master.registry.topic_types()
+        types = types | {topic: shown.type.name for topic, shown in self._node.packets.items()}
         return {"topics": [topic for topic, kind in types.items() if kind == asked.type]}
 
     def _topics_and_raw_types(self, asked: Any) -> Values:

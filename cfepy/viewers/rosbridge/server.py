@@ -13,8 +13,9 @@ from selectors import EVENT_READ, DefaultSelector
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs, urlsplit
 
-from cfepy.attachment import Attachment
+from cfepy.ground import ShownPackets
 from cfepy.io import INTO, OUT_OF, Listening, PeerCounts, listening_socket
+from cfepy.mission import PacketWatch
 from cfepy.status import UsageError
 from cfepy.viewers.listen import Admission, ListenPlace
 from cfepy.viewers.rosbridge.bridge_node import BridgeNode
@@ -36,7 +37,7 @@ TABLE = "viewer_peers"  # of the report
 OUTSIDE = "rosbridge"
 
 
-class RosbridgeServer(Attachment):
+class RosbridgeServer(PacketWatch):
     """The server: an attachment of the mission, and a guest at its bridge to the outside.
 
     Args:
@@ -53,6 +54,8 @@ class RosbridgeServer(Attachment):
 
     def __init__(self, place: ListenPlace, admission: Admission, counts: PeerCounts) -> None:
         protocols()  # before anything is open
+        super().__init__(lambda seen: self._node.show(seen.packet), lambda msg_id: msg_id in self._shown)
+        self._shown: frozenset[int] = frozenset()
         self._admission = admission
         self._counts = counts
         self._selector = DefaultSelector()
@@ -80,7 +83,9 @@ class RosbridgeServer(Attachment):
     def begin(self, mission: Any) -> None:
         """See `Attachment.begin`."""
         uri = f"http://{self.place}/"
-        self._node = BridgeNode(mission, uri, self._lost)
+        packets = ShownPackets(mission.spec).packets
+        self._shown = frozenset(each.msg_id for each in packets.values())
+        self._node = BridgeNode(mission, uri, self._lost, packets)
         self._rosapi = Rosapi(self._node, uri)
         mission.record.tables[TABLE] = self._counts.rows
 
@@ -179,10 +184,10 @@ class RosbridgeServer(Attachment):
         except BlockingIOError:
             pass  # nobody has nudged
 
-    def _lost(self, topic: str) -> None:
+    def _lost(self, topic: str, why: str) -> None:
         count = self._counts.of(topic, OUTSIDE, OUT_OF)
         count.dropped += 1
-        count.why = "too much between two pieces of the run"
+        count.why = why
 
     def _refused(self, peer: str, why: str) -> None:
         count = self._counts.of(CONNECTION, peer, INTO)

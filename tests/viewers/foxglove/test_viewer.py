@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from jsonschema import Draft202012Validator
 
+from cfepy.ground import dictionary_of
 from cfepy.mission import Arrival, Mission
-from rospy_shim.msgs import message_class, service_class
+from cfepy.nodes.config import BridgedPacket, RosBridge
+from rospy_shim.msgs import from_full_text, message_class, service_class
 from tests.viewers.foxglove.runs import TALKER, ShownRun, shown, spec_of
 
 STRING = message_class("std_msgs/String")
@@ -270,3 +273,21 @@ def test_a_processor_reset_leaves_viewers_connected(run: ShownRun) -> None:
         client.publish(1, text("again"))
         client.wait_for(lambda: client.of("/chatter"))
         assert client.of("/chatter") == [text("AGAIN of /foxglove_1")]
+
+
+def test_packets_that_the_mission_file_shows_are_messages_of_ros_as_well(tmp_path: Path) -> None:
+    """With the types that ROS nodes outside see."""
+    spec = spec_of(tmp_path, {"talker": TALKER})
+    bridge = RosBridge({"/cfs/es_hk": BridgedPacket("CFE_ES_HK_TLM"), "/cfs/raw": BridgedPacket("0x0800", True)})
+    with shown(replace(spec, ros=replace(spec.ros, bridge=bridge))) as run, run.client() as client:
+        client.subscribe("/cfs/es_hk", "/cfs/raw")
+        channel = client.channels["/cfs/es_hk"]
+        assert (channel["encoding"], channel["schemaEncoding"]) == ("ros1", "ros1msg")
+        assert channel["schemaName"] == "cfe_tlm/CFE_ES_HK_TLM"
+        client.advertise(1, "/cfe/CFE_ES_SEND_HK", "", "json")
+        client.publish(1, b"{}")
+        client.wait_for(lambda: client.of("/cfs/es_hk") and client.of("/cfs/raw"))
+        kind = from_full_text(channel["schemaName"], channel["schema"]).message_class(channel["schemaName"])
+        message = kind().deserialize(client.of("/cfs/es_hk")[-1])
+        packet = client.of("/cfs/raw")[-1][12:]
+        assert message.CFECoreChecksum == dictionary_of(run.mission.spec).decode(packet).values["CFECoreChecksum"] > 0

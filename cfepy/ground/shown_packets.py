@@ -15,7 +15,7 @@ import struct
 from collections.abc import Callable
 from typing import NamedTuple
 
-from cfepy.ground import dictionary_of
+from cfepy.ground.dictionary import dictionary_of
 from cfepy.mission import UNIX_AT_CFE_EPOCH, MissionSpec
 from cfepy.msg import TLM_HEADER_SIZE, Cell, Layout, Telemetry
 from cfepy.status import UsageError
@@ -27,6 +27,7 @@ RAW = "std_msgs/UInt8MultiArray"
 CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/Clock"
 PACKAGE = "cfe_tlm"
 RULE = "=" * 80
+TOO_SHORT = "a packet is shorter than its layout"
 _ROS = {
     **{"u8": "uint8", "i8": "int8", "u16": "uint16", "i16": "int16", "u32": "uint32", "i32": "int32"},
     **{"u64": "uint64", "i64": "int64", "f32": "float32", "f64": "float64", "bool": "bool"},
