@@ -13,7 +13,8 @@ from benchmarks.codec import codec
 from benchmarks.compiled import compiled
 from benchmarks.crowd import crowd
 from benchmarks.frames import frames
-from benchmarks.measure import machine
+from benchmarks.growth import growth
+from benchmarks.measure import contexts_here, machine
 from benchmarks.missions import missions
 from benchmarks.recording import recording
 from benchmarks.schedules import schedules
@@ -23,7 +24,7 @@ from benchmarks.universe import universe
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the benchmarks that the command line names, all of them by default."""
-    contexts = _contexts()
+    contexts = contexts_here()
     suites: dict[str, Callable[[], Mapping[str, float]]] = {
         "bus": lambda: bus(contexts),
         "missions": lambda: missions(contexts),
@@ -32,6 +33,7 @@ def main(arguments: list[str] | None = None) -> int:
         "services": lambda: services(contexts),
         "recording": lambda: recording(contexts),
         "frames": lambda: frames(contexts),
+        "growth": lambda: growth(contexts),
         "codec": codec,
         "compiled": lambda: compiled(contexts),
         "universe": lambda: {f"{name}.{each}": value for each in contexts for name, value in universe(each).items()},
@@ -53,15 +55,6 @@ def main(arguments: list[str] | None = None) -> int:
     else:
         sys.stdout.write(text)
     return 0
-
-
-def _contexts() -> tuple[str, ...]:
-    """The task contexts of this installation."""
-    try:
-        import greenlet  # noqa: F401
-    except ImportError:
-        return ("thread",)
-    return ("thread", "greenlet")
 
 
 if __name__ == "__main__":

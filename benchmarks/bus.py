@@ -27,9 +27,9 @@ class _Silent:
         pass
 
 
-def make_bus(context: str) -> SoftwareBus:
-    """A bus on a kernel of its own, with a spacecraft clock."""
-    kernel, ports, config = Kernel(context, Trace()), Ports(), PlatformConfig()
+def make_bus(context: str, config: PlatformConfig | None = None) -> SoftwareBus:
+    """A bus on a kernel of its own, with a spacecraft clock; `config` in place of cFE's limits."""
+    kernel, ports, config = Kernel(context, Trace()), Ports(), config or PlatformConfig()
     ports.evs, ports.memory = _Silent(), MemoryBudget(BoardProfile("linux"))  # type: ignore[assignment]
     ports.time = TimeServices(kernel, ports, config)
     return SoftwareBus(kernel, ports, config)

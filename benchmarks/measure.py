@@ -8,6 +8,8 @@ import sys
 from collections.abc import Callable
 from time import perf_counter
 
+from cfepy.rtos import GREENLET, THREAD, has_greenlets
+
 REPEATS = 5
 
 
@@ -27,6 +29,11 @@ def rate(run: Callable[[], int], repeats: int = REPEATS) -> float:
         count = run()
         best = max(best, count / (perf_counter() - begin))
     return best
+
+
+def contexts_here() -> tuple[str, ...]:
+    """The task contexts of this installation."""
+    return (THREAD, GREENLET) if has_greenlets() else (THREAD,)
 
 
 def machine() -> dict[str, object]:

@@ -12,10 +12,8 @@ CPU and is only told; and the time in which the process is stopped, or the compu
 from __future__ import annotations
 
 import contextlib
-import faulthandler
 import linecache
 import os
-import signal
 import sys
 import threading
 import time
@@ -26,6 +24,7 @@ from typing import NamedTuple
 
 from cfepy.rtos.context import frame_of_thread, insist, raise_in_thread
 from cfepy.rtos.kernel import Kernel
+from cfepy.rtos.stall_signals import LastResort, Waker
 from cfepy.rtos.task import Task, TaskExit
 from cfepy.status import StallError
 from cfepy.units import NS_PER_S
@@ -137,6 +136,7 @@ class StallWatch:
         self._waker = Waker()
         self._is_paused = self._has_lost = self._was_wanted = False
         self._stand: _Stand | None = None
+        self._before: Spent | None = None
         self._wanted_s = self._ending_s = 0.0
 
     def begin(self) -> None:
@@ -181,14 +181,38 @@ class StallWatch:
     # -- looking -----------------------------------------------------------------------------------------------------
 
     def _look_on(self) -> None:
-        over, before = self._over, self.spent()
+        over = self._over
+        self._before = None
         while not over.wait(interval := self._interval()):
+            self._look_again(interval)
+
+    def _look_again(self, interval: float) -> None:
+        """Look, some seconds after the last look.
+
+        To ask what the process has had of the computer takes time for each of its threads, of which many missions, or
+        one with many nodes, have thousands. So a run whose clock goes on is not asked, nor one that stands by.
+        """
+        before = self._before
+        if not self._may_stall():
+            self._before = None
+            self._look(0.0, False, 0.0)
+        elif before is None:
+            self._look(0.0, False, 0.0)
+            self._before = self.spent()
+        else:
             now = self.spent()
             wall_s = min(now.wall_s - before.wall_s, 2 * interval)  # this process may have been stopped
             used_s = now.used_s - before.used_s
             is_busy = used_s + now.ready_s - before.ready_s >= BUSY * wall_s
             self._look(wall_s, is_busy, min(used_s, wall_s))
-            before = self.spent()
+            self._before = self.spent()
+
+    def _may_stall(self) -> bool:
+        """Whether the clock of a run has stood still since the last look, or the run is to end."""
+        kernel, stand = self._kernel, self._stand
+        if kernel.broken is not None or self.wanted():
+            return True
+        return kernel.is_running and stand is not None and stand.now_ns == kernel.progress()[0]
 
     def _interval(self) -> float:
         if self._kernel.broken is not None or self.wanted():
@@ -522,68 +546,3 @@ def _loop_line(code: CodeType, places: Sequence[_Place]) -> int:
     start, end = max(around, key=lambda loop: (loop[0], -loop[1]))
     lines = (step.positions.lineno for step in steps if start <= step.offset <= end and step.positions is not None)
     return min((line for line in lines if line is not None), default=places[0].line)
-
-
-# -- out of a wait -----------------------------------------------------------------------------------------------------
-
-
-class Waker:
-    """Lets Python's main thread look up from a function in C that waits, such as `time.sleep` or `input`.
-
-    What is to be raised in a thread waits until that executes Python. A signal lets the main thread do so: its handler,
-    in the middle of the wait. SIGURG is one that means nothing to a process that has no handler for it.
-
-    Attributes:
-        ident: of the main thread, while it can be woken; 0 else.
-    """
-
-    def __init__(self) -> None:
-        self.ident = 0
-
-    def begin(self) -> None:
-        """From now on the calling thread can be woken, if it is the main one and the system has such signals."""
-        if not hasattr(signal, "pthread_kill") or threading.current_thread() is not threading.main_thread():
-            return
-        if signal.getsignal(signal.SIGURG) in (signal.SIG_DFL, _look_up):
-            signal.signal(signal.SIGURG, _look_up)
-            self.ident = threading.get_ident()
-
-    def wake(self) -> None:
-        """Wake it, from another thread."""
-        signal.pthread_kill(self.ident, signal.SIGURG)
-
-    def end(self) -> None:
-        """Leave it alone."""
-        if self.ident == threading.get_ident() and signal.getsignal(signal.SIGURG) is _look_up:
-            signal.signal(signal.SIGURG, signal.SIG_DFL)
-        self.ident = 0
-
-
-def _look_up(*_: object) -> None:
-    """At the first step of this, Python raises what it was told to."""
-
-
-# -- the last resort ---------------------------------------------------------------------------------------------------
-
-
-class LastResort:
-    """Ends the process when a C function keeps all threads of Python from running, so that none can look on.
-
-    It counts CPU time, and is armed anew at each look: a process that is stopped, or waits, does not come to its end.
-    Python's `faulthandler` writes the stack to standard error, and the process is killed by SIGVTALRM. Only for a
-    process that has nothing else to do.
-    """
-
-    def __init__(self) -> None:
-        self._is_there = hasattr(signal, "setitimer") and hasattr(faulthandler, "register")
-        if self._is_there and not (sys.__stderr__ is None or sys.__stderr__.closed):
-            faulthandler.register(signal.SIGVTALRM, file=sys.__stderr__, all_threads=False, chain=True)
-
-    def arm(self, seconds: float) -> None:
-        """End the process after so many seconds of CPU time; 0 for never."""
-        if self._is_there:
-            signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
-
-    def disarm(self) -> None:
-        """Leave it alone."""
-        self.arm(0)

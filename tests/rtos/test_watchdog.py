@@ -457,3 +457,31 @@ def test_code_that_belongs_to_no_line_is_told_with_that_of_its_function() -> Non
     lineless = FunctionType(spin.__code__.replace(co_linetable=b""), {})
     stalled = ended(Kernel("thread"), lineless)
     assert stalled.place == f"test_watchdog.py:{spin.__code__.co_firstlineno}"
+
+
+def test_what_the_process_had_is_asked_only_when_a_clock_stands_still(kernel: Kernel) -> None:
+    """It takes time for each thread of the process, and each of many missions asks."""
+    asked = list[int]()
+
+    def spent() -> Spent:
+        asked.append(kernel.now)
+        return Spent(0.0, 0.0, 0.0)
+
+    def look() -> None:
+        watch._look_again(0.1)
+
+    def task() -> None:
+        for number in range(20):
+            look()
+            kernel.delay(10)
+            if number == 10:
+                look()
+                look()
+
+    watch = watched(kernel)
+    watch.spent = spent
+    look()
+    kernel.spawn("task", task)
+    kernel.run()
+    look()
+    assert set(asked) == {110}
