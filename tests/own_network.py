@@ -35,13 +35,14 @@ def _is_allowed() -> bool:
 needs_own_network = pytest.mark.skipif(not _is_allowed(), reason="this system lets nobody have a network of one's own")
 
 
-def run_in_own_network(module: str, *words: object, cwd: Path) -> str:
+def run_in_own_network(module: str, *words: object, cwd: Path, patience_s: float = PATIENCE_S) -> str:
     """Run a module with `__main__` in a network of its own; what it printed.
 
     Args:
         module: such as "tests.ground.page_flight".
         words: its arguments.
         cwd: its working folder.
+        patience_s: after how many seconds it is held to wait for ever.
     """
     command = [*UNSHARE, sys.executable, "-m", __name__, module, *map(str, words)]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1"}
@@ -53,7 +54,7 @@ def run_in_own_network(module: str, *words: object, cwd: Path) -> str:
         stderr=subprocess.STDOUT,
         text=True,
         check=False,
-        timeout=PATIENCE_S,
+        timeout=patience_s,
     )
     assert ended.returncode == 0, ended.stdout
     return ended.stdout

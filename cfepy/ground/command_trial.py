@@ -53,20 +53,22 @@ class CommandTrial(PacketWatch):
         """See `Attachment.begin`."""
         self._mission = mission
 
-    def run(self, run_until: Callable[[int], object], seconds: float) -> None:
+    def run(self, run_until: Callable[[int], object], seconds: float, patience: float = 0) -> None:
         """Wait until the mission is OPERATIONAL, send the command, and look what it causes.
 
         Args:
             run_until: lets the mission go on to a virtual time in ns.
             seconds: virtual time to wait for what the command causes.
+            patience: virtual time in s to wait, once it is OPERATIONAL, for somebody who takes the command.
 
         Raises:
             CfeError: the mission does not become OPERATIONAL.
         """
         mission, bus = self._mission, self._mission.cfe.sb
         self._boot(run_until)
+        self._wait_for_receivers(run_until, mission.kernel.now + round(patience * NS_PER_S))
         self._seen.clear()
-        self.receivers, self.sent_ns = receivers(bus, get_msg_id(self._packet)), mission.kernel.now
+        self.receivers, self.sent_ns = self._receivers(), mission.kernel.now
         bus.transmit_msg(self._packet, is_origination=False)
         run_until(mission.kernel.now + round(seconds * NS_PER_S))
         bus = mission.cfe.sb  # a reset has put another one there
@@ -84,6 +86,13 @@ class CommandTrial(PacketWatch):
                 text = f"the mission is not OPERATIONAL after {LONGEST_BOOT_NS // NS_PER_S} virtual seconds"
                 raise CfeError(CFE_ES_OPERATION_TIMED_OUT, text)
             run_until(mission.kernel.now + PIECE_NS)
+
+    def _wait_for_receivers(self, run_until: Callable[[int], object], until_ns: int) -> None:
+        while not self._receivers() and self._mission.kernel.now < until_ns:
+            run_until(self._mission.kernel.now + PIECE_NS)
+
+    def _receivers(self) -> list[str]:
+        return receivers(self._mission.cfe.sb, get_msg_id(self._packet))
 
 
 def _is_event(seen: Seen) -> bool:

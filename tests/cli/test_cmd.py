@@ -106,6 +106,18 @@ def test_a_command_that_nobody_takes_is_a_failure(make_mission: Write, capsys: p
     assert "QUIET_NOOP sent to nobody" in capsys.readouterr().out
 
 
+def test_a_command_for_a_processor_beside_it_waits_for_the_way_there(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cmd", "pair", "SAMPLE_APP_NOOP", "--with", "pair/client.scr"]) == 0
+    sent, *_, counted, _ = capsys.readouterr().out.splitlines()
+    assert sent == "0.850 SAMPLE_APP_NOOP sent to SBN"
+    assert "SAMPLE_APP_HK_TLM CommandErrorCounter=0 CommandCounter=1" in counted
+
+
+def test_a_command_that_nobody_takes_beside_it_either(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cmd", "pair", "SAMPLE_APP_NOOP", "--with", "lab"]) == 1
+    assert capsys.readouterr().out.startswith("5.600 SAMPLE_APP_NOOP sent to nobody")
+
+
 def test_an_app_that_dies_of_a_command_is_a_failure(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
     folder = make_mission("Dies")
     assert main(["cmd", str(folder), "CFE_ES_NOOP"]) == 1

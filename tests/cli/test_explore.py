@@ -13,6 +13,7 @@ from cfepy.exploration.shrink import Shrinker
 from cfepy.exploration.trial import Trial
 from tests.exploration import missions
 
+ROOT = Path(__file__).parents[2]
 EVENT = "event: LISTENER: ERROR event 1: nothing came in 100 ms"
 
 
@@ -53,6 +54,16 @@ def test_a_mission_that_always_goes_well(late: Path, capsys: pytest.CaptureFixtu
     assert orders == "  5 different orders"
     assert points.startswith("  under fifo others can get in at 16 points: ")
     assert chance.endswith(" at depth 3 (PCT's bound for 13 tasks and 16 points)")
+
+
+@pytest.mark.slow
+def test_a_search_of_orders_says_how_far_it_came_with_a_failure_too(capsys: pytest.CaptureFixture[str]) -> None:
+    folder = ROOT / "tests/quality/missions/mutex_order"
+    words = (folder, "--for", 1.3, "--from", 0.6, "--policy", "orders", "--shrink", 0, "--jobs", 1)
+    assert explore(*words) == FOUND_PROBLEMS
+    out = capsys.readouterr().out
+    assert "6 schedules, 2 failed: 1 distinct failure\n" in out
+    assert "  6 different orders, 6 of them in what tasks touch; no others were found\n" in out
 
 
 def test_a_failure_of_the_default_schedule_is_told_as_such(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

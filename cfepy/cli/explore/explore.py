@@ -45,7 +45,7 @@ def show(report: Report, stream: TextIO) -> None:
         print(f"an error in cfepy itself, under {trouble.schedule}; please report it:", file=stream)
         print(trouble.trouble, file=stream)
     print(summary(report), file=stream)
-    if not report.findings and report.is_steady:
+    if report.is_steady and (not report.findings or report.breadth.seen is not None):
         for line in report.breadth.lines():
             print(f"  {line}", file=stream)
     if report.coverage is not None and report.is_steady:

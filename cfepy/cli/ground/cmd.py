@@ -20,6 +20,7 @@ from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
 ANSWER_S = 2.0  # virtual time to wait for what a command causes
+COMPANY_S = 5.0  # and for somebody who takes it, from when all processors are on: they have to find each other
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -100,13 +101,18 @@ def _fly(plan: RunPlan, dictionary: Dictionary, declared: Command, packet: bytes
     seconds = ANSWER_S if plan.seconds is None else plan.seconds
     with takeoff(replace(plan, seconds=LONGEST_S), attachments=[trial]) as run:
         tell(run.notes)
-        trial.run(run.run_until, seconds)
+        trial.run(run.run_until, seconds, _patience(plan))
         problems = run.mission.record.deaths()
         unstruck = never_happened(run.mission)
     print(f"{trial.sent_ns / NS_PER_S:.3f} {declared.name} sent to {', '.join(trial.receivers) or 'nobody'}")
     _say_what_followed(trial, dictionary)
     tell((*problems, *unstruck))
     return ENDED_WELL if trial.receivers and not trial.errors and not problems else FOUND_PROBLEMS
+
+
+def _patience(plan: RunPlan) -> float:
+    companions = plan.companions()
+    return COMPANY_S + max(begins_ns for *_, begins_ns in companions) / NS_PER_S if companions else 0
 
 
 def _say_what_followed(trial: CommandTrial, dictionary: Dictionary) -> None:

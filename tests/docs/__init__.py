@@ -1,0 +1,1 @@
+"""The documentation's commands, given as its readers give them."""

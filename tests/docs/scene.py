@@ -1,0 +1,164 @@
+"""What a page's reader has before him, and how its commands are given here: a page's part of scenes.yaml."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from tests.docs.pages import ROOT, Block, blocks, commands, name_of
+
+CTRL_C = 130
+SCENES = Path(__file__).with_name("scenes.yaml")
+
+
+@dataclass(frozen=True)
+class Step:
+    """How one command is given, and what comes of it.
+
+    Attributes:
+        status: its exit status; 130 after Ctrl-C and 0 otherwise, if nothing is said.
+        typed: what is typed on its standard input, which ends then.
+        ready: it goes on in the background from when it has said this, until Ctrl-C at the end of the page.
+        until: Ctrl-C as soon as it has said this.
+        ends: commands in the background that end before it, by how they stand on the page.
+        says: a text that it must have printed.
+        shown: a text in the code block of the page that shows what it prints, where that is not below the command.
+        differs: why it does not print here what the page shows.
+        needs: programs without which it is left out.
+    """
+
+    status: int | None = None
+    typed: str = ""
+    ready: str = ""
+    until: str = ""
+    ends: tuple[str, ...] = ()
+    says: str = ""
+    shown: str = ""
+    differs: str = ""
+    needs: tuple[str, ...] = ()
+
+    @property
+    def ends_with(self) -> int:
+        """Its exit status."""
+        if self.status is not None:
+            return self.status
+        return CTRL_C if self.ready or self.until else 0
+
+    @property
+    def is_left_out(self) -> bool:
+        """Whether this computer lacks what it needs."""
+        return any(shutil.which(program) is None for program in self.needs)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A page's scene.
+
+    Attributes:
+        elsewhere: command to the file of the test that runs it as it stands on the page.
+        needs: programs without which the page is left out.
+        files: path in the scratch folder to path in the repository, None for the same, or to `{block: TEXT}` for the
+            page's code block that has this text.
+        before: commands that the reader has given before those of the page.
+        instead: text in commands to what stands in its place here, so that they end soon or find a computer.
+        steps: command to how it is given, where it is more than to run it.
+        not_run: command to the reason why it is not run here.
+    """
+
+    page: Path
+    elsewhere: dict[str, str] = field(default_factory=dict)
+    needs: tuple[str, ...] = ()
+    files: dict[str, Any] = field(default_factory=dict)
+    before: tuple[str, ...] = ()
+    instead: dict[str, str] = field(default_factory=dict)
+    steps: dict[str, dict[str, Any]] = field(default_factory=dict)
+    not_run: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def commands(self) -> list[str]:
+        """The commands that are run, as they stand on the page."""
+        others = {*self.not_run, *self.elsewhere}
+        own = [command for command in commands(self.page) if command not in others]
+        return [*self.before, *own] if own else []
+
+    def step(self, command: str) -> Step:
+        """How a command is given."""
+        return Step(**self.steps.get(command, {}))
+
+    def line(self, command: str) -> str:
+        """A command as it is run."""
+        for text, other in self.instead.items():
+            command = command.replace(text, other)
+        return command
+
+    def shown(self, command: str) -> str:
+        """What the page shows that a command prints, "" for nothing."""
+        step = self.step(command)
+        if step.shown:
+            return self._block_with(step.shown).text
+        return "" if step.differs else self._below().get(command, "")
+
+    def set_up(self, folder: Path) -> None:
+        """Put the reader's files into a folder."""
+        for name, source in self.files.items():
+            target = folder / name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            if isinstance(source, dict):
+                target.write_text(self._block_with(source["block"]).text, encoding="utf-8")
+            elif (ROOT / (source or name)).is_dir():
+                shutil.copytree(ROOT / (source or name), target, ignore=shutil.ignore_patterns("__pycache__"))
+            else:
+                shutil.copy(ROOT / (source or name), target)
+
+    def idle(self) -> Iterator[str]:
+        """Entries of the scene that fit nothing on the page."""
+        given = commands(self.page)
+        yield from (command for command in (*self.not_run, *self.elsewhere) if command not in given)
+        yield from (command for command in self.steps if command not in self.commands)
+        yield from (text for text in self.instead if not any(text in command for command in self.commands))
+        for name, source in self.files.items():
+            if isinstance(source, dict):
+                self._block_with(source["block"])
+            elif not (ROOT / (source or name)).exists():
+                yield name
+        for command in self.steps:
+            step = self.step(command)
+            if step.shown:
+                self._block_with(step.shown)
+            if step.differs and not self._below().get(command, "").strip():
+                yield f"{command}: differs"
+
+    def _below(self) -> dict[str, str]:
+        return {command: shown for block in blocks(self.page) for command, shown in block.session}
+
+    def _block_with(self, text: str) -> Block:
+        [block] = [block for block in blocks(self.page) if text in block.text]
+        return block
+
+
+@cache
+def table() -> dict[str, dict[str, Any]]:
+    """The scenes by page, as they are written down."""
+    found: dict[str, dict[str, Any]] = yaml.safe_load(SCENES.read_text(encoding="utf-8"))["pages"]
+    return found
+
+
+def scene_of(page: Path) -> Scene:
+    """The scene of a page.
+
+    Raises:
+        KeyError: it has none.
+    """
+    return Scene(page, **table()[name_of(page)] or {})
+
+
+def overlooked(page: Path) -> list[str]:
+    """The commands of a page that no scene speaks of, and lines that look like commands and are not read as such."""
+    unread = [line for block in blocks(page) for line in block.overlooked]
+    return unread if name_of(page) in table() else [*commands(page), *unread]
