@@ -190,15 +190,15 @@ class Accesses:
 
     # -- telling -------------------------------------------------------------------------------------------------------
 
-    def _let_in(self, frame: FrameType, name: str) -> None:
-        """Others may run before an access to something of this name."""
+    def _let_in(self, frame: FrameType) -> None:
+        """Others may run before an access."""
         if (
             self._has_points
             and self._point is not None
             and self._covers(frame.f_code.co_filename)
             and self._kernel.current not in self._loading
         ):
-            self._point(name)
+            self._point()
 
     def _covers(self, file: str) -> bool:
         found = self._covered.get(file)
@@ -209,7 +209,7 @@ class Accesses:
     def _tell(self, frame: FrameType, thing: int, key: str, is_write: bool, name: str) -> None:
         """Let others run, then tell of an access."""
         if self._has_points:
-            self._let_in(frame, name)
+            self._let_in(frame)
         self._tell_now(frame, thing, key, is_write, name)
 
     def _tell_now(self, frame: FrameType, thing: int, key: str, is_write: bool, name: str) -> None:
@@ -223,8 +223,7 @@ class Accesses:
     def line(self) -> None:
         """A statement begins."""
         if self._point is not None and self._kernel.current not in self._loading:
-            frame = sys._getframe(1)
-            self._point((frame.f_code, frame.f_lineno))
+            self._point()
 
     def called(self, value: T) -> T:
         """A call came back: others may run, if it has been in cfepy, so that what it found out may be old by now."""
@@ -381,7 +380,7 @@ class Accesses:
 
     def _tell_written(self, frame: FrameType, thing: Any, key: Any, text: str) -> None:
         """An item is set: one that a dictionary does not have changes all of it."""
-        self._let_in(frame, text)
+        self._let_in(frame)
         try:
             item = WHOLE if issubclass(type(thing), dict) and key not in thing else self._item(thing, key)
         except TypeError:  # no key of a dictionary, as the program is about to find out
@@ -389,9 +388,7 @@ class Accesses:
         self._tell_now(frame, self._numbers.of(thing), item, True, _item_name(text, item))
 
     def _tell_item(self, frame: FrameType, thing: Any, item: str, is_write: bool, text: str) -> None:
-        if self._has_points:
-            self._let_in(frame, text)
-        self._tell_now(frame, self._numbers.of(thing), item, is_write, _item_name(text, item))
+        self._tell(frame, self._numbers.of(thing), item, is_write, _item_name(text, item))
 
     def _item(self, thing: Any, key: Any) -> str:
         """The key of an item as a text: simple ones as they are, others by their number."""

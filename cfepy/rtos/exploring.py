@@ -7,7 +7,7 @@ of `Kernel`, which pays nothing for this module.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from heapq import heappop, heappush
 from typing import Any, Protocol
 
@@ -114,7 +114,6 @@ class ExploringKernel(Kernel):
         self._any = policy.any_priority
         self._hold_ns = policy.hold_ns
         self._decisions = 0
-        self._about: Hashable = None  # what the running task is about to touch, while others may get in before that
         self._going_on: Task | None = None  # the task that was put in front just now: it could go on
         self._left: Task | None = None  # the task that gave up its turn, or ought to, just now
         self._hushed: dict[Task, None] = {}  # tasks that make others ready and go on, and those that owe a point
@@ -142,12 +141,8 @@ class ExploringKernel(Kernel):
 
     # -- scheduling points -----------------------------------------------------------------------------------------
 
-    def point(self, about: Hashable = None) -> None:
-        """The current task calls something: others may get in before that.
-
-        Args:
-            about: what it is about to touch, where it calls nobody; see `Decision.about`.
-        """
+    def point(self) -> None:
+        """The current task calls something: others may get in before that."""
         task = self.current
         if self._hushed and self._is_quiet(task):
             self._owing[task] = None
@@ -160,9 +155,7 @@ class ExploringKernel(Kernel):
             if not ready or not (self._any or ready[0][0] <= task.priority) or task.dying or task is self.host:
                 return
         self._push_front(task)
-        self._about = about
         following = self._take()
-        self._about = None
         if following is not task:
             self._switch(task, following)
 
@@ -377,9 +370,7 @@ class ExploringKernel(Kernel):
         self._decisions = number + 1
         assert self.policy is not None
         running = tasks[0] is self._going_on
-        about = self._about if running else None
-        decision = Decision(number, self.now, tasks, running, timer is not None, self._left, about=about)
-        return self.policy.choose(decision)
+        return self.policy.choose(Decision(number, self.now, tasks, running, timer is not None, self._left))
 
     def _next_timer(self) -> int | None:
         """When the next timer is due, if that is soon enough for a task to be held up until then."""
@@ -402,11 +393,11 @@ class CallPointKernel(ExploringKernel):
         self.entered: dict[Task, bool] = {}
         self.passed = 0
 
-    def point(self, about: Hashable = None) -> None:
+    def point(self) -> None:
         """See `ExploringKernel.point`."""
         self.passed += 1
         self.entered[self.current] = True
-        super().point(about)
+        super().point()
 
     def charge(self, duration_ns: int) -> None:
         """See `Scheduler.charge`."""

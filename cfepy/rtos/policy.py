@@ -9,7 +9,7 @@ Giving the same answers again gives the same run.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
 from typing import Any, NamedTuple
@@ -19,7 +19,6 @@ from cfepy.rtos.task import Task
 
 HOLD_ODDS = 16  # one in so many chances to hold a task up is taken: time would else run away from the work
 STAY_ODDS = (0.0, 0.5, 0.7)  # that the running task stays, where there are points between calls
-SHARES = (0.3, 0.5, 1.0)  # of what is shared, before which others get in, where there are points between calls
 STARTERS_ODDS = 3 / 4  # of schedules in which who starts a task goes on before that
 Settings = tuple[bool, int, int, str]
 """What the kernel reads of a policy besides its answers; see the arguments of `Policy`."""
@@ -57,8 +56,6 @@ class Decision:
         left: the task that gave up its turn just now, as it yields or used the CPU for a whole time slice, or None.
         question: not who runs is asked, but this; None for all other decisions, and `tasks` are empty when there is
             one.
-        about: what the running task is about to touch, at a point between its calls (`cfepy.rtos.points`): the name of
-            an attribute, a variable or a container, or a place in the source; None at a call.
     """
 
     number: int
@@ -68,7 +65,6 @@ class Decision:
     hold: bool
     left: Task | None
     question: Question | None = None
-    about: Hashable = None
 
     @property
     def width(self) -> int:
@@ -397,33 +393,6 @@ class Fair(AskingPolicy):
         for index, task in enumerate(tasks):
             passed[task] = 0 if index == choice else passed.get(task, 0) + 1
         return choice
-
-
-class Narrowed(AskingPolicy):
-    """Another policy, which lets others in before some things that are shared, and not before the rest.
-
-    A run with points between calls has hundreds of them, and a bug needs a few: those before one variable, say. Which
-    names have points is drawn for each schedule, so some have them where it matters and hardly anywhere else.
-
-    Args:
-        inner: the other one; it is not asked where nobody is let in.
-        seed: of what is drawn.
-    """
-
-    def __init__(self, inner: Policy, seed: int) -> None:
-        super().__init__(inner)
-        random = Random(seed)
-        self._random = random.random
-        self._share = random.choice(SHARES)
-        self._is_open: dict[Hashable, bool] = {None: True}
-
-    def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
-        about = decision.about
-        is_open = self._is_open.get(about)
-        if is_open is None:
-            is_open = self._is_open[about] = self._random() < self._share
-        return self._inner.choose(decision) if is_open else 0
 
 
 class Moment(NamedTuple):

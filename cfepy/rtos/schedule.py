@@ -32,7 +32,7 @@ from cfepy.rtos.abreast import Abreast
 from cfepy.rtos.aims import Aim, AimPolicy
 from cfepy.rtos.moves import Move, MovePolicy
 from cfepy.rtos.points import Points
-from cfepy.rtos.policy import PCT, Deviations, Fair, From, InOrder, Narrowed, Policy, SeededRandom, Settings
+from cfepy.rtos.policy import PCT, Deviations, Fair, From, InOrder, Policy, SeededRandom, Settings
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS, time_word
 
@@ -149,10 +149,7 @@ class Schedule:
         """A policy for one run; None for fifo."""
         if self.kind == "fifo":
             return None
-        policy = self._policy()
-        if self.points and self.kind in SEEDED:
-            policy = Narrowed(policy, self.seed)
-        policy = Fair(policy, self.fair) if self.fair else policy
+        policy = Fair(self._policy(), self.fair) if self.fair else self._policy()
         return From(policy, self.from_ns) if self.from_ns else policy
 
     def _policy(self) -> Policy:

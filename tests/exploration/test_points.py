@@ -11,7 +11,7 @@ import pytest
 from cfepy.cli.main import main
 from cfepy.exploration import Expedition, Report, Trial
 from cfepy.pilot import RunPlan
-from cfepy.rtos import Decision, Policy, Schedule
+from cfepy.rtos import Schedule
 
 SCRIPT = "CFE_APP, {}.py, __main__, {}, 100, 16384, 0x0, 1;\n!\n"
 COUNTER = """
@@ -149,26 +149,6 @@ def test_points_leave_the_default_run_as_it_is(plan_of: Plans, kind: str) -> Non
     plain, pointed = (trial.run(Schedule.parse(text)) for text in ("at", f"at:points={kind}"))
     assert (plain.failures, plain.trace) == (pointed.failures, pointed.trace)
     assert plain.decisions <= pointed.decisions
-
-
-def test_a_policy_is_told_what_is_about_to_be_touched(plan_of: Plans) -> None:
-    class Noting(Policy):
-        def __init__(self, points: str) -> None:
-            super().__init__(points=points)
-            self.names: set[object] = set()
-
-        def choose(self, decision: Decision) -> int:
-            self.names.add(decision.about)
-            return decision.width - 1
-
-    def names(points: str) -> set[object]:
-        policy = Noting(points)
-        Trial(plan_of("counter", COUNTER.replace("self.n = ", "self.n = self.all = "))).fly(Schedule(), policy=policy)
-        return policy.names
-
-    assert names("attributes") == {None, "Counter.n", "Counter.all", "threads"}
-    places = {(about[0].co_name, about[1]) for about in names("lines") if isinstance(about, tuple)}
-    assert {("add", 13), ("add", 14)} <= places
 
 
 def test_a_run_with_points_is_the_same_on_greenlets(plan_of: Plans) -> None:

@@ -368,34 +368,6 @@ def test_random_starts_all_before_a_long_stretch() -> None:
     assert often("") < 20
 
 
-@pytest.mark.parametrize("kind", ["random:{}", "pct:{}:4:60", "abreast:{}"])
-def test_schedules_with_points_let_others_in_before_some_names_alone(kind: str) -> None:
-    def names(text: str) -> frozenset[str]:
-        """Before what others got in, in one schedule."""
-        inside: list[str] = []
-        got_in = set()
-
-        def program(kernel: Kernel, written: list[str]) -> None:
-            def walk(me: str) -> None:
-                for step in range(30):
-                    inside.append(me)
-                    assert isinstance(kernel, ExploringKernel)
-                    kernel.point("ab"[step % 2])
-                    if inside[-1] != me:
-                        got_in.add("ab"[step % 2])
-
-            for me in "pq":
-                kernel.spawn(me, lambda me=me: walk(me))  # type: ignore[misc]
-
-        fly(program, Schedule.parse(text).policy())
-        return frozenset(got_in)
-
-    some = Counter(names(f"{kind.format(seed)}:points=attributes") for seed in range(90))
-    assert min(some[frozenset("a")], some[frozenset("b")], some[frozenset("ab")]) >= 5
-    if not kind.startswith("pct"):
-        assert {names(kind.format(seed)) for seed in range(20)} == {frozenset("ab")}
-
-
 def test_abreast_lets_equals_collide() -> None:
     found = Counter(fly(crowd(6), Schedule.parse(f"abreast:{seed}").policy())[0] for seed in range(100))
     assert found["666666"] > 10  # all are there before the first one goes on
