@@ -16,6 +16,7 @@ from benchmarks.frames import frames
 from benchmarks.growth import growth
 from benchmarks.measure import contexts_here, machine
 from benchmarks.missions import missions
+from benchmarks.peers import peers
 from benchmarks.recording import recording
 from benchmarks.schedules import schedules
 from benchmarks.services import services
@@ -34,6 +35,7 @@ def main(arguments: list[str] | None = None) -> int:
         "recording": lambda: recording(contexts),
         "frames": lambda: frames(contexts),
         "growth": lambda: growth(contexts),
+        "peers": lambda: peers(contexts),
         "codec": codec,
         "compiled": lambda: compiled(contexts),
         "universe": lambda: {f"{name}.{each}": value for each in contexts for name, value in universe(each).items()},

@@ -1,0 +1,10 @@
+#!/usr/bin/env python3
+"""Sends each JointState back that it gets."""
+
+import rospy
+from sensor_msgs.msg import JointState
+
+rospy.init_node("answers")
+publisher = rospy.Publisher("answer", JointState, queue_size=1)
+rospy.Subscriber("question", JointState, publisher.publish, tcp_nodelay=True)
+rospy.spin()
