@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -161,7 +162,9 @@ class Reader:
 
     def _judged(self, command: str, given: Given) -> Iterator[str]:
         step = self.scene.step(command)
+        before = cpu_s()
         status = given.status()
+        print(f"  {cpu_s() - before:.1f} s of CPU", flush=True)
         wrong = []
         if given.took_too_long:
             wrong.append(f"took longer than {self.patience_s:.0f} s and was ended")
@@ -177,6 +180,12 @@ class Reader:
             wrong.append(f"did not print what the page shows: {missing!r}")
         if wrong:
             yield "\n".join([command, *wrong, given.output])
+
+
+def cpu_s() -> float:
+    """The processor time of all commands that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def first_missing(shown: str, output: str) -> str:

@@ -1,4 +1,4 @@
-"""`python -m tests.release`: what it refuses, and a whole one."""
+"""`python -m tests.release`, as docs/install.md has it: what it refuses, and a whole one."""
 
 from __future__ import annotations
 
