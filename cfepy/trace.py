@@ -115,6 +115,11 @@ class Trace:
             self._sink(self.records)
         self.records.clear()
 
+    def drop_empty(self) -> None:
+        """Take an empty record at the end out again."""
+        if self.records and not self.records[-1]:
+            self.records.pop()
+
     def note(self, text: str) -> None:
         """Record a text, for instance a line of the console."""
         self.append(NOTE + text.encode("utf-8", "backslashreplace"))

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields, replace
-from types import MethodType
+from inspect import isroutine
 from typing import Any
 
 from cfepy.app import Cfe
@@ -47,7 +47,7 @@ class _Pointed:
 
     def __getattr__(self, name: str) -> Any:
         value = getattr(self._service, name)
-        if not isinstance(value, MethodType):
+        if getattr(value, "__self__", None) is not self._service or not isroutine(value):
             return value
         wrap = _giving if name in GIVING else _pointed
         call = vars(self)[name] = wrap(self._service, name, self._kernel)

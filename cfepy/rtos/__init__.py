@@ -39,8 +39,9 @@ from cfepy.rtos.realtime import Pacer, Stopwatch
 from cfepy.rtos.schedule import DEPTH, ORDER, STEPS, Schedule
 from cfepy.rtos.semaphore import Semaphore
 from cfepy.rtos.stall_signals import LastResort
-from cfepy.rtos.task import FOREVER, PLACE, TIMEOUT, Task, TaskExit, WaitList
+from cfepy.rtos.task import FOREVER, PLACE, TIMEOUT, Task, TaskExit
 from cfepy.rtos.wait_graph import Wait, circles, endless
+from cfepy.rtos.wait_list import WaitList
 from cfepy.rtos.watchdog import STALL_S, StallWatch
 from cfepy.rtos.wrapped_calls import wrapping
 

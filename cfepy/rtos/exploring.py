@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from heapq import heappop, heappush
-from typing import Any, Protocol
+from typing import Any, Protocol, SupportsIndex
 
 from cfepy import trace as tr
 from cfepy.rtos.kernel import Kernel
@@ -203,7 +203,7 @@ class ExploringKernel(Kernel):
             self.on_wake(task)
         super().enqueue(task, value)
 
-    def delay(self, duration_ns: int) -> None:
+    def delay(self, duration_ns: SupportsIndex) -> None:
         """See `Scheduler.delay`."""
         self.point()
         super().delay(duration_ns)

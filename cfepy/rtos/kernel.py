@@ -249,8 +249,7 @@ class Kernel(Scheduler):
         if self.current is not self.host:
             raise RuntimeError("run() was called from inside the simulation")
         self.check_caller()
-        if self.broken is not None:
-            raise self.broken
+        self._check_whole()
         end = ENDLESS if until_ns is None else until_ns
         if self.passes(end):
             return
@@ -264,12 +263,16 @@ class Kernel(Scheduler):
                     self._run_until(end)
             finally:
                 self._drop_host()
-        if self.broken is not None:
-            raise self.broken
+        self._check_whole()
         if not self._stopped and until_ns is not None:
             self.now = max(self.now, until_ns)
         if until_ns is None and self._exhausted and self.tasks:
             raise DeadlockError(self.waiting())
+
+    def _check_whole(self) -> None:
+        """That the run was not broken off."""
+        if self.broken is not None:
+            raise self.broken
 
     def passes(self, until_ns: int) -> bool:
         """Let virtual time go by, if nothing happens before it is `until_ns` or at that instant; whether it did.
@@ -438,9 +441,8 @@ class Kernel(Scheduler):
 
     def _drop_pause_mark(self) -> None:
         """Take the host's empty mark, recorded when the host got the CPU, out of the trace."""
-        records = self.trace.records if self.trace is not None else []
-        if records and not records[-1]:
-            records.pop()
+        if self.trace is not None:
+            self.trace.drop_empty()
 
     def _drop_host(self) -> None:
         """`stop` put the host among the ready tasks; it is back now."""

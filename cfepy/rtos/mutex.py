@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from cfepy.rtos.errors import DeadlockError
 from cfepy.rtos.kernel import Kernel
-from cfepy.rtos.task import Task, WaitList
+from cfepy.rtos.task import Task
 from cfepy.rtos.wait_graph import Wait
+from cfepy.rtos.wait_list import WaitList
 
 
 class Mutex:

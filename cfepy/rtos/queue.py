@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Any
+from typing import Any, SupportsIndex
 
 from cfepy.rtos.kernel import Kernel
-from cfepy.rtos.task import FOREVER, TIMEOUT, WaitList
+from cfepy.rtos.task import FOREVER, TIMEOUT
+from cfepy.rtos.wait_list import WaitList
 
 
 class Empty:
@@ -57,7 +58,7 @@ class Queue:
             self.peak = len(items)
         return True
 
-    def get(self, timeout_ns: int = FOREVER) -> Any:
+    def get(self, timeout_ns: SupportsIndex = FOREVER) -> Any:
         """Take the oldest item.
 
         Args:

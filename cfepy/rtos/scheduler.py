@@ -14,11 +14,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from heapq import heapify, heappop, heappush
 from operator import index
-from typing import Any
+from typing import Any, SupportsIndex
 
 from cfepy import trace as tr
 from cfepy.rtos.policy import Policy, Question
-from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit, WaitList
+from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit
+from cfepy.rtos.wait_list import WaitList
 
 HOST_PRIORITY = 256
 SLICE_NS = 20_000  # equals take turns when this much virtual CPU time was used
@@ -65,14 +66,13 @@ class Scheduler:
 
     # -- waiting ---------------------------------------------------------------------------------------------------
 
-    def delay(self, duration_ns: int) -> None:
+    def delay(self, duration_ns: SupportsIndex) -> None:
         """Sleep for a time in ns, at least 1, rounded up to the board's tick."""
         task = self.current
         if task.dying:
             self._refuse(task)
-        if type(duration_ns) is not int:
-            duration_ns = whole(duration_ns)
-        when = self.now + (duration_ns if duration_ns > 0 else 1)
+        length = duration_ns if type(duration_ns) is int else whole(duration_ns)
+        when = self.now + (length if length > 0 else 1)
         if self.tick_ns:
             when = -(-when // self.tick_ns) * self.tick_ns
         self.sequence = task.timer = sequence = self.sequence + 1
@@ -109,7 +109,7 @@ class Scheduler:
         """Which of the answers of a question that is open to the schedule it has; without a policy the first, 0."""
         return 0
 
-    def wait_on(self, waits: WaitList, timeout_ns: int = FOREVER) -> Any:
+    def wait_on(self, waits: WaitList, timeout_ns: SupportsIndex = FOREVER) -> Any:
         """Wait in a list until `wake_first` or `wake_all`.
 
         Args:
@@ -122,8 +122,7 @@ class Scheduler:
         task = self.current
         if task.dying:
             self._refuse(task)
-        if timeout_ns != FOREVER and type(timeout_ns) is not int:
-            timeout_ns = whole(timeout_ns)
+        limit = timeout_ns if type(timeout_ns) is int else whole(timeout_ns)
         if waits and waits[-1].priority > task.priority:
             at = len(waits)
             while at and waits[at - 1].priority > task.priority:
@@ -132,8 +131,8 @@ class Scheduler:
         else:
             waits.append(task)
         task.waits = waits
-        if timeout_ns >= 0:
-            self.arm(task, timeout_ns or 1)
+        if limit >= 0:
+            self.arm(task, limit or 1)
         else:
             task.since = self.now
         return self.block()
@@ -180,7 +179,7 @@ class Scheduler:
         ):
             self._catch_up(task, duration_ns)
 
-    def compute(self, duration_ns: int) -> None:
+    def compute(self, duration_ns: SupportsIndex) -> None:
         """The current task works for so long; what is due meanwhile happens when it is due.
 
         More urgent tasks get in at that time, and the work goes on behind them. `charge` is for what is short: there
@@ -371,11 +370,11 @@ class Scheduler:
             heappop(timers)
             if when > self.now:
                 self.now = when
-                if self.trace is not None:
-                    records = self.trace.records
-                    records.append(tr.pack_time(tr.TIME, when))
-                    if len(records) > tr.BATCH:
-                        self.trace.flush()
+                trace = self.trace
+                if trace is not None:
+                    trace.append(tr.pack_time(tr.TIME, when))
+                    if len(trace.records) > tr.BATCH:
+                        trace.flush()
             self._time_out(task)
             if timers and timers[0][0] <= self.now:
                 self.sequence = order = self.sequence + 1

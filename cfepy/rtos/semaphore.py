@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from cfepy.rtos.kernel import Kernel
-from cfepy.rtos.task import FOREVER, TIMEOUT, WaitList
+from cfepy.rtos.task import FOREVER, TIMEOUT
+from cfepy.rtos.wait_list import WaitList
 
 
 class Semaphore:

@@ -1,17 +1,15 @@
-"""A task of the simulated real-time system, and the lists in which tasks wait.
-
-Plain data, changed by the kernel and by the objects that tasks wait for.
-"""
+"""A task of the simulated real-time system: plain data, changed by the kernel and by what tasks wait for."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from cfepy import trace
 
 if TYPE_CHECKING:
     from cfepy.rtos.mutex import Mutex
+    from cfepy.rtos.wait_list import WaitList
 
 
 class TaskExit(BaseException):
@@ -32,28 +30,6 @@ TIMEOUT = Timeout()
 FOREVER = -1
 PLACE = 1000
 """What a place where others could get in adds to `Task.passed`."""
-
-
-class WaitList(list["Task"]):
-    """Tasks that wait for one thing, most urgent first, first come first within a priority.
-
-    Args:
-        what: the thing, for the deadlock report: "queue HK_PIPE".
-
-    Attributes:
-        holders: the tasks that all have to let go of it before a wait can end; none where any task may end it.
-        subject: the object by which a wait is ended, such as a lock of Python's; None where that is not known.
-    """
-
-    __slots__ = ("holders", "subject", "what")
-
-    def __init__(self, what: str) -> None:
-        super().__init__()
-        self.what = what
-        self.holders: Callable[[], Sequence[Task]] = tuple
-        self.subject: object = None
-
-    __hash__ = object.__hash__  # type: ignore[assignment]  # a place to wait has an identity
 
 
 class Task:

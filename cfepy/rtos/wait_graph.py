@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import NamedTuple
 
-from cfepy.rtos.task import Task, WaitList
+from cfepy.rtos.task import Task
+from cfepy.rtos.wait_list import WaitList
 
 Wakers = Callable[[Task, Collection[Task]], bool]
 """Whether any of the tasks that may go on, or the world outside, could end the wait of a task without holders.

@@ -8,8 +8,9 @@ belongs to `cfepy.msg`. Code that watches or disturbs the bus is in packages abo
 from __future__ import annotations
 
 from cfepy.ports import PEND_FOREVER
-from cfepy.sb.buffers import BUFFER_BYTES, MessageBuffer
+from cfepy.sb.buffers import BUFFER_BYTES
 from cfepy.sb.bus import POLL, SoftwareBus
+from cfepy.sb.message_buffer import MessageBuffer
 from cfepy.sb.outlet import Outlet
 from cfepy.sb.packet_listener import listened
 from cfepy.sb.packets import COMMANDS, ONESUB_TLM, TELEMETRY, UNSUBSCRIPTION

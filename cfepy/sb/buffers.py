@@ -13,26 +13,12 @@ from cfepy.ports import Block, Ports
 from cfepy.rtos import CpuCosts, Kernel
 from cfepy.sb import events as ev
 from cfepy.sb.core import BusCore
+from cfepy.sb.message_buffer import MessageBuffer
 from cfepy.sb.routing import Destination, Route
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_BUF_ALOC_ERR, CFE_SB_BUFFER_INVALID, CFE_SB_MSG_TOO_BIG, CfeError
 
 BUFFER_BYTES = 64  # of the descriptor in front of each message (CFE_SB_BufferD_t)
 DESTINATION_BYTES = 32  # CFE_SB_DestinationD_t
-
-
-class MessageBuffer(bytearray):
-    """A message that is filled in place and then sent or released (CFE_SB_Buffer_t).
-
-    `app_id` is the application that it goes back from when that ends, `block` its memory in the pool, `allocated` how
-    many bytes that has, `number` what tells it from others of the same content.
-    """
-
-    __slots__ = ("allocated", "app_id", "block", "number")
-
-    allocated: int
-    app_id: int
-    block: Block | None
-    number: int
 
 
 class BufferServices(BusCore):

@@ -14,7 +14,7 @@ from rospy_shim.client import connecting
 from rospy_shim.client.exceptions import ROSException, ROSSerializationException
 from rospy_shim.client.leftovers import Leftovers, half_of
 from rospy_shim.client.message import packer, serialized
-from rospy_shim.client.topic_side import OUTBOUND, TopicConnection, TopicSide
+from rospy_shim.client.topic_side import OUTBOUND, TopicConnection, TopicSide, bus_of
 from rospy_shim.client.transport import HEADER_BYTES, segments, whole_header
 from rospy_shim.genpy import SerializationError
 
@@ -69,8 +69,7 @@ class Link(TopicSide):
         self.connected = False
         self.expected: list[Subscription] = []  # those whose connection still takes some time
         self.msg_id = 0
-        bus = node.cfe.sb
-        self._bus = bus
+        bus = self._bus
         self._routes: dict[int, Route] = bus.routes
         self._transmit = bus.transmit_msg
         self._head = b""
@@ -407,7 +406,7 @@ class TappedLink(Link):
 
     def __init__(self, node: Node, name: str, data_class: MessageClass) -> None:
         super().__init__(node, name, data_class)
-        on_unsent: Any = node.cfe.sb.on_unsent  # a static method, which binds no bus
+        on_unsent: Any = bus_of(node).on_unsent  # a static method, which binds no bus
         self._on_unsent: Callable[[Link, bytes], object] | None = on_unsent
 
     def send(self, message: Any) -> None:
@@ -422,4 +421,4 @@ class TappedLink(Link):
 
 def link_class(node: Node) -> type[Link]:
     """The class of a node's links."""
-    return Link if node.cfe.sb.on_unsent is None else TappedLink
+    return Link if bus_of(node).on_unsent is None else TappedLink

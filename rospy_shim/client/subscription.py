@@ -77,7 +77,7 @@ class Subscription(TopicSide):
 
         return unpack_and_pay
 
-    def set_queue_size(self, queue_size: int | None) -> None:
+    def set_queue_size(self, queue_size: object) -> None:
         """Let so many messages wait, and drop the oldest one when another comes.
 
         Args:
@@ -86,11 +86,12 @@ class Subscription(TopicSide):
         Raises:
             ROSException: it is 0, or no integer.
         """
-        if queue_size is not None and type(queue_size) is not int:
+        most = queue_size if type(queue_size) is int else None
+        if queue_size is not most:
             raise ROSException("queue size must be an integer")
-        if queue_size == 0:
+        if most == 0:
             raise ROSException("queue size may not be set to zero")
-        self.queue_size = None if queue_size == -1 else queue_size
+        self.queue_size = None if most == -1 else most
         self._size_pipe()
 
     def expect_segments(self, count: int) -> None:
@@ -105,14 +106,15 @@ class Subscription(TopicSide):
             pipe.depth, pipe.keeps_newest = self._depth(), self.queue_size is not None
 
     def _find_pipe(self) -> Pipe | None:
-        return self.node.cfe.sb.find_pipe(self._pipe) if self._pipe != NO_PIPE else None
+        pipe: Pipe | None = self._bus.find_pipe(self._pipe) if self._pipe != NO_PIPE else None
+        return pipe
 
     def _depth(self) -> int:
         """Packets that the pipe holds."""
-        most: int = self.node.cfe.sb.config.os_queue_max_depth
+        most: int = self._bus.config.os_queue_max_depth
         return most if self.queue_size is None else min(self.queue_size * self._segments, most)
 
-    def set_buff_size(self, buff_size: int) -> None:
+    def set_buff_size(self, buff_size: object) -> None:
         """Check a buffer size; a packet is always read as a whole.
 
         Raises:
@@ -165,7 +167,7 @@ class Subscription(TopicSide):
 
     def _open(self, topic: TopicEntry, name: str) -> None:
         """Make the pipe and join the topic; what comes from now on waits for the task."""
-        bus = self.node.cfe.sb
+        bus = self._bus
         self._pipe = bus.create_pipe(self._depth(), name)
         self._size_pipe()
         delays = {link: connecting.delay_of(link, self) for link in topic.links}
@@ -200,8 +202,8 @@ class Subscription(TopicSide):
             topic.leave()
             pipe = self._pipe
             if pipe != NO_PIPE:
-                self.node.cfe.sb.unsubscribe(topic.msg_id, pipe)
-                topic.tell_left(self.node.cfe.sb, pipe)
+                self._bus.unsubscribe(topic.msg_id, pipe)
+                topic.tell_left(self._bus, pipe)
         self.closed = True  # not before: the task gives the pipe back as soon as it sees that
         self._call_attention()
 
@@ -239,7 +241,7 @@ class Subscription(TopicSide):
 
     def deliver(self, payload: bytes, header: Header) -> None:
         """Give this subscriber alone a message: a latched one, or one of a SubscribeListener."""
-        route = self.node.cfe.sb.routes.get(self.topic.msg_id) if self.topic is not None else None
+        route = self._bus.routes.get(self.topic.msg_id) if self.topic is not None else None
         self._backlog.append((route.sequence if route is not None else 0, payload, header))
         self._call_attention()
 
@@ -276,7 +278,7 @@ class Subscription(TopicSide):
         self.has_begun = True
         at_once = [link for link in topic.links if link.is_latch and link not in self._late]
         if at_once and not self.closed:
-            while self.node.cfe.sb.receive_buffer(self._pipe, POLL) is not None:
+            while self._bus.receive_buffer(self._pipe, POLL) is not None:
                 pass
             for link in at_once:
                 link.give_latched(self)
@@ -284,12 +286,12 @@ class Subscription(TopicSide):
     def give_back(self) -> None:
         """Give the pipe back."""
         pipe, self._pipe = self._pipe, NO_PIPE
-        if pipe != NO_PIPE and self.node.cfe.sb.find_pipe(pipe) is not None:
-            self.node.cfe.sb.delete_pipe(pipe)
+        if pipe != NO_PIPE and self._bus.find_pipe(pipe) is not None:
+            self._bus.delete_pipe(pipe)
 
     def _receive(self, topic: TopicEntry) -> None:
         """Packet after packet; the loop that every received message passes through."""
-        receive, pipe = self.node.cfe.sb.receive_buffer, self._pipe
+        receive, pipe = self._bus.receive_buffer, self._pipe
         unpack = self._unpack if not topic.raw else self._packet_as_message
         while True:
             if self._attention and not self._attend():

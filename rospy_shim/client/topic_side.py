@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cfepy.rtos import Mutex
 
@@ -35,6 +35,11 @@ class TopicConnection(NamedTuple):
         return f"TCPROS connection on port {self.id} to [cfepy:{self.id} on socket {self.id}]"
 
 
+def bus_of(node: Any) -> Any:
+    """The Software Bus as a node calls it; while schedules are explored, something stands before it."""
+    return node.cfe.sb
+
+
 class TopicSide:
     """One side of one node on one topic, which all handles share (rospy.topics._TopicImpl).
 
@@ -58,6 +63,7 @@ class TopicSide:
         self.topic: TopicEntry | None = None  # None until connected, and when the node is shut down or the types differ
         self._mutex = Mutex(node.kernel, name)
         self._ids: dict[str, int] = {}
+        self._bus = bus_of(node)
 
     @property
     def type(self) -> str:

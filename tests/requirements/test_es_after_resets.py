@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from cfepy.attachment import Attachment
 from cfepy.console import Console
 from cfepy.es import packets as pk
 from cfepy.evs import packets as evs
@@ -162,9 +163,13 @@ def test_an_executive_without_its_objects_panics(tmp_path: Path, what: str) -> N
     def fail(*_: object, **__: object) -> Any:
         raise CfeError(CFE_ES_BAD_ARGUMENT, "no memory")
 
-    mission = Mission(write_mission(tmp_path, "!"), console=Console(quiet=True))
+    class Broken(Attachment):
+        def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
+            return type("BrokenBus", (base,), {"early_init": fail})
+
+    broken = [Broken()] if what == "function" else []
+    mission = Mission(write_mission(tmp_path, "!"), console=Console(quiet=True), attachments=broken)
     if what == "function":
-        mission.cfe.sb.early_init = fail  # type: ignore[method-assign]
         said = "Error returned from EarlyInit for CFE_SB: EC = 0xC400000A"
     else:
         mission.processor.osal.task_create = fail  # type: ignore[method-assign]
