@@ -200,7 +200,7 @@ def test_the_first_flight_looks_for_the_last_time(plan: RunPlan) -> None:
 
 @pytest.mark.slow
 def test_lines_of_a_task_backwards(plan: RunPlan) -> None:
-    plan = RunPlan(plan.words, command="node", seconds=1.2)
+    plan = RunPlan(plan.words, command="node", seconds=1.2, tasks="thread")  # as a debugger in a task needs them
     typed = "n\nn\nrstep\nrs\np number\nb 19\nc\nc\np number\nrcontinue\np number\nrc\nq\n"
     try:
         said, _, flights = journey_of(plan, typed, Journey(), app="COUNTER", stops=["msg.data == 1"])
