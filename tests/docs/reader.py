@@ -53,7 +53,7 @@ class Given:
         os.killpg(self.process.pid, signal.SIGINT)
 
     def read(self, until: str = "") -> None:
-        """Read what it prints, to the end, or up to the line that has a text."""
+        """Read what it prints, to the end, or up to the line that has a pattern."""
         with self._limited():
             self._read(until)
 
@@ -75,7 +75,7 @@ class Given:
         assert self.process.stdout is not None
         for line in self.process.stdout:
             self.output += line
-            if until and until in line:
+            if until and re.search(until, line):
                 return
 
     @contextmanager
@@ -123,7 +123,7 @@ class Reader:
             self._type(given.process, step.typed)
         waited_for = step.ready or step.until
         given.read(waited_for)
-        if waited_for and waited_for not in given.output:
+        if waited_for and not re.search(waited_for, given.output):
             yield f"{command}\nnever said {waited_for!r}"
         elif step.ready:
             self.background[command] = given

@@ -24,8 +24,8 @@ class Step:
     Attributes:
         status: its exit status; 130 after Ctrl-C and 0 otherwise, if nothing is said.
         typed: what is typed on its standard input, which ends then.
-        ready: it goes on in the background from when it has said this, until Ctrl-C at the end of the page.
-        until: Ctrl-C as soon as it has said this.
+        ready: it goes on in the background from when it has said this, a pattern, until Ctrl-C at the end of the page.
+        until: Ctrl-C as soon as it has said this, a pattern.
         ends: commands in the background that end before it, by how they stand on the page.
         says: a text that it must have printed.
         shown: a text in the code block of the page that shows what it prints, where that is not below the command.
