@@ -20,7 +20,7 @@ from cfepy.faults.timing import Agenda, Gate
 from cfepy.ids import OS_STREAM_BASE
 from cfepy.mission import Processor
 from cfepy.rtos import Kernel, Task
-from cfepy.sb import Destination, Pipe, PutHook, SoftwareBus
+from cfepy.sb import NOBODY_HEARD, Destination, Pipe, PutHook, SoftwareBus
 from cfepy.sb import events as ev
 from cfepy.status import OS_QUEUE_FULL, CfeError, OsalError
 
@@ -277,13 +277,14 @@ class Fill:
         duration_ns = self._fault.options.get("for")
         self._report.happened(self._fault, f"fills pipe {name} of {pipe.app_name}")
         depth, keeps_newest = pipe.depth, pipe.keeps_newest
-        pipe.is_filled, pipe.depth, pipe.keeps_newest = True, 0, False
+        pipe.ignore(NOBODY_HEARD)
+        pipe.depth, pipe.keeps_newest = 0, False
         if duration_ns is not None:
             self._agenda.add(now + duration_ns, lambda: _empty(processor, pipe, depth, keeps_newest))
 
 
 def _empty(processor: Processor, pipe: Pipe, depth: int, keeps_newest: bool) -> None:
     """The pipe takes messages again, unless it was deleted meanwhile."""
-    pipe.is_filled = False
+    pipe.heed(NOBODY_HEARD)
     if processor.cfe.sb.find_pipe(pipe.pipe_id) is pipe:
         pipe.depth, pipe.keeps_newest = depth, keeps_newest

@@ -122,7 +122,9 @@ class Scheduler:
         task = self.current
         if task.dying:
             self._refuse(task)
-        limit = timeout_ns if type(timeout_ns) is int else whole(timeout_ns)
+        limit = FOREVER
+        if timeout_ns != FOREVER:
+            limit = timeout_ns if type(timeout_ns) is int else whole(timeout_ns)
         if waits and waits[-1].priority > task.priority:
             at = len(waits)
             while at and waits[at - 1].priority > task.priority:

@@ -14,7 +14,7 @@ from cfepy.sb.message_buffer import MessageBuffer
 from cfepy.sb.outlet import Outlet
 from cfepy.sb.packet_listener import listened
 from cfepy.sb.packets import COMMANDS, ONESUB_TLM, TELEMETRY, UNSUBSCRIPTION
-from cfepy.sb.pipe import Pipe
+from cfepy.sb.pipe import NOBODY_HEARD, Pipe
 from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE
 from cfepy.sb.routing import Destination, PutHook, Route
 from cfepy.sb.task import SbTask
@@ -22,6 +22,7 @@ from cfepy.sb.task import SbTask
 __all__ = [
     "BUFFER_BYTES",
     "COMMANDS",
+    "NOBODY_HEARD",
     "ONESUB_TLM",
     "PEND_FOREVER",
     "PIPEOPTS_IGNOREMINE",

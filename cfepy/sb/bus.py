@@ -294,20 +294,24 @@ class SoftwareBus(SubscriptionServices):
             self._record(packet)
         if self.costs is not None:
             kernel.charge(self.costs.of(size))
-        weight = size + BUFFER_BYTES
         hook = self.put_hook
         failures: list[tuple[int, Destination]] | None = None
         for destination in route.active:
             pipe = destination.pipe
-            if pipe.unheard and kernel.current.owner in pipe.unheard:
-                continue
+            if pipe.unheard:
+                if kernel.current.owner in pipe.unheard:
+                    continue
+                if pipe.is_filled:
+                    destination.overflow_drops += 1
+                    failures = [*(failures or ()), (ev.Q_FULL_ERR_EID, destination)]
+                    continue
             puts = destination.puts
             if puts - destination.gets >= (destination.limit if hook is None else hook.limit(destination)):
                 destination.limit_drops += 1
                 failures = [*(failures or ()), (ev.MSGID_LIM_ERR_EID, destination)]
                 continue
             waits = pipe.waits
-            if waits and not pipe.is_filled:
+            if waits:
                 if not pipe.peak:
                     pipe.peak = 1
                 if hook is not None:
@@ -326,7 +330,7 @@ class SoftwareBus(SubscriptionServices):
                 puts = destination.puts
             if hook is not None:
                 hook.put(destination)
-            self._queued_bytes += weight
+            self._queued_bytes += size + BUFFER_BYTES
             destination.puts = puts + 1
             items.append((packet, destination))
             if waiting >= pipe.peak:

@@ -5,6 +5,9 @@ from __future__ import annotations
 from cfepy import trace
 from cfepy.rtos import TIMEOUT, Kernel, Queue
 
+NOBODY_HEARD = object()
+"""In `Pipe.unheard`: a fault keeps the pipe full."""
+
 
 class Pipe(Queue):
     """The queue and its owner.
@@ -12,8 +15,8 @@ class Pipe(Queue):
     `send_errors` counts what a message limit kept out, as NASA's SendErrors does; `overflows` what did not fit in. One
     that `keeps_newest` makes room for a message by dropping the oldest one, as the queue of a ROS subscriber does.
     Messages of the applications in `unheard` do not come in: its own, by an option of the pipe, and those of ROS nodes
-    that are not connected with it yet. One that `is_called` has its reader come back without a message. One that
-    `is_filled` takes no message, not even for a reader that waits, and is nevertheless there.
+    that are not connected with it yet; with NOBODY_HEARD among them, none of anybody. One that `is_called` has its
+    reader come back without a message.
 
     Args:
         kernel: where its readers wait.
@@ -28,7 +31,6 @@ class Pipe(Queue):
         "claim",
         "drop_mark",
         "is_called",
-        "is_filled",
         "keeps_newest",
         "opts",
         "overflows",
@@ -47,7 +49,7 @@ class Pipe(Queue):
         self.app_name: str = getattr(owner, "name", "host")
         self.opts = 0
         self.unheard: tuple[object, ...] = ()
-        self.keeps_newest = self.is_called = self.is_filled = False
+        self.keeps_newest = self.is_called = False
         self.send_errors = self.overflows = 0
         self.claim = 0
         self.identify(0)
@@ -67,6 +69,11 @@ class Pipe(Queue):
     def heed(self, sender: object) -> None:
         """They come in again."""
         self.unheard = tuple(each for each in self.unheard if each is not sender)
+
+    @property
+    def is_filled(self) -> bool:
+        """Whether it takes no message, not even for a reader that waits, and is nevertheless there."""
+        return NOBODY_HEARD in self.unheard
 
     def identify(self, pipe_id: int) -> None:
         """Give the pipe the id under which its table keeps it."""

@@ -6,7 +6,7 @@ from cfepy.ids import SB_PIPEID_BASE, name_size, to_index
 from cfepy.osal import OS_MAX_API_NAME
 from cfepy.sb import events as ev
 from cfepy.sb.buffers import BufferServices
-from cfepy.sb.pipe import Pipe
+from cfepy.sb.pipe import NOBODY_HEARD, Pipe
 from cfepy.status import (
     CFE_SB_BAD_ARGUMENT,
     CFE_SB_MAX_PIPES_MET,
@@ -99,10 +99,8 @@ class PipeServices(BufferServices):
                 self.remove_destination(route, destination)
         self.pipes.delete(pipe.pipe_id)
         self.ports.memory.release(pipe.claim)
-        pipe.depth, pipe.is_filled = (
-            0,
-            False,
-        )  # so that a transmission that is under way finds it full, and no longer there
+        pipe.heed(NOBODY_HEARD)
+        pipe.depth = 0  # so that a transmission that is under way finds it full, and no longer there
         pipe.close(None)
 
     def _report_deleted(self, pipe: Pipe, owner: str) -> None:
