@@ -295,20 +295,18 @@ class SoftwareBus(SubscriptionServices):
         if self.costs is not None:
             kernel.charge(self.costs.of(size))
         hook = self.put_hook
-        failures: list[tuple[int, Destination]] | None = None
+        failures: Failures | None = None
         for destination in route.active:
             pipe = destination.pipe
             if pipe.unheard:
                 if kernel.current.owner in pipe.unheard:
                     continue
                 if pipe.is_filled:
-                    destination.overflow_drops += 1
-                    failures = [*(failures or ()), (ev.Q_FULL_ERR_EID, destination)]
+                    failures = _overflowed(failures, destination)
                     continue
             puts = destination.puts
             if puts - destination.gets >= (destination.limit if hook is None else hook.limit(destination)):
-                destination.limit_drops += 1
-                failures = [*(failures or ()), (ev.MSGID_LIM_ERR_EID, destination)]
+                failures = _limited(failures, destination)
                 continue
             waits = pipe.waits
             if waits:
@@ -323,8 +321,7 @@ class SoftwareBus(SubscriptionServices):
             waiting = len(items)
             if waiting >= pipe.depth:
                 if not (pipe.keeps_newest and waiting):
-                    destination.overflow_drops += 1
-                    failures = [*(failures or ()), (ev.Q_FULL_ERR_EID, destination)]
+                    failures = _overflowed(failures, destination)
                     continue
                 waiting = self._drop_oldest(pipe)
                 puts = destination.puts
@@ -441,7 +438,7 @@ class SoftwareBus(SubscriptionServices):
         where = f"MsgId 0x{packet[0] << 8 | packet[1]:x},app {self.caller_name()},size {len(packet)}"
         return self.send_error(ev.GET_BUF_ERR_EID, CFE_SB_BUF_ALOC_ERR, f"Send Err:Request for Buffer Failed. {where}")
 
-    def _report_failures(self, msg_id: int, failures: list[tuple[int, Destination]]) -> None:
+    def _report_failures(self, msg_id: int, failures: Failures) -> None:
         self.counters.msg_send_error += 1
         for event_id, destination in failures:
             if self._record is not None:
@@ -482,6 +479,21 @@ class SoftwareBus(SubscriptionServices):
         text = f"Pipe Read Err,pipe {pipe.name},app {self.caller_name()},stat -1"
         self.report_once(ev.Q_RD_ERR_EID, ev.ERROR, text)
         return CfeError(CFE_SB_PIPE_RD_ERR, text)
+
+
+Failures = list[tuple[int, Destination]]
+
+
+def _limited(failures: Failures | None, destination: Destination) -> Failures:
+    """A message limit kept a message out of a pipe: that, too, is to be reported."""
+    destination.limit_drops += 1
+    return [*(failures or ()), (ev.MSGID_LIM_ERR_EID, destination)]
+
+
+def _overflowed(failures: Failures | None, destination: Destination) -> Failures:
+    """As `_limited`, of a message that did not fit in."""
+    destination.overflow_drops += 1
+    return [*(failures or ()), (ev.Q_FULL_ERR_EID, destination)]
 
 
 def _nothing() -> None:
