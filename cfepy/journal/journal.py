@@ -29,7 +29,7 @@ HEADER, FILE, FOLDER, LOOK, PAUSE = "header", "file", "folder", "look", "pause"
 ANSWER, CHECK, END = "answer", "check", "end"
 MARK = b"cfepy journal\r\n\x1a"
 _head = struct.Struct("<II")
-_NOT_OF_THE_RUN = ("wall_s", "speed", "tasks", "trace", "ros_peers", "viewer_peers", "beside")
+_NOT_OF_THE_RUN = ("wall_s", "speed", "tasks", "why_tasks", "trace", "ros_peers", "viewer_peers", "beside")
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -25,3 +26,13 @@ def test_a_run_on_greenlets_is_replayed_on_threads_where_there_are_none(
     assert "greenlet is not installed here: replayed on threads" in capsys.readouterr().err
     assert main(["replay", str(journal), "--quiet", "--tasks", "greenlet"]) == 2
     assert "pip install 'cfepy[fast]'" in capsys.readouterr().err
+
+
+def test_a_run_that_had_threads_by_itself_is_the_same_on_greenlets(tmp_path: Path) -> None:
+    """As one in a thread of its own, or under coverage: why it was on threads is no difference."""
+    with ThreadPoolExecutor(1) as pool:
+        flown = pool.submit(record, plan_for("lab", 0.1), tmp_path / "run.cfepy").result()
+    assert flown.results.why_tasks
+    again = replay(read_journal(tmp_path / "run.cfepy"))
+    assert not again.flown.results.why_tasks
+    assert again.verdict.same
