@@ -25,7 +25,7 @@ def test_its_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd
     monkeypatch.chdir(tmp_path)
     (tmp_path / "missions").symlink_to(PAGE.parents[1] / "missions")
     free = [line for line in commands() if "--realtime" not in line]  # those are flown in tests/twin/test_sbn.py
-    assert len(free) == 8
+    assert len(free) == 9
     for line in free:
         assert main(shlex.split(line)[1:]) == 0, line
         assert "Traceback" not in capfd.readouterr().out
