@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.es import APP_ERROR, StartParams
 from cfepy.msg import BAD_CODE, BAD_LENGTH, CommandTable, get_msg_id
+from cfepy.psp import RST_TYPE_PROCESSOR
 from cfepy.status import CFE_TBL_INFO_RECOVERED_TBL, CFE_TBL_INFO_UPDATED, CFE_TBL_WARN_NOT_CRITICAL, CfeError
 from cfepy.tbl import OPT_CRITICAL, OPT_DBL_BUFFER
+from cfepy.tbl.packets import ABORT_LOAD
 from rospy_shim.parameters import table
 from rospy_shim.parameters.rows import ParameterRows, ParametersFull
 from rospy_shim.parameters.tree import ParameterTree
@@ -52,6 +54,7 @@ class ParameterImages:
     def __init__(self, cfe: Cfe) -> None:
         self._cfe = cfe
         self._handles: list[TableHandle] = []
+        self._begun: list[str] = []  # tables whose load was begun to restore what a reset has left, and stays so
         self._rows = 0
         self.survived = False
 
@@ -76,6 +79,9 @@ class ParameterImages:
             self._handles.append(handle)
             self.survived = self.survived or handle.status == CFE_TBL_INFO_RECOVERED_TBL
             self._cfe.tbl.notify_by_message(handle, notify_msg_id, 0, number)
+        for name in self._begun:
+            self._cfe.sb.transmit_msg(ABORT_LOAD.packet(TableName=name))
+            self._cfe.os.task_delay(START_POLL_MS)  # Table Services are less urgent
         for handle in self._handles:
             if handle.status != CFE_TBL_INFO_RECOVERED_TBL:
                 self._cfe.tbl.load(handle, bytes(self._rows * table.ROW_BYTES))
@@ -83,6 +89,7 @@ class ParameterImages:
     def _register(self, number: int) -> TableHandle | None:
         """One more table; None when there is no room for it. The first may be one that a reset does not leave."""
         tbl, name = self._cfe.tbl, table.table_name(number)
+        was_kept = self._is_kept(f"{table.APP_NAME}.{name}")
         try:
             options = (
                 OPT_CRITICAL | OPT_DBL_BUFFER
@@ -95,7 +102,19 @@ class ParameterImages:
         if handle.status == CFE_TBL_WARN_NOT_CRITICAL and number:
             tbl.unregister(handle)
             return None
+        if was_kept and handle.status != CFE_TBL_INFO_RECOVERED_TBL:
+            self._begun.append(f"{table.APP_NAME}.{name}")
         return handle
+
+    def _is_kept(self, name: str) -> bool:
+        """Whether a reset has left a table of this full name in the CDS, loaded or not."""
+        if self._cfe.es.reset.variables.reset_type != RST_TYPE_PROCESSOR:
+            return False
+        try:
+            self._cfe.es.get_cds_block_id_by_name(name)
+        except CfeError:
+            return False
+        return True
 
     def read(self) -> list[table.Row]:
         """The rows of all tables."""

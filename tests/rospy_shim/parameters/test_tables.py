@@ -9,6 +9,8 @@ import pytest
 from cfepy.ground.files.table_file import take_apart
 from cfepy.mission.packet_watch import PacketWatch, Seen
 from cfepy.msg import command
+from cfepy.tbl import TableHandle
+from rospy_shim.parameters.app import ParameterImages
 from rospy_shim.parameters.rows import ParametersFull
 from rospy_shim.parameters.table import HK_TLM, NOOP, RESET_COUNTERS, SEND_HK, TABLES
 from tests.rospy_shim.parameters.flights import (
@@ -81,6 +83,31 @@ def test_what_was_set_right_before_a_node_dies_is_kept(tmp_path: Path) -> None:
         mission.cfe.psp.restart(1)
         mission.run_for(2)
         assert mission.ros.graph.params.find("/deaths") == 2
+
+
+def test_a_reset_before_the_tables_are_loaded_leaves_nothing_in_their_way(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Table Services begin to restore the images that the CDS has not got yet, and keep those loads in progress."""
+    register, resets = ParameterImages._register, []
+
+    def reset_after(images: ParameterImages, number: int) -> TableHandle | None:
+        handle = register(images, number)
+        if number == 2 and not resets:
+            resets.append(number)
+            mission.cfe.psp.restart(PROCESSOR_RESET)
+            mission.cfe.os.task_delay(1)
+        return handle
+
+    monkeypatch.setattr(ParameterImages, "_register", reset_after)
+    with fly(tmp_path, COUNTING) as mission:
+        mission.run_for(2)
+        assert len(mission.record.resets) == 1
+        assert mission.ros.graph.params.find("/n/count") == 1
+        assert any("Table Load Aborted for 'ROS.Params03'" in line for line in mission.console.lines)
+        assert [text.split(".")[0] for text in events(mission)] == ["1: ROS Initialized"]
+        reset(mission, PROCESSOR_RESET)
+        assert mission.ros.graph.params.find("/n/count") == 2
 
 
 def test_bytes_come_back_as_bytes(tmp_path: Path) -> None:
