@@ -357,7 +357,12 @@ class CdsApi(EsCore):
     cds: CriticalDataStore | None = None
 
     def cds_early_init(self) -> None:
-        """Find or make the CDS, before any task runs (CFE_ES_CDS_EarlyInit)."""
+        """Find or make the CDS, before any task runs (CFE_ES_CDS_EarlyInit).
+
+        Raises:
+            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL: the board has not as much RAM.
+        """
+        self.ports.memory.claim("CFE_ES", "CDS", self.psp.get_cds_size())
         self.cds = CriticalDataStore(self.psp, self.config.es_cds_max_num_entries, self.write_to_sys_log)
         self.cds.early_init()
 

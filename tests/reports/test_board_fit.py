@@ -25,13 +25,14 @@ def test_a_mission_that_fits() -> None:
         ("RIGHT", 3, 8192, None),
     ]
     assert 0 < fit.cpu < 0.01
+    assert ("CFE_ES", "CDS", 8192) in fit.rows  # in RAM that outlives a reset, and RAM all the same
     assert fit.to_dict()["missing"] == 0
 
 
 @pytest.mark.slow
 def test_the_changes_make_capture_fit(tmp_path: Path) -> None:
     fit = fit_of(RunPlan(("capture",), seconds=2, board="rx64m"))
-    assert fit.missing == 328_704
+    assert fit.missing == 336_896
     assert fit.fits_changed
     assert [(change.place, change.saves) for change in fit.changes] == [
         ("startup.scr:6", 172_032),
@@ -47,8 +48,10 @@ def test_the_changes_make_capture_fit(tmp_path: Path) -> None:
     assert all(app.state == "RUNNING" for app in pilot.fly(changed).results.apps)
 
 
-def test_fewest_changes_take_the_largest_first_and_no_more_than_is_missing() -> None:
-    fit = fit_of(RunPlan(("capture/rx64m.scr",), seconds=1, board="gr716"))
+def test_fewest_changes_take_the_largest_first_and_no_more_than_is_missing(tmp_path: Path) -> None:
+    board = tmp_path / "small.yaml"
+    board.write_text((shipped("boards") / "gr716.yaml").read_text().replace("192 KiB}", "200 KiB}"))
+    fit = fit_of(RunPlan(("capture/rx64m.scr",), seconds=1, board=str(board)))
     assert fit.changes[0].text.startswith("limits: {sb_buf_memory_bytes: 16384} in place of 49152; ")
     assert fit.fits_changed
     assert sum(change.saves for change in fit.changes[:-1]) < fit.missing
