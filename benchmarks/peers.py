@@ -120,7 +120,7 @@ def _started(command: list[str], environ: dict[str, str]) -> Iterator[subprocess
 def _wait_for(line: str, process: subprocess.Popen[str]) -> None:
     assert process.stdout is not None
     if not any(each.strip() == line for each in process.stdout):
-        raise RuntimeError(f"{process.args} ended without {line!r}")
+        raise RuntimeError(f"{process.args!r} ended without {line!r}")
 
 
 def _cpu_s(pid: int) -> float:

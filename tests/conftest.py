@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -37,6 +38,14 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     if option.numprocesses is None and option.dist == "no" and not option.tx and cores > 1:
         option.numprocesses, option.dist = cores, "loadgroup" if option.markexpr == "slow" else "worksteal"
+
+
+@pytest.fixture(autouse=True)
+def _nobody_is_followed() -> Iterator[None]:
+    """A debugger of a mission that went on after it would make all that comes in its process slow."""
+    yield
+    owner = getattr(sys.gettrace(), "__self__", None)
+    assert type(owner).__name__ != "AppDebugger"
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:

@@ -154,6 +154,12 @@ def look_into(debugger: AppDebugger, frame: FrameType | None) -> None:
     debugger.set_trace(sys._getframe() if frame is None else frame)
 
 
+def leave_thread() -> None:
+    """No debugger of a task follows the calling thread any more: that of tasks on greenlets is the thread of the host."""
+    if isinstance(getattr(sys.gettrace(), "__self__", None), AppDebugger):
+        sys.settrace(None)
+
+
 def look_at_end(debugger: AppDebugger, error: BaseException) -> None:
     """Open the debugger where an uncaught exception came from."""
     trace: TracebackType | None = error.__traceback__

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, TextIO
 
-from cfepy.debugger.app_debugger import AppDebugger, look_at_end, look_into, own_frame
+from cfepy.debugger.app_debugger import AppDebugger, leave_thread, look_at_end, look_into, own_frame
 from cfepy.debugger.breakpoints import Breakpoint, VariableCondition, breakpoints, finders
 from cfepy.debugger.journey import NOTHING_BEFORE, Journey, LineWay, RunMoment
 from cfepy.debugger.keepers import Keepers
@@ -188,6 +188,7 @@ class Debugger(Observer):
     def close(self) -> None:
         """See `Attachment.close`."""
         super().close()
+        leave_thread()
         if self._gdb is not None:
             self._gdb.close()
 
