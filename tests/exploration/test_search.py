@@ -69,6 +69,22 @@ def test_fifo_may_have_the_most_decisions() -> None:
     assert next_of(search) == "pct:1:2:50"
 
 
+def test_with_points_between_calls_random_has_the_most_turns() -> None:
+    search = make_search("all", None, 50, Schedule.parse("at:points=attributes"))
+    texts = [next_of(search)]
+    search.tell(0, Verdict(Schedule("random", 0), decisions=20))
+    texts += [next_of(search) for _ in range(5)]
+    kinds = ["random:0", "pct:1:3:50", "abreast:2", "random:3:hold=1ms", "random:4", "random:5:hold=1ms"]
+    assert texts == [f"{kind}:points=attributes" for kind in kinds]
+
+
+def test_what_is_asked_for_has_its_depth_with_points_as_well() -> None:
+    search = make_search("all", 5, 50, Schedule.parse("at:points=lines"))
+    search.next()
+    search.tell(0, Verdict(Schedule("random", 0), decisions=20))
+    assert next_of(search) == "pct:1:5:50:points=lines"
+
+
 def test_the_systematic_search_learns_from_verdicts() -> None:
     search = make_search("dfs", 1, 50, Schedule.parse("at"))
     assert next_of(search) == "at"

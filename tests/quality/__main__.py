@@ -7,6 +7,8 @@
 `python -m tests.quality edits` tells how many of their shrunk schedules still fail after small edits
 (docs/exploration.md).
 
+`python -m tests.quality mended` flies the mended forms under many schedules, in search of false alarms (both pages).
+
 `python -m tests.quality stories` writes down the cause that is told of each of them (`stories.txt`).
 """
 
@@ -14,13 +16,14 @@ from __future__ import annotations
 
 import argparse
 
+from tests.quality import program_report, report
 from tests.quality.bugs import BUGS
 from tests.quality.coverage_report import measure as measure_coverage
 from tests.quality.edits import measure as measure_edits
 from tests.quality.measure import MOST
-from tests.quality.program_report import measure as measure_programs
+from tests.quality.mended import MOST as MOST_MENDED
+from tests.quality.mended import measure as measure_mended
 from tests.quality.programs import PROGRAMS
-from tests.quality.report import measure
 from tests.quality.stories import write
 
 
@@ -28,10 +31,10 @@ def main() -> None:
     """The command line."""
     parser = argparse.ArgumentParser(prog="python -m tests.quality", description=__doc__)
     commands = parser.add_subparsers(required=True, dest="command")
-    report = commands.add_parser("report", help="measure what is missing, and write the page")
-    report.add_argument("bugs", nargs="*", choices=[[], *(bug.name for bug in BUGS)], help="only these")
-    report.add_argument("--jobs", type=int, default=2, help="processes (2)")
-    report.add_argument("--most", type=int, default=MOST, help=f"schedules for one cell of the table ({MOST})")
+    planted = commands.add_parser("report", help="measure what is missing, and write the page")
+    planted.add_argument("bugs", nargs="*", choices=[[], *(bug.name for bug in BUGS)], help="only these")
+    planted.add_argument("--jobs", type=int, default=2, help="processes (2)")
+    planted.add_argument("--most", type=int, default=MOST, help=f"schedules for one cell of the table ({MOST})")
     stories = commands.add_parser("stories", help="tell the cause of each bug anew")
     stories.add_argument("bugs", nargs="*", choices=[[], *(bug.name for bug in BUGS)], help="only these")
     programs = commands.add_parser("programs", help="measure what is missing of the programs, and write their page")
@@ -43,15 +46,23 @@ def main() -> None:
     coverage.add_argument("missions", nargs="*", choices=[[], *missions], help="only these")
     edits = commands.add_parser("edits", help="fly the planted bugs after small edits, and print the table")
     edits.add_argument("bugs", nargs="*", choices=[[], *(bug.name for bug in BUGS)], help="only these")
+    mended = commands.add_parser("mended", help="fly the mended forms on, from where it was ended")
+    mended.add_argument("missions", nargs="*", choices=[[], *missions], help="only these")
+    mended.add_argument("--jobs", type=int, default=2, help="processes (2)")
+    mended.add_argument("--most", type=int, default=MOST_MENDED, help=f"schedules of each mission ({MOST_MENDED})")
     given = parser.parse_args()
     if given.command == "report":
-        measure(given.bugs, given.jobs, given.most)
+        report.measure(given.bugs, given.jobs, given.most)
     elif given.command == "programs":
-        measure_programs(given.programs)
+        program_report.measure(given.programs)
     elif given.command == "edits":
         measure_edits(given.bugs)
     elif given.command == "coverage":
         measure_coverage(given.missions)
+    elif given.command == "mended":
+        measure_mended(given.missions, given.jobs, given.most)
+        report.write(report.load())
+        program_report.write(program_report.load())
     else:
         write(given.bugs)
 

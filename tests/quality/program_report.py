@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from cfepy.exploration import verdict
 from cfepy.rtos import Schedule
+from tests.quality import mended
 from tests.quality.measure import Median, hunts, median
 from tests.quality.programs import PROGRAMS, Program, program_trial
 
@@ -19,12 +19,10 @@ DEFAULT = "all"
 SCHEDULES = 200
 MOST = 5000  # of the one search that anyone can repeat
 TRIALS = 3
-MENDED_SCHEDULES = 100
-FOUND, MEDIAN, MENDED, RACES = "found", "median", "mended", "races"
+FOUND, MEDIAN, RACES = "found", "median", "races"
 
 Measured = dict[str, dict[str, Any]]
-"""By program: the first schedule that fails, or None, what `Median` is made of, whether a race is told, how many of the
-mended form fail."""
+"""By program: the first schedule that fails, or None, what `Median` is made of, whether a race is told."""
 
 
 def load() -> Measured:
@@ -41,7 +39,7 @@ def measure(names: list[str]) -> None:
     """
     measured = load()
     wanted = [program for program in PROGRAMS if not names or program.name in names]
-    for column in (FOUND, MEDIAN, RACES, MENDED):
+    for column in (FOUND, MEDIAN, RACES):
         for program in wanted:
             if column not in measured.get(program.name, {}):
                 value = _measured(column, program)
@@ -49,6 +47,11 @@ def measure(names: list[str]) -> None:
                 ordered = {each.name: measured[each.name] for each in PROGRAMS if each.name in measured}
                 MEASURED.write_text(json.dumps(ordered, indent=1) + "\n")
                 print(f"{program.name}: {column}: {value}", flush=True)
+    write(measured)
+
+
+def write(measured: Measured) -> None:
+    """Write the page, if nothing is missing."""
     if complete(measured):
         PAGE.write_text(page(measured))
 
@@ -59,10 +62,7 @@ def _measured(column: str, program: Program) -> Any:
         return first_failing(program, MOST)
     if column == MEDIAN:
         return median(program_trial(program), DEFAULT, TRIALS, TRIALS * SCHEDULES).to_dict()
-    if column == RACES:
-        return tells_race(program)
-    with tempfile.TemporaryDirectory() as folder:
-        return failures_of_mended(program, Path(folder), MENDED_SCHEDULES)
+    return tells_race(program)
 
 
 def first_failing(program: Program, most: int) -> int | None:
@@ -89,25 +89,12 @@ def tells_race(program: Program) -> bool:
     return any(failure.kind == verdict.RACE for failure in failures)
 
 
-def failures_of_mended(program: Program, folder: Path, schedules: int) -> int:
-    """How many of so many schedules of the default policy fail in the mended form.
-
-    Args:
-        program: it.
-        folder: in which the mended form is made.
-        schedules: how many.
-    """
-    (hunt,) = hunts(program_trial(program, program.write_fixed(folder)), DEFAULT, 1)
-    verdicts = [hunt.step() for _ in range(schedules)]
-    return sum(each is not None and each.failed for each in verdicts)
-
-
 # -- what it comes to ------------------------------------------------------------------------------------------------
 
 
 def complete(measured: Measured) -> bool:
     """Whether every cell has been measured."""
-    return all(set(measured.get(program.name, {})) == {FOUND, MEDIAN, MENDED, RACES} for program in PROGRAMS)
+    return all(set(measured.get(program.name, {})) == {FOUND, MEDIAN, RACES} for program in PROGRAMS)
 
 
 def missed(measured: Measured) -> list[Program]:
@@ -131,8 +118,7 @@ def page(measured: Measured) -> str:
         most=MOST,
         often=sum(Median(**each[MEDIAN]).found for each in measured.values()),
         missed=", ".join(f"`{program.name}`" for program in not_found) or "none",
-        alarms=sum(each[MENDED] for each in measured.values()),
-        flown=len(PROGRAMS) * MENDED_SCHEDULES,
+        mended=mended.sentence([program.name for program in PROGRAMS]),
         table="\n".join(lines),
     )
 
@@ -179,7 +165,7 @@ mapleRes.txt among the benchmarks of the repository mc-imperial/sctbench. It is 
 The first search finds {found} of {count} within {schedules} schedules and {later} within {most:,}; in the median
 {often} are found within {schedules}. The first one does not find {missed} within {schedules}.
 
-Of {flown} schedules of the mended forms {alarms} fail.
+{mended}.
 
 {table}
 

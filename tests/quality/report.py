@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from tests.quality import mended
 from tests.quality.bugs import BUGS, Bug, by_name, reference_trial
 from tests.quality.measure import LONGEST, POLICIES, TRIALS, Median, median, simplest
 from tests.quality.shrinking import Shrunk, shrunk
@@ -64,6 +65,11 @@ def measure(names: list[str], jobs: int, most: int) -> None:
     with multiprocessing.get_context("spawn").Pool(jobs) as pool:
         _keep(measured, pool.imap_unordered(_cell, [(*cell, most) for cell in _missing(measured, names, most)]))
         _keep(measured, pool.imap_unordered(_shrink, list(_missing_shrinks(measured, names))))
+    write(measured)
+
+
+def write(measured: Measured) -> None:
+    """Write the page, if nothing is missing."""
     if complete(measured):
         PAGE.write_text(page(measured))
 
@@ -148,6 +154,7 @@ def page(measured: Measured) -> str:
         trials=TRIALS,
         longest=LONGEST,
         median=f"{median_of_default(measured):g}",
+        mended=mended.sentence([bug.name for bug in BUGS]),
         table="\n".join(lines),
     )
 
@@ -171,7 +178,8 @@ _INTRODUCTION = """# Planted bugs
 How soon does `cfepy explore` find a race? `tests/quality/missions` has {count} small missions of ROS nodes and cFE
 applications, each with one mistake of timing that people really make, and each as one would write it: no sleep widens
 the window. The default schedule, first come, first served, shows none of them, and every mission also has a mended
-form, in which none of the policies finds anything.
+form. {mended} (`python -m tests.quality mended` goes on with
+that).
 
 The numbers are schedules until the bug shows: the median of {trials} trials with seeds of their own. `> N` says that
 half of the trials or more had found nothing after N schedules each, when the measurement of that policy ended (it goes

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
 import pytest
 
 from cfepy.exploration.shrink import SUBSETS_OF
-from cfepy.exploration.stuck import waits_of
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import Verdict
 from cfepy.rtos import Schedule
-from cfepy.units import NS_PER_S
-from tests.quality.bugs import BUGS, MISSIONS, SECONDS, Bug, by_name, reference_trial
+from tests.quality.bugs import BUGS, MISSIONS, Bug, by_name, reference_trial
 from tests.quality.measure import as_deviations, find, simplest
+from tests.quality.mended import mended_trial
 from tests.quality.programs import PROGRAMS
 from tests.quality.report import best, load, shown_by
 from tests.quality.shrinking import shrunk
@@ -71,22 +69,16 @@ def never_fails(trial: Trial, policy: str, schedules: int) -> None:
     assert failed is None, failed
 
 
-def mended(bug: Bug, folder: Path) -> Trial:
-    """The trial of a mission without its mistake, in which nobody may wait for ever either."""
-    trial = reference_trial(bug.write_fixed(folder))
-    return replace(trial, waits=waits_of(trial.plan, round(SECONDS * NS_PER_S), None))
-
-
 @HALF_LATER
 def test_mended_it_does_not_fail(bug: Bug, tmp_path: Path) -> None:
-    never_fails(mended(bug, tmp_path), "all", 4)
+    never_fails(mended_trial(bug, tmp_path)[0], "all", 4)
 
 
 @pytest.mark.slow
 @EACH
 @pytest.mark.parametrize("policy", ["all", "dfs 2"])
 def test_mended_it_never_fails(bug: Bug, policy: str, tmp_path: Path) -> None:
-    never_fails(mended(bug, tmp_path), policy, 30)
+    never_fails(mended_trial(bug, tmp_path)[0], policy, 30)
 
 
 def shrinks(bug: Bug) -> None:
