@@ -16,7 +16,7 @@ def shipped(kind: str) -> Path:
     """The directory of one kind of shipped files.
 
     Args:
-        kind: "boards", "apps" or "missions".
+        kind: "boards", "apps", "missions" or "flight", which is code for flight computers.
 
     Raises:
         UsageError: this installation has no such directory.

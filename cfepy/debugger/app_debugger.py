@@ -155,7 +155,7 @@ def look_into(debugger: AppDebugger, frame: FrameType | None) -> None:
 
 
 def leave_thread() -> None:
-    """No debugger of a task follows the calling thread any more: that of tasks on greenlets is the thread of the host."""
+    """No debugger of a task follows the calling thread any more, which for tasks on greenlets is that of the host."""
     if isinstance(getattr(sys.gettrace(), "__self__", None), AppDebugger):
         sys.settrace(None)
 

@@ -14,7 +14,12 @@ from cfepy.cli.main import main
 from cfepy.rtos import AUTO, task_kind
 from tests.cli.conftest import Write
 
-SMALL_BOARD = "name: small\nsram: [{name: all, size: 100 KiB}]\nlimits: {tbl_buf_memory_bytes: 200000, es_cds_size: 8192}\n"
+SMALL_BOARD = """name: small
+sram: [{name: all, size: 100 KiB}]
+limits: {tbl_buf_memory_bytes: 200000, es_cds_size: 8192}
+"""
+    "name: small\nsram: [{name: all, size: 100 KiB}]\nlimits: {tbl_buf_memory_bytes: 200000, es_cds_size: 8192}\n"
+)
 
 
 def run(folder: Path, *options: str) -> int:

@@ -17,7 +17,7 @@ MEASURED = Path(__file__).parent / "measured_programs.json"
 PAGE = Path(__file__).parents[2] / "docs" / "benchmarks_exploration.md"
 DEFAULT = "all"
 SCHEDULES = 200
-MOST = 5000  # of the one search that anyone can repeat
+MOST = 10_000  # of the one search that anyone can repeat
 TRIALS = 3
 FOUND, MEDIAN, RACES = "found", "median", "races"
 

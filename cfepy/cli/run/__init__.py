@@ -115,6 +115,14 @@ def _add_board(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     new.add_argument("--ram", metavar="SIZE", help="such as 512KiB or 8MiB (default: no limit)")
     new.add_argument("--flash", metavar="SIZE", help="such as 4MiB (default: no limit)")
     new.set_defaults(module="run.board_new")
+    program = actions.add_parser(
+        "program",
+        help="write the application, in C, that takes these measurements",
+        description="Write an application of cFS, in C, that measures the three times on a board and tells them in an "
+        "event, as options of `cfepy board new`.",
+    )
+    program.add_argument("folder", metavar="FOLDER", help="of the application; it must not be there yet")
+    program.set_defaults(module="run.board_program")
 
 
 def _cycles_of(text: str) -> int:
