@@ -18,8 +18,6 @@ SMALL_BOARD = """name: small
 sram: [{name: all, size: 100 KiB}]
 limits: {tbl_buf_memory_bytes: 200000, es_cds_size: 8192}
 """
-    "name: small\nsram: [{name: all, size: 100 KiB}]\nlimits: {tbl_buf_memory_bytes: 200000, es_cds_size: 8192}\n"
-)
 
 
 def run(folder: Path, *options: str) -> int:
