@@ -17,6 +17,8 @@ from cfepy.input_limits import YAML_BYTES, YAML_DEPTH, YAML_DIGITS, YAML_VALUES
 
 _NUMBER = re.compile(r"[-+0-9][0-9a-fA-F_:.xXoO]*")
 _QUOTED = ("'", '"', "|", ">")
+_TOO_DEEP = "exceeded maximum nesting depth"
+"""What libyaml says of it that comes with PyYAML 6.0.4 and later: it reads ahead, so `_Sizes` is not asked first."""
 _FLAWED = (ValueError, AttributeError, LookupError, TypeError, ArithmeticError)
 """What PyYAML's constructors raise of a value that does not fit its tag, such as `!!timestamp soon`."""
 
@@ -81,6 +83,8 @@ def opened(text: str, loader: type[Any] | None = None) -> Iterator[Any]:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = None if mark is None else mark.line + 1
+        if error.problem == _TOO_DEEP:
+            raise YamlError("is nested too deeply", line) from None
         raise YamlError(f"is not YAML: {error.problem or error.context}", line) from None
     except yaml.YAMLError as error:
         raise YamlError(f"is not YAML: {error}") from None
