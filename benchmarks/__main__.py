@@ -18,6 +18,7 @@ from benchmarks.measure import contexts_here, machine
 from benchmarks.missions import missions
 from benchmarks.peers import peers
 from benchmarks.recording import recording
+from benchmarks.ros_host import ros_host
 from benchmarks.schedules import schedules
 from benchmarks.services import services
 from benchmarks.universe import universe
@@ -36,6 +37,7 @@ def main(arguments: list[str] | None = None) -> int:
         "frames": lambda: frames(contexts),
         "growth": lambda: growth(contexts),
         "peers": lambda: peers(contexts),
+        "ros_host": ros_host,
         "codec": codec,
         "compiled": lambda: compiled(contexts),
         "universe": lambda: {f"{name}.{each}": value for each in contexts for name, value in universe(each).items()},

@@ -76,28 +76,40 @@ def _answers(flight: Mission) -> int:
 
 
 def _of_ros() -> dict[str, float]:
-    has_ros = shutil.which("rosmaster") and not subprocess.run([PYTHON, "-c", "import rospy"], check=False).returncode
-    if not has_ros:
-        print("  no rospy of Debian (python3-rospy, python3-rosmaster): left out", file=sys.stderr)
+    runs = [trip for trip in (_real_round_trip() for _ in range(REPEATS)) if trip is not None]
+    if not runs:
         return {}
-    runs = [_real_round_trip() for _ in range(REPEATS)]
     return {
         "rospy.round_trip_cpu_us.ros": min(cpu_us for cpu_us, _ in runs),
         "rospy.round_trip_us.ros": min(wall_us for _, wall_us in runs),
     }
 
 
-def _real_round_trip() -> tuple[float, float]:
-    """Microseconds of CPU time of both nodes, and of the wall clock."""
+@contextmanager
+def with_master() -> Iterator[dict[str, str] | None]:
+    """Around what takes part in a graph of Debian's ROS: the environment of its nodes; None where there is none."""
+    has_ros = shutil.which("rosmaster") and not subprocess.run([PYTHON, "-c", "import rospy"], check=False).returncode
+    if not has_ros:
+        print("  no rospy of Debian (python3-rospy, python3-rosmaster): left out", file=sys.stderr)
+        yield None
+        return
     with socket.create_server(("127.0.0.1", 0)) as probe:
         port = probe.getsockname()[1]
     environ = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_IP": "127.0.0.1"}
     with tempfile.TemporaryDirectory() as folder:
         environ |= {"ROS_HOME": folder, "ROS_LOG_DIR": folder}
+        with started(["rosmaster", "--core", "-p", str(port)], environ):
+            yield environ
+
+
+def _real_round_trip() -> tuple[float, float] | None:
+    """Microseconds of CPU time of both nodes, and of the wall clock; None without ROS."""
+    with with_master() as environ:
+        if environ is None:
+            return None
         with (
-            _started(["rosmaster", "--core", "-p", str(port)], environ),
-            _started([PYTHON, str(NODES / "answers.py")], environ) as answers,
-            _started([PYTHON, str(NODES / "asks.py"), str(ROUND_TRIPS)], environ) as asks,
+            started([PYTHON, str(NODES / "answers.py")], environ) as answers,
+            started([PYTHON, str(NODES / "asks.py"), str(ROUND_TRIPS)], environ) as asks,
         ):
             nodes = (answers.pid, asks.pid)
             _wait_for("begin", asks)
@@ -108,7 +120,8 @@ def _real_round_trip() -> tuple[float, float]:
 
 
 @contextmanager
-def _started(command: list[str], environ: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
+def started(command: list[str], environ: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
+    """Around a process, which is killed at the end; its output can be read."""
     process = subprocess.Popen(command, env=environ, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     try:
         yield process
