@@ -203,6 +203,71 @@ def test_of_a_file_that_is_cut_off_all_before_is_left(suffix: str, kind: str, fo
     assert before > COUNT
 
 
+def ends(file: Path) -> list[int]:
+    """Where the messages of a file end that is not packed."""
+    whole, at, found = file.read_bytes(), 0, []
+    for message in read(file):
+        at = whole.index(message[1], at) + len(message[1])
+        found.append(at)
+    return found
+
+
+def left_of(data: bytes, copy: Path) -> int:
+    """How many messages are left of damaged data."""
+    copy.write_bytes(data)
+    found: int = summary_of(str(copy)).to_dict()["messages"]
+    return found
+
+
+NOT_PACKED = pytest.mark.parametrize("suffix", [".bag", ".mcap"])
+
+
+@NOT_PACKED
+def test_a_whole_message_before_the_cut_is_not_lost(suffix: str, folder: Path, tmp_path: Path) -> None:
+    file = written(folder, suffix, "none")
+    whole, places = file.read_bytes(), ends(file)
+    for cut in range(places[150], places[151] + 1):
+        before = sum(end <= cut for end in places)
+        assert left_of(whole[:cut], tmp_path / f"cut{suffix}") == before, cut - places[150]
+
+
+@pytest.mark.slow
+@NOT_PACKED
+def test_of_a_file_that_is_cut_anywhere_every_whole_message_is_left(suffix: str, folder: Path, tmp_path: Path) -> None:
+    file = written(folder, suffix, "none")
+    whole, places = file.read_bytes(), ends(file)
+    cut_off, left = tmp_path / f"cut{suffix}", tmp_path / f"left{suffix}"
+    for cut in range(64, len(whole), 64):
+        before = sum(end <= cut for end in places)
+        assert left_of(whole[:cut], cut_off) == before, cut
+        if before:
+            rewrite(str(cut_off), str(left))
+            assert read(left) == read(file)[:before]
+
+
+@NOT_PACKED
+def test_one_damaged_bit_in_a_message_loses_no_other(suffix: str, folder: Path, tmp_path: Path) -> None:
+    file = written(folder, suffix, "none")
+    places, draw = ends(file), random.Random(3)
+    spots = range(places[150], places[151])
+    for spot in draw.sample(spots, 25):
+        damaged = bytearray(file.read_bytes())
+        damaged[spot] ^= 1 << draw.randrange(8)
+        assert left_of(bytes(damaged), tmp_path / f"damaged{suffix}") >= 2 * COUNT - 1, spot - places[150]
+
+
+@pytest.mark.slow
+@NOT_PACKED
+def test_no_bit_of_a_message_matters_to_another(suffix: str, folder: Path, tmp_path: Path) -> None:
+    file = written(folder, suffix, "none")
+    places = ends(file)
+    for spot in range(places[150], places[151]):
+        for bit in range(8):
+            damaged = bytearray(file.read_bytes())
+            damaged[spot] ^= 1 << bit
+            assert left_of(bytes(damaged), tmp_path / f"damaged{suffix}") >= 2 * COUNT - 1, (spot - places[150], bit)
+
+
 @pytest.mark.parametrize("suffix", [".bag", ".mcap"])
 @pytest.mark.parametrize("part", ["a message", "its length", "the length of a chunk"])
 def test_what_is_damaged_is_lost_and_nothing_else(part: str, suffix: str, folder: Path, tmp_path: Path) -> None:

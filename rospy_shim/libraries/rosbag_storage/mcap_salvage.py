@@ -19,6 +19,14 @@ _IN_CHUNKS = frozenset((mcap.SCHEMA, mcap.CHANNEL, mcap.MESSAGE))
 _AT_THE_TOP = frozenset((*range(mcap.HEADER, mcap.DATA_END + 1), *range(0x80, 0x100)))  # the latter are private
 
 
+def _is_text(schema: mcap.McapSchema | None) -> bool:
+    """Whether there is a schema, and its definition can be read."""
+    try:
+        return schema is not None and schema.data.decode() is not None
+    except UnicodeDecodeError:
+        return False
+
+
 class McapSalvage(Salvage):
     """What is left of an MCAP file; see `Salvage`."""
 
@@ -91,7 +99,8 @@ class McapSalvage(Salvage):
         """Take in a record that is no message and no chunk."""
         if op == mcap.SCHEMA:
             number, schema = mcap.schema_of(body)
-            self._schemas.setdefault(number, schema)
+            if not _is_text(self._schemas.get(number)):  # one of the summary may be damaged where its text is
+                self._schemas[number] = schema
         elif op == mcap.CHANNEL:
             channel = mcap.channel_of(body, self._schemas)
             self.channels.setdefault(channel.id, channel)
@@ -184,23 +193,41 @@ class McapSalvage(Salvage):
         return mcap.RecordedMessage(self.channels[number], time, content, publish_time, sequence)
 
     def _follows(self, data: Bytes, at: int, end: int, kinds: frozenset[int]) -> bool:
-        """Whether the file ends at a byte, or a record of some kinds begins there, which may be cut off or damaged."""
+        """Whether the file ends at a byte, or a record of some kinds begins there, which may be cut off or damaged.
+
+        One whose kind is damaged is known by its length, at whose end another record begins; one whose length is
+        damaged by its kind.
+        """
         if at == end:
             return True
         if end - at == len(mcap.MAGIC) and data[at:end] == mcap.MAGIC:
             return kinds is _AT_THE_TOP
         if end - at < mcap.PREFIX.size:
-            return False
+            return end == len(data) and self._is_cut_off(bytes(data[at:end]), kinds)
         op, size = mcap.PREFIX.unpack_from(data, at)
         if op not in kinds:
-            return False
+            after = at + mcap.PREFIX.size + size
+            return after < end and self._begins(data, after, end, kinds)
         if op == mcap.CHUNK:
             try:
                 mcap.chunk_of(mcap.Body(data[at + mcap.PREFIX.size : at + mcap.PREFIX.size + 64], at))
             except ROSBagException:
                 return False
             return True
-        return bool(size < _LONGEST)
+        return bool(size < _LONGEST) or (op == mcap.MESSAGE and self._is_of_channel(data, at + mcap.PREFIX.size, end))
+
+    def _begins(self, data: Bytes, at: int, end: int, kinds: frozenset[int]) -> bool:
+        """Whether a record of some kinds begins at a byte, and is neither cut off nor damaged."""
+        return end - at >= mcap.PREFIX.size and data[at] in kinds and self._follows(data, at, end, kinds)
+
+    @staticmethod
+    def _is_cut_off(rest: bytes, kinds: frozenset[int]) -> bool:
+        """Whether what the file ends with is the beginning of a record of some kinds, or of its last eight bytes."""
+        return (rest[0] in kinds and not any(rest[6:])) or (kinds is _AT_THE_TOP and mcap.MAGIC.startswith(rest))
+
+    def _is_of_channel(self, data: Bytes, start: int, end: int) -> bool:
+        """Whether the content of a message, whose length is damaged, names a channel that there is."""
+        return start + 2 <= end and int.from_bytes(data[start : start + 2], "little") in self.channels
 
     def _next(self, data: Bytes, at: int, end: int, kinds: frozenset[int]) -> int:
         """Where the next record of some kinds begins that is followed by another; `end` when there is none."""

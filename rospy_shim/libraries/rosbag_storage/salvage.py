@@ -23,6 +23,15 @@ Bytes = bytes | mmap
 BROKEN = (ROSBagException, ValueError, LookupError, OSError, EOFError)
 _PIECE = 1024  # bytes that are unpacked at once: what can become of them fits into memory
 _LONGEST_HEADER = 1 << 16
+_NAMES = (b"op=", b"conn=", b"time=", b"ver=", b"count=", b"topic=", b"compression=", b"size=")
+"""Of fields of headers: in one that is damaged in one place, the first or the second one stands where it is to be."""
+_FIELD_OF = {
+    records.OP_FILE_HEADER: "index_pos",
+    records.OP_INDEX_DATA: "count",
+    records.OP_CHUNK: "compression",
+    records.OP_CHUNK_INFO: "chunk_pos",
+}
+"""A field that records of a kind have, and others do not: by it one is known whose kind is damaged."""
 _FARTHEST_OP = 128  # bytes of a header before its field `op`; writers have at most three short ones there
 
 
@@ -269,12 +278,12 @@ class BagSalvage(Salvage):
             try:
                 record = _record_at(data, at)
                 if record.op not in (records.OP_CONNECTION, records.OP_MSG_DATA):
-                    if place is not None and record.op in records.OP_CODES and record.end <= end:
+                    if place is not None and _FIELD_OF.get(record.op) in record.fields and record.end <= end:
                         break  # the chunk is shorter than it says
                     raise ROSBagException(f"a record of the kind {record.op} in a chunk, at byte {at:,}")
                 if record.end > end:
                     raise ROSBagException(f"a message is cut off, at byte {at:,}")
-                if record.end not in (stop, end) and not _is_record(data, record.end):
+                if record.end not in (stop, end) and not _begins_record(data, record.end):
                     raise ROSBagException(f"a message has another length than it says, at byte {at:,}")
                 if record.op == records.OP_CONNECTION:
                     self._connect(data, record)
@@ -304,6 +313,38 @@ def _is_record(data: Bytes, at: int) -> bool:
         return _record_at(data, at).op in records.OP_CODES
     except BROKEN:
         return False
+
+
+def _begins_record(data: Bytes, at: int) -> bool:
+    """Whether a record begins at a byte, which may be cut off or damaged: then by what is there of its header."""
+    if _is_record(data, at):
+        return True
+    rest = bytes(data[at : at + _FARTHEST_OP])
+    head = int.from_bytes(rest[:4], "little")
+    if head > _LONGEST_HEADER:  # no writer makes such a header: its length may be damaged in its upper half
+        return _is_header(bytes(data[at + 4 : at + 4 + head % _LONGEST_HEADER]))
+    if at + 4 + head + 4 > len(data) and _is_beginning(rest[4 : 4 + head]):
+        return True
+    second = 12 + int.from_bytes(rest[4:8], "little")  # behind the lengths of header, first and second field
+    return rest[second:].startswith(_NAMES) or (rest[8:].startswith(_NAMES) and sum(name in rest for name in _NAMES) > 1)
+
+
+def _is_header(header: bytes) -> bool:
+    try:
+        return b"op=" in header and records.uint8_field(records.split_header(header), "op") in records.OP_CODES
+    except BROKEN:
+        return False
+
+
+def _is_beginning(header: bytes) -> bool:
+    """Whether bytes are the beginning of a header: fields, of which the last one may be cut off."""
+    while len(header) > 4:
+        size = int.from_bytes(header[:4], "little")
+        name = header[4 : 4 + size].partition(b"=")[0]
+        if not name.isalpha() and not name.replace(b"_", b"").isalpha():
+            return False
+        header = header[4 + size :]
+    return True
 
 
 def _next_record(data: Bytes, at: int, end: int, ops: tuple[int, ...] | list[int]) -> int:
