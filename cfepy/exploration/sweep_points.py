@@ -115,12 +115,16 @@ def points_of(
         seeds: of everything random.
 
     Raises:
-        UsageError: the mission does not say what a rate sets, or there are too many points.
+        UsageError: the mission does not say what a rate sets, or that is to be varied as well, or there are too many
+            points.
     """
     sets = spec.sweep.rate
     if rates and not sets:
         text = "does not say what a rate sets; add `sweep: {rate: [/node/rate]}` to its mission file, or use --set"
         raise UsageError(text, file=spec.mission_file or spec.script, field="--rate")
+    both = next((name for name, _ in varied if rates and name in sets), None)
+    if both is not None:
+        raise UsageError(f"{both} is what the rate sets; leave --rate or this out", field="--set")
     axes = [[(name, value) for value in values] for name, values in varied]
     count = len(boards) * max(1, len(rates)) * len(seeds)
     for axis in axes:

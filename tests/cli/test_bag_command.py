@@ -58,6 +58,31 @@ def test_what_is_left_of_a_bag_that_is_cut_off(here: Path, capsys: Capture) -> N
     assert sorted(each.name for each in here.iterdir()) == ["cut.bag", "cut.recovered.bag", "drive.bag"]
 
 
+@pytest.mark.parametrize(
+    ("words", "file", "why"),
+    [
+        ("convert drive.bag", "drive.mcap", "is there already; say with -o what is to be written"),
+        ("recover drive.bag", "drive.recovered.bag", "is there already; say with -o what is to be written"),
+        ("recover drive.bag -o drive.bag", "drive.bag", "is the damaged recording itself; give another name"),
+    ],
+)
+def test_nothing_is_written_over_unasked(words: str, file: str, why: str, here: Path, capsys: Capture) -> None:
+    if file != "drive.bag":
+        (here / file).write_bytes(b"precious")
+    before = (here / file).read_bytes()
+    assert main(["bag", *words.split()]) == 2
+    assert why in capsys.readouterr().err
+    assert (here / file).read_bytes() == before
+
+
+def test_what_is_named_is_written_over(here: Path) -> None:
+    (here / "drive.mcap").write_bytes(b"old")
+    assert main(["bag", "convert", "drive.bag", "-o", "drive.mcap"]) == 0
+    assert count(here / "drive.mcap") == count(GOLDEN)
+    assert main(["bag", "convert", "drive.bag", "-o", "drive.bag", "--compression", "lz4"]) == 0
+    assert count(here / "drive.bag") == count(GOLDEN)
+
+
 def test_other_commands_read_mcap_files_as_they_do_bags(here: Path, capsys: Capture) -> None:
     main(["bag", "convert", "drive.bag"])
     capsys.readouterr()

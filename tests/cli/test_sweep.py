@@ -43,6 +43,10 @@ def test_a_sweep_writes_what_it_found(tmp_path: Path, capsys: pytest.CaptureFixt
         (["--rate", "0..10"], "--rate: '0..10' does not go up from more than 0"),
         (["--set", "rate"], "'rate' is not like /arm/rate=20,50"),
         (["--set", "/left/rate=1..2:0"], "--set: '1..2:0' does not go up in steps"),
+        (
+            ["--rate", "50", "--set", "/left/rate=10"],
+            "--set: /left/rate is what the rate sets; leave --rate or this out",
+        ),
         (["--picture", "a.txt"], "--picture: is no picture"),
         (["--jobs", "1", "--cluster", "local:1"], "--jobs: says how many processes run here"),
     ],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from pathlib import Path
 
@@ -25,7 +26,7 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: there is no such recording, or a file cannot be written.
+        UsageError: there is no such recording, a file cannot be written, or is there already.
     """
     check_json(arguments)
     if arguments.action == "info":
@@ -35,6 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
         return _tell_damage(found)
     strict = arguments.action == "convert"
     output = arguments.output or _output_of(arguments.file, strict)
+    _spare(arguments.file, output, is_named=arguments.output is not None, is_conversion=strict)
     found = rewrite(arguments.file, output, arguments.compression, strict)
     write_json(arguments, found.to_dict())
     left_out = sum(each.left_out for each in found.topics)
@@ -54,6 +56,16 @@ def _output_of(file: str, is_conversion: bool) -> str:
     if path.suffix not in _OTHER:
         raise UsageError("ends neither with .bag nor with .mcap; say with -o what is to be made of it", file=file)
     return str(path.with_suffix(_OTHER[path.suffix]))
+
+
+def _spare(file: str, output: str, *, is_named: bool, is_conversion: bool) -> None:
+    """No recording is written over unasked, and a damaged one, which is the only evidence, not at all."""
+    if not os.path.exists(output):
+        return
+    if not is_named:
+        raise UsageError("is there already; say with -o what is to be written", file=output)
+    if not is_conversion and os.path.exists(file) and os.path.samefile(file, output):
+        raise UsageError("is the damaged recording itself; give another name", file=output, field="-o")
 
 
 def _tell_damage(found: RecordingSummary) -> int:

@@ -326,7 +326,9 @@ def _begins_record(data: Bytes, at: int) -> bool:
     if at + 4 + head + 4 > len(data) and _is_beginning(rest[4 : 4 + head]):
         return True
     second = 12 + int.from_bytes(rest[4:8], "little")  # behind the lengths of header, first and second field
-    return rest[second:].startswith(_NAMES) or (rest[8:].startswith(_NAMES) and sum(name in rest for name in _NAMES) > 1)
+    return rest[second:].startswith(_NAMES) or (
+        rest[8:].startswith(_NAMES) and sum(name in rest for name in _NAMES) > 1
+    )
 
 
 def _is_header(header: bytes) -> bool:
