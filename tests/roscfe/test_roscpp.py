@@ -13,9 +13,10 @@ from tests.roscfe.random_messages import LIBRARY, all_types
 from tests.roscfe.roundtrip import Program, frames_of
 
 pytestmark = [pytest.mark.slow, needs_cpp]
+HEADERS = ("ros/serialization.h", "actionlib_msgs", "geometry_msgs", "tf2_msgs")
 needs_roscpp = pytest.mark.skipif(
-    not (SYSTEM / "ros" / "serialization.h").is_file(),
-    reason="there are no headers of ROS (Debian: libroscpp-dev); what they print is recorded",
+    not all((SYSTEM / each).exists() for each in HEADERS),
+    reason="there are no headers of ROS (Debian: libroscpp-dev, libtf2-msgs-dev ...); what they print is recorded",
 )
 FOLDER = Path(__file__).parent
 PROGRAMS = ("times", "printed", "own_types", "boost")
