@@ -128,7 +128,8 @@ def seeded_kinds(
     """The schedules of a policy that comes from seeds, which take turns; the arguments are those of `make_search`.
 
     With points between calls there are so many decisions that PCT hits those of a bug rarely: of 13 programs that need
-    points it finds none more often than random does. So it has one turn in six there, for its guarantee.
+    points random finds 10 more often than PCT of any of these depths, PCT of depth 3 two, and neither finds one in 200.
+    So PCT has one turn in six there.
     """
     random, abreast = replace(options, kind="random"), replace(options, kind="abreast")
     is_mixed = policy in ("all", GREYBOX)
