@@ -134,12 +134,13 @@ ONE = "CFE_APP, app, Main, APP, 100, 16384, 0x0, 0;\n!"
 
 
 def test_apps_and_nodes_have_one_set_of_files(folder: Path, tmp_path: Path) -> None:
-    writer = 'def Main(cfe):\n    with open("/tmp/note", "w") as file:\n        file.write("from the app")\n'
-    reader = 'import time\ntime.sleep(0.5)\nprint(open("/tmp/note").read())\n'
+    note = tmp_path / "note"
+    writer = f'def Main(cfe):\n    with open("{note}", "w") as file:\n        file.write("from the app")\n'
+    reader = f'import time\ntime.sleep(0.5)\nprint(open("{note}").read())\n'
     startup = "CFE_APP, app, Main, APP, 100, 16384, 0, 0;\nCFE_APP, node.py, __main__, NODE, 100, 16384, 0, 0;\n!"
     lines = flown_with(tmp_path, startup, app=writer, node=reader)
     assert "[NODE] from the app" in lines
-    assert not Path("/tmp/note").exists()
+    assert not note.exists()
 
 
 def test_parts_of_a_package_have_them_too(folder: Path, tmp_path: Path) -> None:
