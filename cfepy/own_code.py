@@ -17,16 +17,27 @@ F = TypeVar("F", bound=Callable[..., Any])
 FILES = 4096  # of which it is remembered whose they are
 PACKAGE = str(Path(__file__).resolve().parent)
 _CFEPY = os.path.join(PACKAGE, "")
+_COMPILED = "cfepy/"
 _ROSPY = os.path.join(os.path.dirname(PACKAGE), "rospy_shim", "")
 _LIBRARIES = os.path.join(_ROSPY, "libraries", "")
 _STANDARD_LIBRARY = os.path.join(os.path.dirname(linecache.__file__), "")
 _INSTALLED = ("site-packages", "dist-packages")
 
 
+def source_file(file: str) -> str:
+    """The whole name of a source file as a frame of a traceback has it.
+
+    A module that mypyc has compiled names its source from the folder that has cfepy in it.
+    """
+    return _CFEPY + file.removeprefix(_COMPILED) if file.startswith(_COMPILED) else file
+
+
 @functools.lru_cache(maxsize=FILES)
 def is_shown(file: str) -> bool:
     """Whether code is the mission's or a library's, not the simulator's."""
-    hidden = file.startswith((_CFEPY, "<")) or (file.startswith(_ROSPY) and not file.startswith(_LIBRARIES))
+    hidden = source_file(file).startswith((_CFEPY, "<")) or (
+        file.startswith(_ROSPY) and not file.startswith(_LIBRARIES)
+    )
     return not hidden
 
 

@@ -140,6 +140,20 @@ def _command(module: str) -> Any:
             gc.freeze()
 
 
+class _Version(argparse.Action):
+    """Tells the version and ends; whether something is compiled is found out only then."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str, help: str) -> None:
+        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, help=help)
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        """See `argparse.Action`."""
+        from cfepy.compiled import state
+
+        print(f"cfepy {__version__} ({state()})")
+        parser.exit()
+
+
 def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
     """A parser for these words: with the command that they begin with, or with all when they begin with none."""
     parser = RootParser(
@@ -148,7 +162,7 @@ def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
         description="NASA's core Flight Executive and ROS 1 nodes on one simulated processor.",
         epilog="`cfepy COMMAND --help` explains a command. A MISSION is " + MISSION_HELP + ".",
     )
-    parser.add_argument("--version", action="version", version=f"cfepy {__version__}")
+    parser.add_argument("--version", action=_Version, help="tell the version, and whether kernel and bus are compiled")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=CommandParser)
     for part in [part for part, names in ROOMS.items() if words[:1] and words[0] in names] or ROOMS:
         importlib.import_module(f"cfepy.cli.{part}").add(commands)

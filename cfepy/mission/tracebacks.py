@@ -7,7 +7,7 @@ import traceback
 from pathlib import Path
 
 from cfepy.nodes.report import strip
-from cfepy.own_code import PACKAGE
+from cfepy.own_code import PACKAGE, source_file
 from cfepy.texts import without_addresses
 
 SHARED = str(Path(PACKAGE) / "share")
@@ -47,4 +47,5 @@ def described(error: BaseException) -> str:
 
 
 def _is_ours(file: str) -> bool:
+    file = source_file(file)
     return file.startswith((PACKAGE, "<frozen")) and not file.startswith(SHARED)

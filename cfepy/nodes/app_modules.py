@@ -19,6 +19,8 @@ from importlib.machinery import PathFinder, SourceFileLoader
 from types import ModuleType
 from typing import IO, TYPE_CHECKING, Any
 
+from cfepy.nodes.sources import code_of_source
+
 if TYPE_CHECKING:
     from cfepy.nodes.accesses import Accesses
     from cfepy.nodes.universe import Universe
@@ -68,15 +70,14 @@ class AppModules:
         vars(module)["__builtins__"] = self.builtins
         file = loader.get_filename(loader.name)
         kinds = None if self._accesses is None else self._accesses.kinds(file, is_main=False)
+        code = code_of_source(loader.get_data(file), file, kinds)
         if self._accesses is None or kinds is None:
-            loader.exec_module(module)
+            exec(code, vars(module))
             return
-        from cfepy.nodes.instrument import compile_with_hooks
-
         self.builtins.update(self._accesses.hooks())
         self._accesses.adopt(vars(module))
         with self._accesses.loading():
-            exec(compile_with_hooks(loader.get_data(file), file, kinds), vars(module))
+            exec(code, vars(module))
 
     def close(self) -> None:
         """The processor has come to its end: close what its applications left open."""

@@ -7,6 +7,8 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from cfepy.own_code import source_file
+
 if TYPE_CHECKING:
     from traceback import TracebackException
 
@@ -21,7 +23,7 @@ _HIDDEN = (os.path.join(_PACKAGE, "nodes", ""), os.path.join(_PACKAGE, "rtos", "
 
 def is_hidden(file: str) -> bool:
     """Whether a source file belongs to the machinery below a node."""
-    return file.startswith(_HIDDEN)
+    return source_file(file).startswith(_HIDDEN)
 
 
 def traceback_text(error: BaseException) -> str:

@@ -1,11 +1,13 @@
 """Code objects of files: compiled once per process, shared by all universes, since code objects are immutable.
 
-The key holds the size and time stamp of a node's file, so that an edited file is compiled anew. Modules of the
-standard library and installed packages come from Python's own byte code cache.
+The key holds the size and time stamp of a node's file, so that an edited file is compiled anew; for a file of an
+application it is the text. Modules of the standard library and installed packages come from Python's own byte code
+cache.
 """
 
 from __future__ import annotations
 
+import functools
 import importlib.machinery
 import os
 import sys
@@ -16,6 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from cfepy.nodes.instrument import Kinds
 
+SOURCES = 512  # texts of applications that are kept
 AGAIN = "cfepy.source"  # Python's audit hooks are told of a file that was compiled before, as they are of opened ones
 
 _compiled: dict[tuple[object, ...], CodeType] = {}
@@ -69,6 +72,21 @@ def doubts_of(code: CodeType) -> tuple[Doubt, ...]:
 def own_files() -> list[str]:
     """The source files of nodes that were read so far, in that order."""
     return list(dict.fromkeys(str(key[0]) for key in _compiled if len(key) > 1))
+
+
+@functools.lru_cache(maxsize=SOURCES)
+def code_of_source(source: bytes, name: str, kinds: Kinds | None = None) -> CodeType:
+    """The code of a text, which the same text has again.
+
+    Args:
+        source: the text of a module.
+        name: what the code believes to be its file.
+        kinds: where it calls hooks; None for nowhere.
+
+    Raises:
+        SyntaxError: it cannot be compiled.
+    """
+    return _compile(source, name, False, kinds)
 
 
 def _compile(source: bytes, path: str, ordered: bool, kinds: Kinds | None) -> CodeType:

@@ -15,6 +15,7 @@ from types import TracebackType
 from typing import Any
 
 from cfepy import trace as tr
+from cfepy.compiled import mypyc_attr
 from cfepy.garbage import no_collection
 from cfepy.rtos.context import make_context, take_back
 from cfepy.rtos.errors import DeadlockError
@@ -29,6 +30,7 @@ OBJECTS = 100_000  # or of several times as many, when it has several times so m
 COLLECT_NS = 10_000_000_000  # garbage is collected at multiples of this: finalizers always run at the same place
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class Kernel(Scheduler):
     """One simulated processor.
 

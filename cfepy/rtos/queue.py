@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from typing import Any, SupportsIndex
 
+from cfepy.compiled import mypyc_attr
 from cfepy.rtos.kernel import Kernel
 from cfepy.rtos.task import FOREVER, TIMEOUT
 from cfepy.rtos.wait_list import WaitList
@@ -23,6 +24,7 @@ class Empty:
 EMPTY = Empty()
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class Queue:
     """First in, first out, of at most `depth` items; a waiting reader gets an item straight from the writer.
 

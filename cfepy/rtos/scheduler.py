@@ -17,6 +17,7 @@ from operator import index
 from typing import Any, SupportsIndex
 
 from cfepy import trace as tr
+from cfepy.compiled import mypyc_attr
 from cfepy.rtos.policy import Policy, Question
 from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit
 from cfepy.rtos.wait_list import WaitList
@@ -38,6 +39,7 @@ def whole(time_ns: Any) -> int:
         raise TypeError(f"a time is a whole number, an int, not {time_ns!r}") from None
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class Scheduler:
     """The base of `Kernel`; see there for the arguments."""
 

@@ -6,6 +6,7 @@ Python: what they would take is counted, a message in several pipes once, and ad
 
 from __future__ import annotations
 
+from cfepy.compiled import mypyc_attr
 from cfepy.config import SB_LARGEST_BLOCK_MORE, SB_MEM_BLOCK_SIZES, PlatformConfig
 from cfepy.msg import PRIMARY_HEADER_SIZE, Packet, get_size, set_msg_time
 from cfepy.osal import ObjectSizes
@@ -21,6 +22,7 @@ BUFFER_BYTES = 64  # of the descriptor in front of each message (CFE_SB_BufferD_
 DESTINATION_BYTES = 32  # CFE_SB_DestinationD_t
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class BufferServices(BusCore):
     """The pool, and the functions of zero-copy messages. Arguments as `BusCore`."""
 

@@ -14,6 +14,7 @@ import struct
 from collections.abc import Callable
 from typing import Any, ClassVar
 
+from cfepy.compiled import mypyc_attr
 from cfepy.config import PlatformConfig
 from cfepy.msg import CMD_HEADER_SIZE, compute_checksum
 from cfepy.osal import ObjectSizes
@@ -87,6 +88,7 @@ def _send(bus: BusCore, packet: bytes) -> int:
     return CFE_SUCCESS
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class SubscriptionServices(PipeServices):
     """The CFE_SB_Subscribe* and CFE_SB_Unsubscribe* functions."""
 
@@ -215,6 +217,7 @@ class SubscriptionServices(PipeServices):
         return CfeError(CFE_SB_BAD_ARGUMENT, text)
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class SoftwareBus(SubscriptionServices):
     """One processor's Software Bus; the arguments are those of `BusCore`.
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass, field, fields
 
+from cfepy.compiled import mypyc_attr
 from cfepy.config import PlatformConfig
 from cfepy.ids import SB_PIPEID_BASE, IdTable
 from cfepy.msg import Packet
@@ -65,6 +66,7 @@ class Unrouted:
     sent: dict[int, int] = field(default_factory=dict)
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class BusCore:
     """Tables and helpers; the base of `SoftwareBus`.
 

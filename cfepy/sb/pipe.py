@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from cfepy import trace
+from cfepy.compiled import mypyc_attr
 from cfepy.rtos import TIMEOUT, Kernel, Queue
 
 NOBODY_HEARD = object()
 """In `Pipe.unheard`: a fault keeps the pipe full."""
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class Pipe(Queue):
     """The queue and its owner.
 

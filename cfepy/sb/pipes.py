@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cfepy.compiled import mypyc_attr
 from cfepy.ids import SB_PIPEID_BASE, name_size, to_index
 from cfepy.osal import OS_MAX_API_NAME
 from cfepy.sb import events as ev
@@ -20,6 +21,7 @@ PIPEOPTS_IGNOREMINE = 1
 POINTER_BYTES = 4  # what is in a queue is the address of a buffer; boards whose RAM is counted have 32 bits
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class PipeServices(BufferServices):
     """The CFE_SB_*Pipe* functions."""
 

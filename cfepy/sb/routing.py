@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from cfepy.compiled import mypyc_attr
 from cfepy.msg import MAX_SEQUENCE_COUNT
 from cfepy.ports import Block
 from cfepy.sb.pipe import Pipe
@@ -54,6 +55,7 @@ class Destination:
         return next((each for each in reversed(self.kin) if each.puts > each.gets), self)
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class PutHook:
     """Stands before each put into a pipe; one that does nothing is the base of those that do.
 

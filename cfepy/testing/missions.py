@@ -17,6 +17,7 @@ import pytest
 from cfepy.attachment import Attachment
 from cfepy.flight import SEED, ExpectationError, Faults, Flight, fault_attachments, fault_text, schedule_of
 from cfepy.host_system import command_line
+from cfepy.own_code import source_file
 from cfepy.pilot import RunPlan
 from cfepy.rtos import AUTO, NotingPolicy, Policy, Schedule
 from cfepy.status import UsageError
@@ -66,7 +67,7 @@ def leave_out_own_lines(failure: pytest.ExceptionInfo[BaseException]) -> None:
         return
     last, each = None, failure.value.__traceback__
     while each is not None:
-        file = Path(each.tb_frame.f_code.co_filename)
+        file = Path(source_file(each.tb_frame.f_code.co_filename))
         if not any(file.is_relative_to(folder) for folder in _BELOW_TESTS):
             last = each
         each = each.tb_next

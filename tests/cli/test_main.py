@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import cfepy
+from cfepy import compiled
 from cfepy.cli.main import ROOMS, main
 
 
@@ -25,7 +26,7 @@ def test_help(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["--version"])
-    assert capsys.readouterr().out == f"cfepy {cfepy.__version__}\n"
+    assert capsys.readouterr().out == f"cfepy {cfepy.__version__} ({compiled.state()})\n"
 
 
 @pytest.mark.parametrize("words", [[], ["fly"], ["run"], ["new", "app"], ["run", "x", "--tasks", "fibers"]])

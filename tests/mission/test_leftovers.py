@@ -11,9 +11,11 @@ from collections.abc import Iterator
 import pytest
 
 from cfepy.console import Console
+from cfepy.exploration.trial import Trial
 from cfepy.mission import Mission, read_mission
 from cfepy.nodes import Universe
-from cfepy.rtos import Kernel
+from cfepy.pilot import RunPlan
+from cfepy.rtos import Kernel, Schedule
 
 FLIGHTS = 6
 SECONDS = 0.65  # capture's nodes have begun
@@ -39,7 +41,7 @@ def nothing_else() -> None:
 
 def parts() -> Counter[str]:
     """How many parts of missions there are, without those that were there before the test."""
-    return Counter(kind.__name__ for each in gc.get_objects() for kind in PARTS if isinstance(each, kind))
+    return Counter(type(each).__name__ for each in gc.get_objects() for kind in PARTS if isinstance(each, kind))
 
 
 def fly(seconds: float = SECONDS, tasks: str = "thread") -> Mission:
@@ -56,6 +58,15 @@ def test_missions_do_not_pile_up(tasks: str) -> None:
     assert found["Mission"] <= 1  # of the last one, which nobody has looked for since
     assert found["Kernel"] <= 1
     assert found["Universe"] <= 4  # of which each flight makes four
+
+
+def test_those_that_were_watched_do_not_pile_up() -> None:
+    """Their kernels and buses have classes of their own."""
+    for seed in range(FLIGHTS):
+        Trial(RunPlan(("capture",), seconds=SECONDS)).run(Schedule(seed=seed))
+    found = parts()
+    assert found["Mission"] <= 1
+    assert found["WrappingKernel"] <= 1
 
 
 def test_a_mission_that_is_over_can_be_looked_at() -> None:

@@ -102,3 +102,14 @@ def test_an_app_that_was_edited_within_a_second_is_what_runs(tmp_path: Path, mon
             said += [line.split()[-1] for line in mission.console.lines if " edition " in line]
     assert said == ["1", "2"]
     assert not list(tmp_path.rglob("*.pyc")), "a run writes nothing to the host"
+
+
+def test_an_app_is_compiled_once(tmp_path: Path) -> None:
+    app = "def main(cfe):\n    cfe.os.printf(f'code {id(main.__code__)}\\n')\n"
+    folder = write_mission(tmp_path, "CFE_APP, app, main, APP, 50, 16384, 0, 0;\n!", app=app)
+    said = set()
+    for _ in range(2):
+        with Mission(folder, console=Console(quiet=True)) as mission:
+            mission.run_for(1)
+            said |= {line for line in mission.console.lines if line.startswith("code ")}
+    assert len(said) == 1

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from cfepy import __version__
 from cfepy.console import Console
 from cfepy.mission import Mission
 from tests.c.building import needs_compiler
@@ -54,8 +55,8 @@ def home(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def execute(command: list[str], folder: Path) -> str:
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+def execute(command: list[str], folder: Path, **more: str) -> str:
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")} | more
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}\n{done.stderr}"
     return done.stdout
@@ -102,11 +103,16 @@ def test_a_compiled_application_is_made_built_and_flown_away_from_the_checkout(h
 
 
 @needs_compiler
-def test_a_wheel_can_have_the_engine_inside(tmp_path: Path) -> None:
-    environment = os.environ | {"CFEPY_ENGINE": "1"}
-    command = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--wheel-dir", str(tmp_path), str(ROOT)]
-    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    (built,) = tmp_path.glob("cfepy-*.whl")
-    assert not built.name.endswith("none-any.whl")
-    assert any(name.startswith("cfepy/c/_engine.") for name in zipfile.ZipFile(built).namelist())
+def test_engine_kernel_and_bus_are_compiled_where_they_are_wanted(home: Path, tmp_path: Path) -> None:
+    """As docs/install.md has it."""
+    venv.create(tmp_path / "venv", with_pip=True)
+    python = str(tmp_path / "venv/bin/python")
+    execute([python, "-m", "pip", "install", "--quiet", str(ROOT)], tmp_path, CFEPY_ENGINE="1")
+    (packages,) = tmp_path.glob("venv/lib/python*/site-packages")
+    assert list((packages / "cfepy" / "c").glob("_engine.*"))
+    (tags,) = packages.glob("cfepy-*.dist-info/WHEEL")
+    assert "Root-Is-Purelib: false" in tags.read_text()
+    assert cfepy(home, "--version") == f"cfepy {__version__} (kernel and bus interpreted)\n"
+    assert cfepy(tmp_path, "--version") == f"cfepy {__version__} (kernel and bus compiled)\n"
+    flights = [cfepy(each, "run", "capture", "--for", "1", "--quiet") for each in (home, tmp_path)]
+    assert flights[0].splitlines()[-1] == flights[1].splitlines()[-1]

@@ -15,8 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from textwrap import dedent
-from types import FunctionType, ModuleType
+from types import ModuleType
 from typing import Any, NamedTuple, get_type_hints
 
 from cfepy import msg
@@ -30,6 +29,7 @@ HANDLE = "cfe"
 GUARDS = ("AttributeError", "TypeError")
 _NEW_WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 _ASKING = ("hasattr", "getattr", "setattr")
+_NOT_PLAIN = ("property", "staticmethod", "classmethod", "cached_property", "functools.cached_property")
 _Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 _Place = _Function | ast.ClassDef | ast.Module
 _Binding = ast.expr | ast.arg | None
@@ -406,11 +406,28 @@ def _names(service: str) -> frozenset[str]:
 
 
 @cache
+def _tree(module: str) -> ast.Module:
+    """The source of a module of cfepy's, also of one that was compiled."""
+    spec = importlib.util.find_spec(module)
+    assert spec is not None
+    assert spec.origin is not None
+    file = Path(spec.origin)
+    return parsed(file.with_name(f"{file.name.partition('.')[0]}.py").read_bytes())
+
+
+@cache
+def _body(owner: type) -> list[ast.stmt]:
+    """What the source says of a class."""
+    tree = _tree(owner.__module__)
+    return next(node.body for node in tree.body if isinstance(node, ast.ClassDef) and node.name == owner.__name__)
+
+
+@cache
 def _set_by_methods(service: str) -> frozenset[str]:
     """Attributes that the methods of a service give to `self`."""
-    trees = [parsed(dedent(inspect.getsource(each))) for each in inspect.getmro(_services()[service])[:-1]]
-    attributes = (node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Attribute))
-    return frozenset(node.attr for node in attributes if isinstance(node.ctx, ast.Store))
+    classes = inspect.getmro(_services()[service])[:-1]
+    nodes = (node for each in classes for statement in _body(each) for node in ast.walk(statement))
+    return frozenset(node.attr for node in nodes if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store))
 
 
 def _has(service: str, name: str) -> bool:
@@ -437,20 +454,66 @@ def _pythonic(name: str) -> str:
 def _misfit(service: str, call: ast.Call) -> str | None:
     """Why a call cannot go well whatever its arguments are; None when it may."""
     assert isinstance(call.func, ast.Attribute)
-    kind, name = _services()[service], call.func.attr
-    function = inspect.getattr_static(kind, name, None)
-    is_plain = isinstance(function, FunctionType)
-    if not is_plain or any(isinstance(each, ast.Starred) for each in call.args) or None in _keywords(call):
+    if any(isinstance(each, ast.Starred) for each in call.args) or None in _keywords(call):
         return None
-    signature = inspect.signature(function)
-    if not isinstance(kind, ModuleType):
-        signature = signature.replace(parameters=list(signature.parameters.values())[1:])
+    name = call.func.attr
+    signature = _signature(service, name)
+    if signature is None:
+        return None
     try:
         signature.bind(*call.args, **{str(each): None for each in _keywords(call)})
     except TypeError as error:
-        names = ", ".join(str(each.replace(annotation=each.empty)) for each in signature.parameters.values())
+        names = ", ".join(map(str, signature.parameters.values()))
         return f"{HANDLE}.{service}.{name}: {error}; write {name}({names})"
     return None
+
+
+@cache
+def _signature(service: str, name: str) -> inspect.Signature | None:
+    """How a function of a service is called, without annotations; None for what is no plain function or method.
+
+    It is read off the source, since compiled functions do not tell it.
+    """
+    kind = _services()[service]
+    found = inspect.getattr_static(kind, name, None)
+    if isinstance(kind, ModuleType):
+        body = _tree(found.__module__).body if inspect.isfunction(found) else []
+    else:
+        body = next((_body(each) for each in inspect.getmro(kind)[:-1] if name in vars(each)), [])
+    own_name = getattr(found, "__name__", name)
+    function = next((node for node in body if isinstance(node, ast.FunctionDef) and node.name == own_name), None)
+    if function is None or any(ast.unparse(each) in _NOT_PLAIN for each in function.decorator_list):
+        return None
+    parameters = _written_parameters(function.args)
+    return inspect.Signature(parameters if isinstance(kind, ModuleType) else parameters[1:])
+
+
+class _Written(str):
+    """A default as it is written."""
+
+    __repr__ = str.__str__
+
+
+def _written_parameters(arguments: ast.arguments) -> list[inspect.Parameter]:
+    kinds = inspect.Parameter
+    positional: list[tuple[ast.arg, inspect._ParameterKind]] = [
+        *((each, kinds.POSITIONAL_ONLY) for each in arguments.posonlyargs),
+        *((each, kinds.POSITIONAL_OR_KEYWORD) for each in arguments.args),
+    ]
+    defaults = [*[None] * (len(positional) - len(arguments.defaults)), *arguments.defaults]
+    made = [_parameter(each, kind, default) for (each, kind), default in zip(positional, defaults, strict=True)]
+    if arguments.vararg is not None:
+        made.append(_parameter(arguments.vararg, kinds.VAR_POSITIONAL, None))
+    for each, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True):
+        made.append(_parameter(each, kinds.KEYWORD_ONLY, default))
+    if arguments.kwarg is not None:
+        made.append(_parameter(arguments.kwarg, kinds.VAR_KEYWORD, None))
+    return made
+
+
+def _parameter(argument: ast.arg, kind: inspect._ParameterKind, default: ast.expr | None) -> inspect.Parameter:
+    written = inspect.Parameter.empty if default is None else _Written(ast.unparse(default))
+    return inspect.Parameter(argument.arg, kind, default=written)
 
 
 def _keywords(call: ast.Call) -> list[str | None]:
