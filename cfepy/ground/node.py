@@ -79,6 +79,9 @@ def ground_node_ended(mission: Mission) -> bool:
 def with_player(spec: MissionSpec, bag: str, options: str = "") -> MissionSpec:
     """A mission in which a bag is played, with its time on /clock if the mission's nodes use simulated time.
 
+    The player is started in the bag's folder, with the bag's name: it tells the name, and where the folder is must not
+    decide the run.
+
     Args:
         spec: the mission.
         bag: the bag, or the MCAP file.
@@ -91,9 +94,11 @@ def with_player(spec: MissionSpec, bag: str, options: str = "") -> MissionSpec:
         pass
     words = play_words(options)
     has_clock = spec.ros.params.get("use_sim_time") is True and "--clock" not in words
-    args = (*(["--clock"] if has_clock else []), str(Path(bag).resolve()), *words)
+    folder, name = os.path.split(os.path.abspath(bag))
+    name = f"./{name}" if name.startswith("-") else name  # which would be an option
+    args = (*(["--clock"] if has_clock else []), name, *words)
     script = FOLDER / SCRIPTS / "ground_play.py"
-    return _with_node(spec, NodeConfig(PLAYER, args=args, script=script, cwd=spec.folder))
+    return _with_node(spec, NodeConfig(PLAYER, args=args, script=script, cwd=Path(folder)))
 
 
 def play_words(options: str) -> list[str]:

@@ -58,14 +58,19 @@ def recording(folder: Path, suffix: str) -> Path:
     return file
 
 
+def played(node: Path, bag: str, options: str | None = None, tasks: str = "thread") -> tuple[list[str], str]:
+    """The lines of the console of a run into which a recording is played, and the digest."""
+    node.write_text(HEARS)
+    lines: list[str] = []
+    plan = RunPlan((str(node),), NODE, seconds=4, tasks=tasks, play=bag, play_options=options)
+    flown = fly(plan, console=Console(sink=lines.append))
+    return [line.rstrip() for line in lines], flown.mission.trace.digest()
+
+
 def heard(folder: Path, options: str | None, *, suffix: str = ".mcap", tasks: str = "thread") -> tuple[list[str], str]:
     """What a node heard of a recording that is played, and the digest of the run."""
-    (folder / "hears.py").write_text(HEARS)
-    file = recording(folder, suffix)
-    lines: list[str] = []
-    plan = RunPlan((str(folder / "hears.py"),), NODE, seconds=4, tasks=tasks, play=str(file), play_options=options)
-    flown = fly(plan, console=Console(sink=lines.append))
-    return [line.split("heard ")[1].rstrip() for line in lines if "heard " in line], flown.mission.trace.digest()
+    lines, digest = played(folder / "hears.py", str(recording(folder, suffix)), options, tasks)
+    return [line.split("heard ")[1] for line in lines if "heard " in line], digest
 
 
 @pytest.mark.parametrize("suffix", [".bag", ".mcap"])
@@ -86,6 +91,30 @@ def test_without_options_all_is_played(tmp_path: Path) -> None:
 def test_the_run_is_the_same_on_threads_and_greenlets(tmp_path: Path) -> None:
     runs = [heard(tmp_path, "--rate 3", tasks=tasks) for tasks in ("thread", "thread", "greenlet")]
     assert runs[0] == runs[1] == runs[2]
+
+
+@pytest.mark.parametrize("suffix", [".bag", ".mcap"])
+def test_the_run_is_the_same_wherever_the_recording_lies(
+    suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    near, far = tmp_path / "a", tmp_path / "another" / "folder"
+    for folder in (near, far):
+        folder.mkdir(parents=True)
+        recording(folder, suffix)
+    node = tmp_path / "hears.py"
+    runs = [played(node, str(folder / f"drive{suffix}")) for folder in (near, far)]
+    monkeypatch.chdir(far)
+    runs.append(played(node, f"drive{suffix}"))
+    assert runs[0] == runs[1] == runs[2]
+    assert any(line.endswith(f"Opening drive{suffix}") for line in runs[0][0])
+    assert any("heard /said" in line for line in runs[0][0])
+
+
+def test_a_recording_whose_name_looks_like_an_option_is_played(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    recording(tmp_path, ".bag").rename("--loop")
+    lines, _ = played(tmp_path / "hears.py", "--loop")
+    assert len([line for line in lines if "heard " in line]) == 23
 
 
 @pytest.mark.parametrize(
