@@ -131,6 +131,15 @@ class CriticalDataStore:
         """The blocks in the order of the registry."""
         return iter([block for block in self._blocks if block is not None])
 
+    @property
+    def overhead(self) -> int:
+        """Bytes that no block can have: those of the signatures and of the registry."""
+        return self._pool_at + _SIGNATURE_BYTES
+
+    def room_of(self, block: CdsBlock) -> int:
+        """Bytes of the CDS that a block takes, with its descriptor."""
+        return self._pool.room_of(block.size) if block.size else 0
+
     # -- after a reset ---------------------------------------------------------------------------------------------
 
     def early_init(self) -> None:

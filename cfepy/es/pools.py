@@ -133,6 +133,12 @@ class GenericPool:
             raise CfeError(CFE_ES_ERR_MEM_BLOCK_SIZE, f"a block of {size} bytes, the largest has {largest}")
         return self._recycle(bucket, size) or self._create(bucket, size)
 
+    def room_of(self, size: int) -> int:
+        """Bytes of the memory that a block of `size` bytes takes: the next size that there is, its descriptor, and what
+        the alignment takes; 0 if there is no such block."""
+        bucket = self._bucket_for(size)
+        return 0 if bucket is None else bucket.size + DESCRIPTOR.size + self._mask & ~self._mask
+
     def put(self, offset: int) -> int:
         """Give a block back; the size that was asked for (CFE_ES_GenPoolPutBlock).
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from cfepy.faces import face
 
 if TYPE_CHECKING:
-    from cfepy.reports.board_fit import BoardChange, BoardFit, StackRow, fit_of
+    from cfepy.reports.board_fit import BoardChange, BoardFit, PoolRow, StackRow, fit_of
     from cfepy.reports.collector import Collector
     from cfepy.reports.curves import Change, Curve, Curves, curves_of, figure_of_matplotlib, picture_of, save, thinned
     from cfepy.reports.page import About, page_of
@@ -34,6 +34,7 @@ __all__ = [
     "Curves",
     "PageStory",
     "PerfettoTrace",
+    "PoolRow",
     "StackRow",
     "StoryRow",
     "SweepLine",
@@ -52,7 +53,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
-            ".board_fit": ("BoardChange", "BoardFit", "StackRow", "fit_of"),
+            ".board_fit": ("BoardChange", "BoardFit", "PoolRow", "StackRow", "fit_of"),
             ".collector": ("Collector",),
             ".curves": (
                 "Change",

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, NamedTuple
 
+from cfepy.app import Cfe
 from cfepy.attachment import Attachment
 from cfepy.c import ElfError, read_shared_object
 from cfepy.es import CFE_APP
@@ -34,12 +35,14 @@ class BoardLedger(Attachment):
         claims: bytes by owner, what for and size of each, when most was in use.
         peak: bytes that were in use then.
         sb_pool: bytes of the Software Bus's pool that were in use at most.
+        pools: what was in the pools of cFE at the end.
     """
 
     def __init__(self) -> None:
         self.claims: dict[tuple[str, str], list[int]] = {}
         self.peak = 0
         self.sb_pool = 0
+        self.pools: list[PoolRow] = []
         self._mission: Mission
 
     def begin(self, mission: Mission) -> None:
@@ -62,19 +65,37 @@ class BoardLedger(Attachment):
 
     def conclude(self) -> None:
         """See `Attachment.conclude`."""
-        self.sb_pool = max(self.sb_pool, self._mission.cfe.sb.peaks.memory)
+        cfe = self._mission.cfe
+        self.sb_pool = max(self.sb_pool, cfe.sb.peaks.memory)
+        self.pools = [*_tables(cfe), *_cds(cfe), *_messages(cfe)]
+
+
+class PoolRow(NamedTuple):
+    """Bytes of a pool of cFE: who has them, and what for; nobody has what is free.
+
+    `pool` is what the pool is called among the bookings, such as "CDS"; a block counts with its descriptor.
+    """
+
+    pool: str
+    owner: str
+    what: str
+    size: int
 
 
 class BoardChange(NamedTuple):
-    """Something that makes a mission smaller: where it is written, what to write there, bytes that it saves."""
+    """Something that makes a mission smaller: where it is written, what to write there, bytes that it saves.
+
+    `is_estimate`: nothing was measured that tells whether the smaller size is enough.
+    """
 
     place: str
     text: str
     saves: int
+    is_estimate: bool = False
 
 
 class StackRow(NamedTuple):
-    """The stacks of an application: tasks, bytes of each, and how deep the deepest was used; None is not known."""
+    """The stacks of an application: tasks, bytes of each, and how deep the deepest was used; None: not measured."""
 
     app: str
     tasks: int
@@ -91,6 +112,7 @@ class BoardFit:
         ram, flash: bytes that it has; 0 without a limit.
         needed: bytes of RAM that were in use at most.
         rows: (owner, what for, bytes), largest first.
+        pools: what is in the pools of cFE that are among the rows, at the end of the run.
         stacks: of the applications of the startup script.
         sb_pool, sb_pool_used: bytes of the Software Bus's pool, and how many were in use at most.
         code: bytes of compiled applications in flash, by name; those in Python have none.
@@ -103,6 +125,7 @@ class BoardFit:
     flash: int
     needed: int
     rows: tuple[tuple[str, str, int], ...]
+    pools: tuple[PoolRow, ...]
     stacks: tuple[StackRow, ...]
     sb_pool: int
     sb_pool_used: int
@@ -116,6 +139,11 @@ class BoardFit:
         return max(0, self.needed - self.ram) if self.ram else 0
 
     @property
+    def in_python(self) -> tuple[str, ...]:
+        """Applications of the startup script that have no C stack here, so that nothing of it could be measured."""
+        return tuple(row.app for row in self.stacks if row.used is None and row.app not in self.code)
+
+    @property
     def fits_changed(self) -> bool:
         """Whether it fits with the changes."""
         return sum(change.saves for change in self.changes) >= self.missing
@@ -127,8 +155,9 @@ class BoardFit:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data."""
-        named = {"stacks": [each._asdict() for each in self.stacks], "changes": [e._asdict() for e in self.changes]}
-        return {**asdict(replace(self)), **named, "missing": self.missing, "cpu": self.cpu}
+        parts: dict[str, tuple[Any, ...]] = {"pools": self.pools, "stacks": self.stacks, "changes": self.changes}
+        named = {name: [each._asdict() for each in part] for name, part in parts.items()}
+        return {**asdict(self), **named, "missing": self.missing, "cpu": self.cpu}
 
 
 def fit_of(plan: RunPlan) -> BoardFit:
@@ -152,6 +181,7 @@ def fit_of(plan: RunPlan) -> BoardFit:
         board.program_flash,
         ledger.peak,
         tuple(rows),
+        tuple(ledger.pools),
         tuple(_stacks(spec, board, ledger, flown.mission.record.stack_use)),
         config.sb_buf_memory_bytes,
         ledger.sb_pool,
@@ -174,6 +204,45 @@ def _stacks(
             yield StackRow(entry.name, tasks, entry.stack_size, max(used, default=None))
 
 
+def _tables(cfe: Cfe) -> Iterator[PoolRow]:
+    """The table buffer pool by the owners of tables."""
+    pool = cfe.es.pools.find(cfe.tbl.pool_id)
+    if pool is None:
+        return
+    found = []
+    for name, sizes in cfe.tbl.buffer_sizes().items():
+        app, _, own = name.partition(".")
+        what = f"table {own}" + (f", {len(sizes)} buffers" if len(sizes) > 1 else "")
+        shared = f"{len(sizes)} buffers that loads and dumps share"
+        found.append((app or "CFE_TBL", what if name else shared, sum(map(pool.blocks.room_of, sizes))))
+    yield from _shares("CFE_TBL memory pool", pool.blocks.size, found)
+
+
+def _cds(cfe: Cfe) -> Iterator[PoolRow]:
+    """The Critical Data Store by the owners of its blocks."""
+    store = cfe.es.cds
+    if store is None or not store.is_available:
+        return
+    found = [("CFE_ES", "registry", store.overhead)]
+    for block in store:
+        app, _, own = block.name.partition(".")
+        found.append((app, f"{'critical table' if block.is_table else 'block'} {own}", store.room_of(block)))
+    yield from _shares("CDS", cfe.es.psp.get_cds_size(), found)
+
+
+def _messages(cfe: Cfe) -> Iterator[PoolRow]:
+    """The pool of the Software Bus, when most of it was in use."""
+    found = [("CFE_SB", "subscriptions and messages, at most", cfe.sb.peaks.memory)]
+    yield from _shares("CFE_SB memory pool", cfe.sb.config.sb_buf_memory_bytes, found)
+
+
+def _shares(pool: str, size: int, found: list[tuple[str, str, int]]) -> Iterator[PoolRow]:
+    for owner, what, taken in sorted(found, key=lambda share: (-share[2], share)):
+        if taken:
+            yield PoolRow(pool, owner, what, taken)
+    yield PoolRow(pool, "", "free", size - sum(taken for _, _, taken in found))
+
+
 def _code(spec: MissionSpec) -> dict[str, int]:
     found = {}
     for entry in spec.entries:
@@ -193,6 +262,7 @@ def _fewest(fit: BoardFit, spec: MissionSpec) -> list[BoardChange]:
     found: list[BoardChange] = []
     left = fit.missing
     lines = {entry.name: entry.line for entry in spec.entries}
+    unmeasured = {row.app for row in fit.stacks if row.used is None}
     savings = sorted(_savings(fit), key=lambda each: (-each[0], each[1]))
     for most, name, count, size, least in savings:
         if left <= 0:
@@ -206,7 +276,7 @@ def _fewest(fit: BoardFit, spec: MissionSpec) -> list[BoardChange]:
         else:
             place = "mission.yaml" if spec.mission_file is None else spec.mission_file.name
             text = f"limits: {{sb_buf_memory_bytes: {new}}} in place of {size}; {fit.sb_pool_used} were in use at most"
-        found.append(BoardChange(place, text.replace("each of 1 tasks", "its task"), saves))
+        found.append(BoardChange(place, text.replace("each of 1 tasks", "its task"), saves, name in unmeasured))
         left -= saves
     return found
 

@@ -396,6 +396,18 @@ class TableServices(TableAccess):
             raise CfeError(CFE_TBL_ERR_NO_ACCESS, f"{access.table.name!r} belongs to another app")
         access.table.notify = (msg_id, fcn_code, parameter & 0xFFFFFFFF)
 
+    @property
+    def pool_id(self) -> int:
+        """Handle of the table buffer pool; 0 before there is one."""
+        return self._memory.pool_id
+
+    def buffer_sizes(self) -> dict[str, list[int]]:
+        """Bytes of the buffers in the table buffer pool, by the full names of tables; "" has those that are shared."""
+        found = {"": [len(buffer.data) for buffer in self._memory]}
+        for table in self.registry.tables:
+            found[table.name] = [table.size for buffer in table.buffers if buffer.block is not None]
+        return found
+
     def place_buffers(self, places: BufferPlaces) -> None:
         """Give images that are made from now on other memory than that of the table buffer pool."""
         self._memory.places = places

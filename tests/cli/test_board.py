@@ -19,6 +19,9 @@ def test_a_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["board", "report", "rx64m_pubsub", "--for", "1", "--json", str(file)]) == 0
     told = capsys.readouterr().out
     assert re.search(r"CFE_ES +CDS +8,192\n", told)
+    assert re.search(r"CDS +CFE_ES +registry +[\d,]+\n", told)
+    assert re.search(r"LEFT +3 +8,192 +no C stack\n", told)
+    assert "stacks: LEFT, RIGHT: Python has no C stack that could be measured" in told
     assert "RAM: it fits, 312,136 bytes are left" in told
     assert json.loads(file.read_text())["board"] == "rx64m"
 
@@ -28,7 +31,7 @@ def test_what_does_not_fit_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["board", "report", "capture", "--board", "rx64m", "--for", "1"]) == 1
     told = capsys.readouterr().out
     assert "RAM: it does not fit, 336,896 bytes are missing" in told
-    assert "startup.scr:6: stack of HK_MONITOR: 8192 in place of 65536, for each of 3 tasks, saves 172,032" in told
+    assert "startup.scr:6: stack of HK_MONITOR: 8192 in place of 65536, for each of 3 tasks, saves 172,032, an" in told
 
 
 def test_a_profile_of_measured_times(tmp_path: Path) -> None:

@@ -29,6 +29,36 @@ def test_a_mission_that_fits() -> None:
     assert fit.to_dict()["missing"] == 0
 
 
+OWNERS = """
+from cfepy.app import Cfe
+from cfepy.tbl import OPT_CRITICAL, OPT_DBL_BUFFER
+
+
+def OWNERS_Main(cfe: Cfe) -> None:
+    cfe.es.register_cds(100, "Counts")
+    cfe.tbl.register("Small", 40)
+    cfe.tbl.register("Double", 1000, OPT_DBL_BUFFER | OPT_CRITICAL)
+    while cfe.es.run_loop():
+        cfe.osal.task_delay(1000)
+"""
+
+
+def test_pools_of_cfe_are_told_by_the_applications_whose_tables_and_blocks_are_in_them(tmp_path: Path) -> None:
+    (tmp_path / "owners.py").write_text(OWNERS)
+    (tmp_path / "startup.scr").write_text("CFE_APP, owners.py, OWNERS_Main, OWNERS, 50, 8192, 0, 0;\n!\n")
+    fit = fit_of(RunPlan((str(tmp_path),), seconds=1, board="rx64m"))
+    rows = {(row.pool, row.owner, row.what): row.size for row in fit.pools}
+    # a block is as large as the next size of NASA's pools, and 24 bytes more; tables' blocks lie on multiples of 16
+    assert rows["CFE_TBL memory pool", "OWNERS", "table Small"] == 48 + 32
+    assert rows["CFE_TBL memory pool", "OWNERS", "table Double, 2 buffers"] == 2 * (1024 + 32)
+    assert rows["CDS", "OWNERS", "block Counts"] == 128 + 24
+    assert rows["CDS", "OWNERS", "critical table Double"] == 1024 + 24
+    for pool, owner in (("CFE_TBL memory pool", "CFE_TBL"), ("CDS", "CFE_ES"), ("CFE_SB memory pool", "CFE_SB")):
+        booked = next(size for who, what, size in fit.rows if who == owner and f"{who} {what}".endswith(pool))
+        assert sum(row.size for row in fit.pools if row.pool == pool) == booked
+    assert {row.pool for row in fit.pools} == {"CFE_TBL memory pool", "CDS", "CFE_SB memory pool"}
+
+
 @pytest.mark.slow
 def test_the_changes_make_capture_fit(tmp_path: Path) -> None:
     fit = fit_of(RunPlan(("capture",), seconds=2, board="rx64m"))

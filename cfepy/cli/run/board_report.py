@@ -11,7 +11,8 @@ from cfepy.cli.options import plan_of_mission
 from cfepy.cli.table import Table, show_paragraph, show_tables
 from cfepy.reports import BoardFit, fit_of
 
-UNKNOWN = "not known"
+NO_C_STACK = "no C stack"
+UNKNOWN = "not measured"
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -26,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_json(arguments)
     fit = fit_of(plan_of_mission(arguments))
     write_json(arguments, fit.to_dict())
-    show_tables([_ram(fit), _stacks(fit), _cpu(fit)], sys.stdout)
+    show_tables([_ram(fit), _pools(fit), _stacks(fit), _cpu(fit)], sys.stdout)
     print()
     for line in _told(fit):
         show_paragraph(line, sys.stdout)
@@ -42,13 +43,20 @@ def _ram(fit: BoardFit) -> Table:
     return table
 
 
+def _pools(fit: BoardFit) -> Table:
+    title = "Of these, what is in pools of cFE at the end, bytes"
+    table = Table(title, ("pool", "owner", "what for", "bytes"), right=(3,))
+    for row in fit.pools:
+        table.add(*row)
+    return table
+
+
 def _stacks(fit: BoardFit) -> Table:
     table = Table("Stacks, bytes", ("application", "tasks", "booked for each", "deepest use"), right=(1, 2, 3))
     for row in fit.stacks:
-        table.add(row.app, row.tasks, row.size, UNKNOWN if row.used is None else f"{row.used:,}")
-    table.note = (
-        "measured in compiled applications, without what cFE's own functions take; of Python a C stack is not known"
-    )
+        unmeasured = NO_C_STACK if row.app in fit.in_python else UNKNOWN
+        table.add(row.app, row.tasks, row.size, unmeasured if row.used is None else f"{row.used:,}")
+    table.note = "the deepest use of compiled applications is measured, without what cFE's own functions take"
     return table
 
 
@@ -62,6 +70,11 @@ def _cpu(fit: BoardFit) -> Table:
 
 def _told(fit: BoardFit) -> list[str]:
     lines = []
+    if fit.in_python:
+        lines.append(
+            f"stacks: {', '.join(fit.in_python)}: Python has no C stack that could be measured, so what is booked "
+            "counts; their C code tells what the board needs: fly it here (cfepy build), or paint stacks on the board"
+        )
     if fit.flash:
         code = sum(fit.code.values())
         told = f"{code:,} of {fit.flash:,} bytes for compiled applications" if fit.code else "no compiled application"
@@ -71,7 +84,9 @@ def _told(fit: BoardFit) -> list[str]:
     if not fit.missing:
         return [*lines, f"RAM: it fits, {fit.ram - fit.needed:,} bytes are left ({1 - fit.needed / fit.ram:.1%})"]
     lines.append(f"RAM: it does not fit, {fit.missing:,} bytes are missing; the fewest changes that make it fit:")
-    lines += [f"  {each.place}: {each.text}, saves {each.saves:,}" for each in fit.changes]
+    for each in fit.changes:
+        guess = ", an estimate: nothing was measured" if each.is_estimate else ""
+        lines.append(f"  {each.place}: {each.text}, saves {each.saves:,}{guess}")
     left = sum(each.saves for each in fit.changes) - fit.missing
     if fit.fits_changed:
         return [*lines, f"with them {left:,} bytes are left"]
