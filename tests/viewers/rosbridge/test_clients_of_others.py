@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from tests.reports.browser import Browser, find_browser
-from tests.viewers.rosbridge.robot import PATIENCE_S, robot
+from tests.viewers.robot import PATIENCE_S, robot
 
 pytestmark = pytest.mark.slow
 CLIENT = Path(__file__).with_name("roslibpy_client.py")

@@ -1,4 +1,4 @@
-"""A robot for clients of others: its node, and the command that runs it with a rosbridge server until it is to end."""
+"""A robot for clients of others: its node, and the command that runs it with a viewers' server until it is to end."""
 
 from __future__ import annotations
 
@@ -57,22 +57,22 @@ PATIENCE_S = 60  # for a process of the host; what is waited for is what it does
 
 
 @contextmanager
-def robot(folder: Path, *options: str, port: str = "0") -> Iterator[int]:
-    """The robot runs in real time; the port of its rosbridge server.
+def robot(folder: Path, *options: str, server: str = "--rosbridge") -> Iterator[int]:
+    """The robot runs in real time; the port of its server.
 
     Args:
         folder: for its script.
         options: more of the command line.
-        port: of the server.
+        server: the option that asks for one.
     """
     script = folder / "robot.py"
     script.write_text(ROBOT)
-    command = [sys.executable, "-m", "cfepy", "node", str(script), "--realtime", "--rosbridge", port, *options]
+    command = [sys.executable, "-m", "cfepy", "node", str(script), "--realtime", server, "0", *options]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
         assert process.stderr is not None
         try:
             line = process.stderr.readline()
-            found = re.search(r"rosbridge clients connect to ws://127.0.0.1:(\d+)", line)
+            found = re.search(r"connects? to ws://127.0.0.1:(\d+)", line)
             assert found is not None, line + process.stderr.read()
             yield int(found[1])
         finally:
