@@ -24,6 +24,9 @@ SHORTEST_TOKEN = 8  # characters
 ANY_ORIGIN = "*"
 _TOKEN = re.compile(r"[!-~]+")
 _THIS_COMPUTER = ("localhost", "::1")
+_ORIGIN = re.compile(r"([a-z][a-z0-9+.-]*://)([a-z0-9._~-]+|\[[0-9a-f:.]+\])(:[0-9]+)?", re.IGNORECASE)
+_ORIGINS_WITHOUT_HOST = ("null", "file://", ANY_ORIGIN)
+_USUAL_PORTS = {"http://": ":80", "https://": ":443"}
 
 
 class ListenPlace(NamedTuple):
@@ -65,18 +68,43 @@ def listen_place_of(text: str) -> ListenPlace:
     return ListenPlace(host or ("0.0.0.0" if mark else LOOPBACK), int(port))
 
 
+def origin_of(text: str) -> str:
+    """An origin as browsers say it: in lower case, without a slash at the end and without the usual port.
+
+    Args:
+        text: such as https://example.org:8443; "null" or "file://" for pages that are files; "*" for every page.
+
+    Raises:
+        ValueError: it is none, so that no page could ever have it.
+    """
+    plain = text.lower()
+    if plain in _ORIGINS_WITHOUT_HOST:
+        return plain
+    if plain.startswith("file:"):
+        raise ValueError(f"{text!r}: pages that are files have the origin null, or file://, whatever their names are")
+    parts = _ORIGIN.fullmatch(plain.removesuffix("/"))
+    if parts is not None and int((parts[3] or ":0")[1:]) <= HIGHEST_PORT:
+        scheme, host, port = parts.groups(default="")
+        return scheme + host + ("" if port == _USUAL_PORTS.get(scheme) else port)
+    begin = _ORIGIN.match(plain) or _ORIGIN.match(f"https://{plain}")
+    hint = f"; did you mean {begin[0]}?" if begin is not None and "." in begin[2] else ""
+    raise ValueError(f"{text!r} is no origin of a page, such as https://example.org or http://robot:8000{hint}")
+
+
 class Admission:
     """Whom a server lets in.
 
     Args:
         token: what everybody has to know; "" when nobody has to.
-        origins: of pages in browsers that are welcome besides those of this computer, such as https://example.org;
-            "*" is every page.
+        origins: of pages in browsers that are welcome besides those of this computer; see `origin_of`.
+
+    Raises:
+        ValueError: an origin is none.
     """
 
     def __init__(self, token: str = "", origins: Sequence[str] = ()) -> None:
         self.token = token
-        self._origins = frozenset(each.rstrip("/").lower() for each in origins)
+        self._origins = frozenset(map(origin_of, origins))
 
     def knows(self, token: str) -> bool:
         """Whether somebody's token is the right one; how long the comparison takes says nothing about it."""
@@ -117,7 +145,7 @@ def admission_to(
         tell: gets the line that says the token that was made.
 
     Raises:
-        UsageError: the token is too short, or cannot be written in a URL.
+        UsageError: the token is too short, or cannot be written in a URL; an origin is none.
     """
     given = environ.get(TOKEN_VARIABLE, "") if token is None else token
     if given and (len(given) < SHORTEST_TOKEN or not _TOKEN.fullmatch(given)):
@@ -126,4 +154,7 @@ def admission_to(
     if not given and not place.is_loopback:
         given = secrets.token_urlsafe(18)
         tell(f"viewers need the token {given} (--viewer-token or {TOKEN_VARIABLE} sets another)")
-    return Admission(given, origins)
+    try:
+        return Admission(given, origins)
+    except ValueError as error:
+        raise UsageError(str(error), field="--viewer-origin") from None

@@ -76,6 +76,8 @@ def test_a_run_that_is_shown_is_the_same_run(mission: str, capsys: pytest.Captur
         (["--rosbridge", "9090", "--viewer-token", "short"], "--viewer-token: a token has at least 8"),
         (["--rosbridge", "198.51.100.1:9090"], r"--rosbridge: 198\.51\.100\.1:9090 cannot be opened"),
         (["--viewer-origin", "https://example.org"], "--viewer-origin: nobody can connect"),
+        (["--foxglove", "0", "--viewer-origin", "foo"], "--viewer-origin: 'foo' is no origin of a page"),
+        (["--rosbridge", "0", "--viewer-origin", "foo"], "--viewer-origin: 'foo' is no origin of a page"),
         (["--rosbridge", "0", "--check-determinism"], "--rosbridge: runs that are compared are not shown"),
     ],
 )

@@ -95,3 +95,34 @@ def test_origins_that_were_named_are_welcome() -> None:
     assert not some.welcomes("https://example.org")
     assert Admission(origins=["null"]).welcomes("null")
     assert Admission(origins=["*"]).welcomes("https://anywhere.example")
+
+
+@pytest.mark.parametrize(
+    ("said", "by_browser"),
+    [
+        ("https://example.org:443", "https://example.org"),
+        ("HTTP://Robot:8000/", "http://robot:8000"),
+        ("http://[fd00::1]:80", "http://[fd00::1]"),
+        ("app://lichtblick", "app://lichtblick"),
+        ("file://", "file://"),
+    ],
+)
+def test_an_origin_is_found_as_browsers_say_it(said: str, by_browser: str) -> None:
+    assert Admission(origins=[said]).welcomes(by_browser)
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("foo", "'foo' is no origin of a page, such as https://example.org or http://robot:8000$"),
+        ("", "'' is no origin"),
+        ("example.org", "did you mean https://example.org?"),
+        ("https://example.org/page.html", "did you mean https://example.org?"),
+        ("https://example.org:99999", "is no origin"),
+        ("https://me@example.org", "is no origin"),
+        ("file:///home/me/page.html", "pages that are files have the origin null"),
+    ],
+)
+def test_what_no_page_can_have_as_its_origin_is_refused(text: str, hint: str) -> None:
+    with pytest.raises(UsageError, match=f"--viewer-origin: .*{hint}"):
+        admission_to(HERE, None, [text], environ={})
