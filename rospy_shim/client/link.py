@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 PACE_NS = 100_000  # between two looks whether a subscriber has room for the next segment
 PATIENCE = 100  # looks, before a segment is sent to a full queue and lost there
 FULL = 1 << 16  # more packets than any pipe holds
+_EMPTY_LAYOUT = 12  # bytes of a UInt8MultiArray before its data: those of an empty layout, and of their length
 
 
 class SubscribeListener:
@@ -208,7 +209,7 @@ class Link(TopicSide):
             self._charge(self._call_ns * self._count_items(message))
         try:
             if self.raw:
-                self._send_packet(message)
+                self._send_packet(message, payload)
             elif len(payload) > self._room:
                 self._send_segments(payload)
             else:
@@ -265,9 +266,9 @@ class Link(TopicSide):
             self.leftovers = Leftovers(self)
         return self.leftovers
 
-    def _send_packet(self, message: Any) -> None:
-        """A raw topic: the message's data are a whole packet."""
-        packet = bytes(message.data)
+    def _send_packet(self, message: Any, payload: bytes) -> None:
+        """A raw topic: the message's data are a whole packet; of one that came serialized, `payload` has them."""
+        packet = bytes(message.data) if hasattr(message, "layout") else payload[_EMPTY_LAYOUT:]
         msg_id = int.from_bytes(packet[:2], "big")
         if msg_id != self.msg_id:
             raise ROSSerializationException(

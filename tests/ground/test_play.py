@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.cli.main import parser_for
+from cfepy.cli.main import main, parser_for
 from cfepy.cli.options import plan_of
 from cfepy.console import Console
-from cfepy.ground.bag import storage
+from cfepy.ground.bag import BagReader, storage
 from cfepy.ground.mcap_writer import McapWriter
 from cfepy.pilot import NODE, RunPlan, fly
 from cfepy.status import UsageError
@@ -130,6 +130,20 @@ def test_a_recording_whose_name_looks_like_an_option_is_played(tmp_path: Path, m
 def test_options_that_cannot_be(options: str, why: str, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=f"--play-options: .*{why}"):
         heard(tmp_path, options)
+
+
+def test_packets_of_a_raw_topic_are_played_as_they_were_recorded(tmp_path: Path) -> None:
+    bag, topic = tmp_path / "packets.bag", "/cfe/hk/combined_pkt1"
+    assert main(["run", "capture", "--for", "4", "--quiet", "--bag", str(bag), "--bag-topics", topic]) == 0
+    with BagReader(str(bag)) as reader:
+        recorded = sum(1 for _ in reader.messages())
+    assert recorded
+    sent = []
+    for play in (None, str(bag)):
+        results = fly(RunPlan(("capture",), seconds=5, play=play), console=Console(sink=lambda line: None)).results
+        assert not any(app.deaths for app in results.apps)
+        sent.append(next(each.sent for each in results.topics if each.name == topic))
+    assert sent[1] == sent[0] + recorded
 
 
 def test_options_need_a_bag(tmp_path: Path) -> None:

@@ -24,7 +24,13 @@ from std_srvs.srv import SetBool, SetBoolResponse
 from .bag import Bag
 from .raw import publisher_of
 
+NS_PER_S = 1_000_000_000
 POLL_S = 0.1  # between two looks whether subscribers have come, and while playing is paused
+
+
+def _time(ns: int) -> Any:
+    """A time to the nanosecond; seconds in a float have less, and would leave out the last message."""
+    return rospy.Time(*divmod(ns, NS_PER_S))
 
 
 class Player:
@@ -37,12 +43,12 @@ class Player:
     def __init__(self, options: argparse.Namespace) -> None:
         self._options = options
         self._bags = [self._opened(name) for name in options.bags]
-        times = [(bag.get_start_time(), bag.get_end_time()) for bag in self._bags if bag.get_message_count()]
-        first = min((start for start, _ in times), default=0.0) + options.start
-        last = max((end for _, end in times), default=0.0)
+        chunks = [chunk for bag in self._bags for chunk in bag._all_chunks() if chunk.connection_counts]
+        first = min((chunk.start for chunk in chunks), default=0) + round(options.start * NS_PER_S)
+        last = max((chunk.end for chunk in chunks), default=0)
         if options.duration is not None:
-            last = min(last, first + options.duration)
-        self._first, self._last = rospy.Time.from_sec(first), rospy.Time.from_sec(last)
+            last = min(last, first + round(options.duration * NS_PER_S))
+        self._first, self._last = _time(first), _time(last)
         self._publishers: dict[tuple[str, str], Any] = {}
         self._clock = rospy.Publisher("/clock", Clock, queue_size=1) if options.clock else None
         self._tick_s = 1.0 / options.hz
