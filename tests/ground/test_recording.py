@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from collections import Counter
 from collections.abc import Callable, Iterator
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,52 +17,15 @@ from cfepy.ground.mcap_writer import McapWriter
 from cfepy.ground.recording import KINDS, rewrite, summary_of
 from cfepy.status import UsageError
 from rospy_shim.msgs import message_class
+from tests.ground.bit_flips import flips_of
+from tests.ground.recordings import COUNT, FORMATS, SECOND, converted, ends, placed_chunks, read, written
 
 DATA = Path(__file__).parents[1] / "data" / "bags"
-SECOND = 1_000_000_000
-COUNT = 200
-FORMATS = [(suffix, kind) for suffix, kinds in KINDS.items() for kind in kinds]
-Message = tuple[str, bytes, int]
-
-
-@cache
-def written(folder: Path, suffix: str, kind: str) -> Path:
-    """A recording in five chunks or so: COUNT messages on each of two topics."""
-    bag = folder / "made.bag"
-    about = message_class("std_msgs/String")
-    header = {"type": "std_msgs/String", "md5sum": about._md5sum, "message_definition": about._full_text}
-    with bag.open("w+b") as stream:
-        out = storage().BagFile(stream)
-        out.create()
-        said = [out.connect(f"/{name}", {"callerid": f"/{name}er", "latching": "1", **header}) for name in "ab"]
-        for number in range(COUNT):
-            for each in said:
-                text = b"%s %d %s" % (each.topic.encode(), number, bytes([65 + number % 26]) * 20)
-                size = out.write(each, SECOND * (100 + number), len(text).to_bytes(4, "little") + text)
-            if size > 6000:
-                out.flush()
-        out.finish()
-    return converted(bag, folder / f"{kind}{suffix}", kind)
-
-
-def converted(source: Path, target: Path, kind: str) -> Path:
-    """Another recording of it, with small chunks, so that damage meets some of them and not all."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("cfepy.ground.recording.CHUNK_BYTES", 6000)
-        patch.setattr("cfepy.ground.mcap_writer.CHUNK_BYTES", 6000)
-        rewrite(str(source), str(target), kind, strict=True)
-    return target
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("recordings")
-
-
-def read(file: Path) -> list[Message]:
-    """The messages, by time."""
-    with BagReader(str(file)) as reader:
-        return [(each.topic, each.data, each.stamp_ns or 0) for each in reader.messages()]
 
 
 def headers(file: Path) -> list[tuple[str, dict[str, Any]]]:
@@ -203,15 +165,6 @@ def test_of_a_file_that_is_cut_off_all_before_is_left(suffix: str, kind: str, fo
     assert before > COUNT
 
 
-def ends(file: Path) -> list[int]:
-    """Where the messages of a file end that is not packed."""
-    whole, at, found = file.read_bytes(), 0, []
-    for message in read(file):
-        at = whole.index(message[1], at) + len(message[1])
-        found.append(at)
-    return found
-
-
 def left_of(data: bytes, copy: Path) -> int:
     """How many messages are left of damaged data."""
     copy.write_bytes(data)
@@ -243,6 +196,72 @@ def test_of_a_file_that_is_cut_anywhere_every_whole_message_is_left(suffix: str,
         if before:
             rewrite(str(cut_off), str(left))
             assert read(left) == read(file)[:before]
+
+
+PACKED = pytest.mark.parametrize(("suffix", "kind"), [each for each in FORMATS if each[1] != "none"])
+
+
+def look_at_cuts(suffix: str, kind: str, folder: Path, tmp_path: Path, step: int) -> None:
+    """Of a packed file that is cut off, at least the chunks that are whole are left, and nothing that never was."""
+    file = written(folder, suffix, kind)
+    whole, chunks, said = file.read_bytes(), placed_chunks(file), read(file)
+    assert chunks[-1].messages == len(said) == 2 * COUNT
+    cut_off, left = tmp_path / f"cut{suffix}", tmp_path / f"left{suffix}"
+    for cut in range(chunks[0].end, len(whole), step):
+        before = max(each.messages for each in chunks if each.end <= cut)
+        cut_off.write_bytes(whole[:cut])
+        rewrite(str(cut_off), str(left))
+        found = read(left)
+        assert before <= len(found), cut
+        assert found == said[: len(found)], cut
+
+
+@PACKED
+def test_of_a_packed_file_that_is_cut_off_each_whole_chunk_is_left(
+    suffix: str, kind: str, folder: Path, tmp_path: Path
+) -> None:
+    look_at_cuts(suffix, kind, folder, tmp_path, 997)
+
+
+@pytest.mark.slow
+@PACKED
+def test_of_a_packed_file_that_is_cut_anywhere_each_whole_chunk_is_left(
+    suffix: str, kind: str, folder: Path, tmp_path: Path
+) -> None:
+    look_at_cuts(suffix, kind, folder, tmp_path, 16)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "kind", "block"),
+    [(".bag", "lz4", 0), (".mcap", "lz4", 0), (".mcap", "zstd", 128 << 10), (".bag", "bz2", 900_000)],
+)
+def test_of_a_large_chunk_that_is_cut_off_the_beginning_is_left(
+    suffix: str, kind: str, block: int, folder: Path, tmp_path: Path
+) -> None:
+    """All that is there, but for the last block of a kind that is unpacked by blocks."""
+    large, size, draw = tmp_path / "large.bag", 1000, random.Random(5)
+    with large.open("w+b") as stream, BagReader(str(written(folder, ".bag", "none"))) as reader:
+        out = storage().BagFile(stream)
+        out.create()
+        said = out.connect("/a", dict(next(iter(reader.connections)).header))
+        for number in range(700):
+            text = bytes(draw.choices(b"abcdefgh", k=size))
+            out.write(said, SECOND * (100 + number), size.to_bytes(4, "little") + text)
+        out.finish()
+    packed = tmp_path / f"packed{suffix}"
+    rewrite(str(large), str(packed), kind, strict=True)
+    ((end, count),) = placed_chunks(packed)
+    assert count == 700
+    for share in (0.3, 0.6, 0.9):
+        cut = tmp_path / f"cut{suffix}"
+        cut.write_bytes(packed.read_bytes()[: int(end * share)])
+        found = summary_of(str(cut))
+        assert found.messages >= int((share - 0.05) * 700 - block / size)
+        assert found.messages <= share * 700 + 1
+        assert not found.doubtful
+        if found.messages:
+            rewrite(str(cut), str(tmp_path / "left.bag"))
+            assert read(tmp_path / "left.bag") == read(large)[: found.messages]
 
 
 @NOT_PACKED
@@ -383,6 +402,42 @@ def test_damage_is_told_and_the_rest_is_read(suffix: str, kind: str, folder: Pat
 def test_much_damage_is_told_and_the_rest_is_read(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
     left = look_at_damage(written(folder, suffix, kind), tmp_path, 250, seed=7)
     assert sum(left) > 0.5 * len(left) * 2 * COUNT
+
+
+@pytest.mark.parametrize(("suffix", "kind"), FORMATS)
+def test_an_index_that_is_damaged_renames_no_topic(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
+    file = written(folder, suffix, kind)
+    data, end = bytearray(file.read_bytes()), placed_chunks(file)[-1].end
+    at = data.index(b"/a", data.index(b"topic=", end) if suffix == ".bag" else end)
+    data[at + 1] ^= 2  # /c
+    bad, left = tmp_path / f"bad{suffix}", tmp_path / f"left{suffix}"
+    bad.write_bytes(data)
+    rewrite(str(bad), str(left))
+    assert read(left) == read(file)
+
+
+@NOT_PACKED
+def test_a_damaged_record_behind_a_message_does_not_take_it_along(suffix: str, folder: Path, tmp_path: Path) -> None:
+    """The message before the last one of a chunk, and the last one, before which an index begins."""
+    file = written(folder, suffix, "none")
+    whole, places, last = file.read_bytes(), ends(file), placed_chunks(file)[1].messages - 1
+    for spot in (*range(places[last - 1], places[last - 1] + 12), *range(places[last], places[last] + 12)):
+        for bit in range(8):
+            data = bytearray(whole)
+            data[spot] ^= 1 << bit
+            bad, left = tmp_path / f"bad{suffix}", tmp_path / f"left{suffix}"
+            bad.write_bytes(data)
+            rewrite(str(bad), str(left))
+            before = Counter(read(file)[: sum(end <= spot for end in places)])
+            assert not before - Counter(read(left)), (spot - places[last], bit)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("suffix", "kind"), FORMATS)
+def test_a_bit_that_has_flipped_loses_nothing_before_it(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
+    found = flips_of(written(folder, suffix, kind), tmp_path, 300, seed=5)
+    assert not found.failures
+    assert found.messages > found.lost
 
 
 def test_what_is_no_recording(tmp_path: Path) -> None:

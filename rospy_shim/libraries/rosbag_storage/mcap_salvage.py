@@ -9,7 +9,7 @@ from collections.abc import Generator, Iterator
 from . import compression
 from . import mcap_records as mcap
 from .errors import ROSBagException, ROSBagFormatException
-from .salvage import BROKEN, Bytes, Loss, Salvage, beginning_of
+from .salvage import BROKEN, CUT_OFF, Bytes, Loss, Salvage, beginning_of
 
 _FOOTER_BYTES = mcap.PREFIX.size + 20
 _CANDIDATE = re.compile(rb"(?=[\x01-\x0f].{5}\0\0\0)", re.DOTALL)
@@ -33,6 +33,7 @@ class McapSalvage(Salvage):
     def __init__(self, data: Bytes) -> None:
         super().__init__(data)
         self._schemas: dict[int, mcap.McapSchema] = {}
+        self._of_summary: dict[int, mcap.RecordedChannel] = {}  # of one that no checksum vouches for
 
     def _messages(self) -> Iterator[mcap.RecordedMessage]:
         data, end = self.data, len(self.data)
@@ -77,6 +78,8 @@ class McapSalvage(Salvage):
             if data[end:] != mcap.MAGIC or self._prefix(data, footer) != (mcap.FOOTER, 20):
                 return
             at = mcap.Body(data[footer + mcap.PREFIX.size : end], footer).uint64() or footer
+            crc = int.from_bytes(data[end - 4 : end], "little")
+            is_sound = zlib.crc32(data[at : end - 4]) == crc
             while at < footer:
                 op, size = self._prefix(data, at)
                 body = mcap.Body(data[at + mcap.PREFIX.size : at + mcap.PREFIX.size + size], at)
@@ -86,8 +89,13 @@ class McapSalvage(Salvage):
                     self._take(op, body)
                 at += mcap.PREFIX.size + size
         except BROKEN:
-            return
-        self.finished = at == footer
+            crc, is_sound = -1, False
+        if is_sound or crc == 0:
+            self.finished = at == footer
+        else:
+            self.expected = None
+        if not is_sound:  # what the chunks say comes first
+            self._of_summary, self.channels, self._schemas = self.channels, {}, {}
 
     def _prefix(self, data: Bytes, at: int) -> tuple[int, int]:
         if at < 0 or len(data) - at < mcap.PREFIX.size:
@@ -118,6 +126,8 @@ class McapSalvage(Salvage):
         first = start + chunk.data_at
         said = (start + size, first + chunk.stored_size)
         ends = [each for each in said if self._follows(data, each, end, _AT_THE_TOP)]
+        if said[0] == said[1] <= end:
+            ends = [said[0]]  # what stands there twice is right, and what follows may be damaged
         self.chunks[chunk.kind] += 1
         lost = len(self.losses)
         if chunk.kind == compression.NONE:
@@ -129,7 +139,7 @@ class McapSalvage(Salvage):
         else:
             stored = data[first : ends[0] if ends else end]
             unpacked, why = beginning_of(chunk.kind, stored)
-            wrong = chunk.crc and zlib.crc32(unpacked) != chunk.crc
+            wrong = why != CUT_OFF and chunk.crc and zlib.crc32(unpacked) != chunk.crc
             yield from self._walk(unpacked, 0, len(unpacked), False, bool(wrong))
             found, place = (ends[0] if ends else first), at
             if why or len(self.losses) > lost or len(unpacked) != chunk.size:
@@ -187,6 +197,8 @@ class McapSalvage(Salvage):
         if size < mcap.MESSAGE_HEAD.size:
             raise ROSBagException(f"a message is cut off, at byte {at:,}")
         number, sequence, time, publish_time = mcap.MESSAGE_HEAD.unpack_from(data, start)
+        if number not in self.channels and number in self._of_summary:
+            self.channels[number] = self._of_summary[number]
         if number not in self.channels:
             raise ROSBagException(f"the channel {number} of a message is lost, at byte {at:,}")
         content = bytes(data[start + mcap.MESSAGE_HEAD.size : start + size])
@@ -198,8 +210,8 @@ class McapSalvage(Salvage):
         One whose kind is damaged is known by its length, at whose end another record begins; one whose length is
         damaged by its kind.
         """
-        if at == end:
-            return True
+        if at >= end:
+            return at == end
         if end - at == len(mcap.MAGIC) and data[at:end] == mcap.MAGIC:
             return kinds is _AT_THE_TOP
         if end - at < mcap.PREFIX.size:
@@ -207,7 +219,7 @@ class McapSalvage(Salvage):
         op, size = mcap.PREFIX.unpack_from(data, at)
         if op not in kinds:
             after = at + mcap.PREFIX.size + size
-            return after < end and self._begins(data, after, end, kinds)
+            return after == end or (after < end and self._begins(data, after, end, kinds))
         if op == mcap.CHUNK:
             try:
                 mcap.chunk_of(mcap.Body(data[at + mcap.PREFIX.size : at + mcap.PREFIX.size + 64], at))

@@ -18,9 +18,11 @@ from . import compression, index, records
 from .contents import Connection
 from .errors import ROSBagEncryptNotSupportedException, ROSBagException
 from .mcap_records import RecordedChannel, RecordedMessage, channel_of_connection
+from .md5sums import md5sum_of
 
 Bytes = bytes | mmap
 BROKEN = (ROSBagException, ValueError, LookupError, OSError, EOFError)
+CUT_OFF = "the data of a chunk are cut off"
 _PIECE = 1024  # bytes that are unpacked at once: what can become of them fits into memory
 _LONGEST_HEADER = 1 << 16
 _NAMES = (b"op=", b"conn=", b"time=", b"ver=", b"count=", b"topic=", b"compression=", b"size=")
@@ -115,6 +117,8 @@ def beginning_of(kind: str, stored: bytes) -> tuple[bytes, str]:
     """
     if kind == compression.NONE:
         return stored, ""
+    if kind == compression.LZ4:
+        return _beginning_of_lz4(stored)
     unpacker = _unpacker(kind)
     found = bytearray()
     try:
@@ -128,7 +132,20 @@ def beginning_of(kind: str, stored: bytes) -> tuple[bytes, str]:
         raise
     except Exception as error:  # each of the libraries has its own
         return bytes(found), f"the data of a chunk are damaged: {error}"
-    return bytes(found), "the data of a chunk are cut off"
+    return bytes(found), CUT_OFF
+
+
+def _beginning_of_lz4(stored: bytes) -> tuple[bytes, str]:
+    """As `beginning_of`; also of a block that is not whole."""
+    from . import lz4_frames
+
+    try:
+        found, is_whole = lz4_frames.unpacked(stored, compression.LARGEST + 1)
+    except RuntimeError as error:
+        return lz4_frames.beginning(stored, compression.LARGEST), f"the data of a chunk are damaged: {error}"
+    if len(found) > compression.LARGEST:
+        return found, "a chunk is too large"
+    return (found, "") if is_whole else (lz4_frames.beginning(stored, compression.LARGEST), CUT_OFF)
 
 
 def _unpacker(kind: str) -> Any:
@@ -138,10 +155,6 @@ def _unpacker(kind: str) -> Any:
         return bz2.BZ2Decompressor()
     if kind == compression.ZSTD:
         return compression.zstd().ZstdDecompressor().decompressobj()
-    if kind == compression.LZ4:
-        from .lz4_frames import LZ4Decompressor
-
-        return LZ4Decompressor()
     raise ROSBagException(f"unsupported compression type: {kind}")
 
 
@@ -173,8 +186,19 @@ def _record_at(data: Bytes, at: int) -> _Record:
     return _Record(at, records.uint8_field(fields, "op"), fields, header_end + 4, header_end + 4 + size)
 
 
+def _fits(connection: Connection) -> int:
+    """How many parts of a connection bear each other out: its topic and its type are in it twice."""
+    topics = (None, connection.topic, connection.topic.encode())
+    sums = ("*", connection.md5sum)
+    return (connection.header.get("topic") in topics) + (md5sum_of(connection.datatype, connection.msg_def) in sums)
+
+
 class BagSalvage(Salvage):
     """What is left of a bag; see `Salvage`."""
+
+    def __init__(self, data: Bytes) -> None:
+        super().__init__(data)
+        self._scores: dict[int, tuple[int, bool]] = {}  # of the connections in `channels`: how well they fit
 
     def _messages(self) -> Iterator[RecordedMessage]:
         data, end = self.data, len(self.data)
@@ -218,7 +242,7 @@ class BagSalvage(Salvage):
             counts: Counter[int] = Counter()
             for _ in range(records.uint32_field(head.fields, "conn_count")):
                 record = _record_at(data, at)
-                self._connect(data, record)
+                self._connect(data, record, is_of_index=True)
                 at = record.end
             for _ in range(records.uint32_field(head.fields, "chunk_count")):
                 record = _record_at(data, at)
@@ -232,11 +256,18 @@ class BagSalvage(Salvage):
         self.expected = dict(counts)
         self.finished = at == len(data)
 
-    def _connect(self, data: Bytes, record: _Record) -> None:
+    def _connect(self, data: Bytes, record: _Record, is_of_index: bool = False) -> None:
+        """Take in a connection. Of two that have one number, that of a chunk counts, unless the other fits better.
+
+        Nothing else tells which one is damaged: bags have no checksums.
+        """
         number, topic = records.uint32_field(record.fields, "conn"), records.text_field(record.fields, "topic")
-        header = records.split_header(data[record.data_at : record.end])
-        if number not in self.channels:
-            self.channels[number] = channel_of_connection(Connection(number, topic, header))
+        connection = Connection(number, topic, records.split_header(data[record.data_at : record.end]))
+        score = (_fits(connection), not is_of_index)
+        before = self.channels.get(number)
+        if before is None or (score > self._scores[number] and not self.counts[before]):
+            self._scores[number] = score
+            self.channels[number] = channel_of_connection(connection)
 
     def _chunk(self, record: _Record) -> Generator[RecordedMessage, None, int]:
         """The messages of a chunk; returns where the next record begins."""
@@ -256,7 +287,8 @@ class BagSalvage(Salvage):
         stored = data[record.data_at : min(record.end, end)]
         unpacked, why = beginning_of(kind, stored)
         lost = len(self.losses)
-        yield from self._walk(unpacked, 0, len(unpacked), None)
+        is_doubtful = kind == compression.LZ4 and why not in ("", CUT_OFF)  # what is left of bz2 has been checked
+        yield from self._walk(unpacked, 0, len(unpacked), None, is_doubtful)
         if why or len(unpacked) != size or len(self.losses) > lost:
             why = why or f"a chunk of {size:,} bytes is damaged"
             self.losses[lost:] = [Loss(record.at, min(record.end, end) - record.at, f"{why}, at byte {record.at:,}")]
@@ -264,7 +296,9 @@ class BagSalvage(Salvage):
             return record.end
         return self._resync(record.data_at, "a chunk has another length than it says")
 
-    def _walk(self, data: Bytes, at: int, stop: int, place: int | None) -> Generator[RecordedMessage, None, int]:
+    def _walk(
+        self, data: Bytes, at: int, stop: int, place: int | None, is_doubtful: bool = False
+    ) -> Generator[RecordedMessage, None, int]:
         """The messages in the records of a chunk; returns where they end.
 
         Args:
@@ -272,6 +306,7 @@ class BagSalvage(Salvage):
             at: where they begin.
             stop: where they are said to end.
             place: where they begin in the file; None for those that are packed.
+            is_doubtful: a checksum is wrong.
         """
         end = len(data)
         while at != stop and at < end:
@@ -288,7 +323,9 @@ class BagSalvage(Salvage):
                 if record.op == records.OP_CONNECTION:
                     self._connect(data, record)
                 else:
-                    yield self._message(data, record)
+                    message = self._message(data, record)
+                    self.doubtful += is_doubtful
+                    yield message
                 at = record.end
             except BROKEN as error:
                 ops = [records.OP_CONNECTION, records.OP_MSG_DATA]
