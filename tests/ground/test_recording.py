@@ -432,6 +432,24 @@ def test_a_damaged_record_behind_a_message_does_not_take_it_along(suffix: str, f
             assert not before - Counter(read(left)), (spot - places[last], bit)
 
 
+@pytest.mark.parametrize("suffix", [".bag", ".mcap"])
+def test_messages_of_a_chunk_of_lz4_whose_checksum_is_wrong_are_kept_and_counted(
+    suffix: str, folder: Path, tmp_path: Path
+) -> None:
+    file = written(folder, suffix, "lz4")
+    first, second = placed_chunks(file)[:2]
+    bad, whole, doubtful = tmp_path / f"bad{suffix}", file.read_bytes(), []
+    for spot in range(second.end - 400, second.end - 100, 20):
+        data = bytearray(whole)
+        data[spot] ^= 4
+        bad.write_bytes(data)
+        found = summary_of(str(bad))
+        assert found.doubtful <= second.messages - first.messages
+        assert not found.is_whole
+        doubtful.append(found.doubtful)
+    assert max(doubtful) > 0.7 * (second.messages - first.messages)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("suffix", "kind"), FORMATS)
 def test_a_bit_that_has_flipped_loses_nothing_before_it(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
