@@ -51,7 +51,7 @@ async function main() {
     came[kind] = new Came(client, kind);
   }
   const info = await came.serverInfo.first(() => true);
-  found.capabilities = info.capabilities.toSorted();
+  found.capabilities = [...info.capabilities].sort();
 
   const channelOf = async (topic) => {
     const named = (each) => each.topic === topic;
