@@ -114,6 +114,11 @@ class Subscription(TopicSide):
         most: int = self._bus.config.os_queue_max_depth
         return most if self.queue_size is None else min(self.queue_size * self._segments, most)
 
+    def is_cut_short(self, pipe: Pipe) -> bool:
+        """Whether a pipe is its own and holds less than was asked for, so that the rest should wait elsewhere."""
+        size = self.queue_size
+        return size is not None and pipe.depth < size * self._segments and self._find_pipe() is pipe
+
     def set_buff_size(self, buff_size: object) -> None:
         """Check a buffer size; a packet is always read as a whole.
 

@@ -43,6 +43,7 @@ from rospy_shim.master.calls import call
 if TYPE_CHECKING:
     from cfepy.app import Cfe
     from cfepy.rtos import Kernel
+    from cfepy.sb import Pipe
     from rospy_shim.graph.graph import Graph, Header, ServiceEntry, TopicEntry
     from rospy_shim.master import Switchboard
     from rospy_shim.master.calls import Answer
@@ -128,16 +129,21 @@ class OutsideLink(Link):
             self.topic = None
 
     def has_room(self, payload: bytes) -> bool:
-        """Whether the bus and every subscriber take a message now, or drop an older one for it."""
+        """Whether the bus and every subscriber take a message now, or drop an older one for it.
+
+        One whose queue is longer than a pipe can be drops none: what the pipe does not hold can wait outside.
+        """
         count = -(-len(payload) // self._room) or 1
         route = self._routes.get(self.msg_id)
         return route is None or (
-            self._bus.has_room(payload)
-            and all(
-                len(each.pipe.items) + count <= each.pipe.depth or (each.pipe.keeps_newest and count <= each.pipe.depth)
-                for each in route.active
-            )
+            self._bus.has_room(payload) and all(self._takes(each.pipe, count) for each in route.active)
         )
+
+    def _takes(self, pipe: Pipe, count: int) -> bool:
+        if len(pipe.items) + count <= pipe.depth:
+            return True
+        drops = pipe.keeps_newest and count <= pipe.depth
+        return drops and not any(each.is_cut_short(pipe) for each in self.peers)
 
     def enter(self, payload: bytes) -> bool:
         """A message came; False when the bus did not take it."""

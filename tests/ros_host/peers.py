@@ -181,8 +181,12 @@ class OutsideSpeaker:
 
     def send(self, payload: bytes) -> None:
         """Send a message."""
+        self.send_frames(frame(payload))
+
+    def send_frames(self, data: bytes) -> None:
+        """Send messages in one piece."""
         self._wire.socket.setblocking(True)
-        self._wire.socket.sendall(frame(payload))
+        self._wire.socket.sendall(data)
         self._wire.socket.setblocking(False)
 
     def close(self) -> None:

@@ -12,6 +12,7 @@ import shutil
 import socket
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -117,6 +118,19 @@ def started(words: list[str], environ: dict[str, str] | None = None) -> Iterator
     finally:
         process.terminate()
         process.communicate(timeout=LIMIT_S)
+
+
+def wait_for_line(process: subprocess.Popen[str], text: str, limit_s: float = LIMIT_S) -> str:
+    """Read what a process prints until a line has a text; a process that never prints it is killed after a while."""
+    assert process.stdout is not None
+    end = threading.Timer(limit_s, process.kill)
+    end.start()
+    try:
+        found = next((line.strip() for line in process.stdout if text in line), None)
+    finally:
+        end.cancel()
+    assert found is not None, f"{process.args!r} ended without {text!r}"
+    return found
 
 
 @contextmanager

@@ -80,6 +80,37 @@ def test_a_reset_of_the_processor_leaves_the_others_connected(tmp_path: Path) ->
         ear.socket.close()
 
 
+BURST = [f"{number}" for number in range(1, 301)]  # more than the 50 packets of a pipe, and all in one piece
+
+
+def test_a_burst_waits_outside_if_the_queue_is_longer_than_a_pipe(tmp_path: Path) -> None:
+    with joined(tmp_path, {"TALKER": TALKER.replace("heard)", "heard, queue_size=1000)")}) as run:
+        assert _heard_of_a_burst(run) == BURST
+
+
+def test_a_short_queue_keeps_the_newest_of_a_burst(tmp_path: Path) -> None:
+    with joined(tmp_path, {"TALKER": TALKER.replace("heard)", "heard, queue_size=3)")}) as run:
+        heard = _heard_of_a_burst(run)
+        assert heard == [each for each in BURST if each in heard]
+        assert len(heard) < len(BURST)
+
+
+def _heard_of_a_burst(run: Joined) -> list[str]:
+    """What the node has heard of a burst up to its last message."""
+    ear = run.subscribed("/chatter")
+    ear.header()
+    assert ear.frame() == text("first")
+    mouth = OutsideSpeaker(run, "/orders")
+    mouth.connect()
+    mouth.send_frames(b"".join(frame(text(each)) for each in BURST))
+    heard = [ear.frame()]
+    while heard[-1] != text(BURST[-1]):
+        heard.append(ear.frame())
+    ear.socket.close()
+    mouth.close()
+    return [each[4:].decode() for each in heard]
+
+
 MESSAGES = 150  # 15 MB: more than sockets hold
 
 

@@ -1,0 +1,62 @@
+"""Sends joint states at 1 kHz and counts those of another one: a node for both worlds.
+
+Arguments: its own name, the other's, how many messages. When both are connected with each other, each sends messages
+with the numbers 1, 2, 3 ... in `effort`, then marks of the end, with 0, until it is shut down. The first mark from the
+other lets it tell what has come before.
+
+`queue_size` is 1,000, since rospy's own queues are to lose nothing, and what is lost is then lost by a bridge: rospy
+reads up to 64 KiB at once, which are 239 of these messages, and drops what is beyond the queue's size. With 100, a node
+that has not read for 0.1 s loses messages, whoever has sent them.
+"""
+
+import sys
+import time
+
+import rospy
+from sensor_msgs.msg import JointState
+
+QUEUE = 1000
+JOINTS = [f"joint{number}" for number in range(7)]
+
+name, other, messages = rospy.myargv(sys.argv)[1:4]
+messages = int(messages)
+rospy.init_node(name)
+numbers = []
+told = []
+
+
+def hear(message):
+    number = int(message.effort[0])
+    if number:
+        numbers.append(number)
+    elif not told:
+        told.append(True)
+        missing = sorted(set(range(1, messages + 1)) - set(numbers))
+        order = "in order" if numbers == list(range(1, messages + 1)) else f"without {missing[:20]}"
+        print(name, "heard", len(numbers), order, flush=True)
+
+
+stream = rospy.Publisher("/of_" + name, JointState, queue_size=QUEUE, tcp_nodelay=True)
+heard = rospy.Subscriber("/of_" + other, JointState, hear, queue_size=QUEUE, tcp_nodelay=True)
+
+
+def send(number):
+    """All of a message has the same size, whatever its number."""
+    state = JointState(name=JOINTS, position=[0.1] * 7, velocity=[0.2] * 7, effort=[float(number)] * 7)
+    state.header.stamp = rospy.get_rostime()
+    stream.publish(state)
+
+
+rate = rospy.Rate(100)
+while not (stream.get_num_connections() and heard.get_num_connections()):
+    rate.sleep()
+rate = rospy.Rate(1000)
+begun = time.time()
+for number in range(1, messages + 1):
+    send(number)
+    rate.sleep()
+print(name, "sent", messages, f"in {time.time() - begun:.1f} s", flush=True)
+rate = rospy.Rate(10)
+while not rospy.is_shutdown():
+    send(0)
+    rate.sleep()
