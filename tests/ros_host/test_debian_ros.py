@@ -133,13 +133,26 @@ def wait_for_line(process: subprocess.Popen[str], text: str, limit_s: float = LI
     return found
 
 
-@contextmanager
-def rosmaster(folder: Path) -> Iterator[RosGraph]:
-    """Debian's master, on a free port."""
+def free_graph(folder: Path) -> RosGraph:
+    """A graph at a free port, which has no master yet."""
     with socket.create_server(("127.0.0.1", 0)) as probe:
         port = probe.getsockname()[1]
-    graph = RosGraph(f"http://127.0.0.1:{port}", folder)
-    with started(["rosmaster", "--core", "-p", str(port)], graph.environ):
+    return RosGraph(f"http://127.0.0.1:{port}", folder)
+
+
+@contextmanager
+def master_of(graph: RosGraph) -> Iterator[subprocess.Popen[str]]:
+    """Debian's master of a graph, while it starts."""
+    port = graph.environ["ROS_MASTER_URI"].rpartition(":")[2]
+    with started(["rosmaster", "--core", "-p", port], graph.environ) as process:
+        yield process
+
+
+@contextmanager
+def rosmaster(folder: Path) -> Iterator[RosGraph]:
+    """A graph with Debian's master."""
+    graph = free_graph(folder)
+    with master_of(graph):
         graph.wait_for("rosparam set /state up; rosparam get /state", "up")
         yield graph
 
