@@ -169,7 +169,7 @@ class OutsideClient:
         if kind not in (ANY, fields["type"]) and fields["type"] != ANY:
             return f"topic types do not match: [{kind}] vs. [{fields['type']}]"
         self._topic = topic
-        self._socket.send(pack_header({**fields, "tcp_nodelay": "0"}))
+        self._socket.send(pack_header(fields))
         host.add_client(topic, self._node.name, self.caller, self)
         error = host.subscribe(topic, self.caller, kind, md5sum, self._node.name)
         if error:
