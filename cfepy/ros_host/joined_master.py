@@ -61,6 +61,7 @@ class JoinedMaster:
         self._nodes: dict[str, str] = {}
         self._services: dict[str, tuple[str, str]] = {}
         self._publishers: dict[str, list[str]] = {}
+        self._told: dict[str, list[str]] = {}  # publishers that the master has told of since it was asked last
         self._look_at_s = 0.0
         self._params_there: dict[str, Any] = {}
         self._asks = self._is_lost = False
@@ -103,6 +104,7 @@ class JoinedMaster:
             self._register(seen)
         if now_s >= self._look_at_s and not self._asks:
             self._asks = True
+            self._told.clear()
             self._look_at_s = now_s + LOOK_S
             known = dict(self._nodes)
             own = {*seen.nodes}
@@ -189,11 +191,12 @@ class JoinedMaster:
         for each, uri in self._others.items():
             if each.kind == PUBLISHER:
                 self._publishers.setdefault(each.name, []).append(uri)
+        self._publishers |= self._told  # which may be newer than the answer
 
     def heard(self, node: str, method: str, key: Any, value: Any) -> None:
         """See `RosWorld.heard`."""
         if method == "publisherUpdate":
-            self._publishers[str(key)] = [str(each) for each in value]
+            self._publishers[str(key)] = self._told[str(key)] = [str(each) for each in value]
             self._host.soon()
         else:
             self._take_param(str(key), value)

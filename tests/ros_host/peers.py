@@ -153,9 +153,9 @@ class Wire:
 
 
 class OutsideSpeaker:
-    """A publisher outside, with a slave API that the test serves."""
+    """A publisher outside, with a slave API that the test serves; the master need not know it yet."""
 
-    def __init__(self, run: Joined, topic: str, kind: Mapping[str, str] = STRING) -> None:
+    def __init__(self, run: Joined, topic: str, kind: Mapping[str, str] = STRING, is_known: bool = True) -> None:
         self._run = run
         self._topic = topic
         self._kind = kind
@@ -167,7 +167,14 @@ class OutsideSpeaker:
         self._server = XmlRpcServer(
             selector, "127.0.0.1", lambda *_: (1, "", ["TCPROS", "127.0.0.1", self._opened.port])
         )
-        run.master("registerPublisher", topic, kind["type"], f"http://127.0.0.1:{self._server.port}/")
+        self.uri = f"http://127.0.0.1:{self._server.port}/"
+        if is_known:
+            run.master("registerPublisher", topic, kind["type"], self.uri)
+
+    @property
+    def is_waited_for(self) -> bool:
+        """Whether the mission has connected once more."""
+        return bool(self._accepted)
 
     def connect(self) -> dict[str, str]:
         """Wait for the mission to connect; the header that it sends."""

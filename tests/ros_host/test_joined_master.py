@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from xmlrpc.client import ServerProxy
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
@@ -19,7 +20,7 @@ from cfepy.status import UsageError
 from rospy_shim.graph.graph import Graph
 from rospy_shim.master.calls import call
 from rospy_shim.master.master_api import MasterApi
-from tests.ros_host.peers import CALLER, TALKER, Joined, joined
+from tests.ros_host.peers import CALLER, STRING, TALKER, Joined, OutsideSpeaker, joined
 
 NOBODY = "http://127.0.0.1:1/"
 
@@ -32,6 +33,8 @@ class RosMaster:
         self._server.register_instance(self)
         self.uri = f"http://127.0.0.1:{self._server.server_address[1]}/"
         self._thread = threading.Thread(target=self._server.serve_forever, kwargs={"poll_interval": 0.01})
+        self.meanwhile: Callable[[], object] = lambda: None  # done once, when the next look has been answered
+        self.looks = 0
         self.restart(1)
         self._thread.start()
 
@@ -41,7 +44,12 @@ class RosMaster:
         self.api = MasterApi(Graph(RosConfig()), self.uri)
 
     def _dispatch(self, method: str, arguments: tuple[Any, ...]) -> Any:
-        return (1, "", self._pid) if method == "getPid" else call(self.api, method, arguments)
+        answer = (1, "", self._pid) if method == "getPid" else call(self.api, method, arguments)
+        if method == "getSystemState":
+            meanwhile, self.meanwhile = self.meanwhile, lambda: None
+            meanwhile()
+            self.looks += 1
+        return answer
 
     def close(self) -> None:
         if not self._thread.is_alive():
@@ -126,6 +134,27 @@ def test_a_node_does_not_give_way_to_what_a_former_one_has_left(tmp_path: Path, 
         run.host.world._found(left, None)
         run.run_while(lambda: not is_registered(master))
         assert not run.heard("shutdown request")
+
+
+def test_a_publisher_that_is_told_of_stays_when_an_older_look_does_not_know_it(
+    tmp_path: Path, master: RosMaster
+) -> None:
+    with joining(tmp_path, master) as run:
+        mouth = OutsideSpeaker(run, "/orders", is_known=False)
+        talker = run.host.node_uri("/talker")
+
+        def come() -> None:
+            master.api.registerPublisher(CALLER, "/orders", STRING["type"], mouth.uri)
+            with ServerProxy(talker) as node:
+                node.publisherUpdate("/master", "/orders", [mouth.uri])
+
+        master.meanwhile = come
+        mouth.connect()
+        looks = master.looks
+        run.run_while(lambda: master.looks < looks + 3 or not run.host.counts.rows())
+        (row,) = run.host.counts.rows()
+        assert (row["name"], row["connections"], mouth.is_waited_for) == ("/orders", 1, False)
+        mouth.close()
 
 
 def test_no_master_is_said_before_the_run(tmp_path: Path, master: RosMaster) -> None:
