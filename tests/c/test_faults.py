@@ -107,7 +107,7 @@ void TEST_Main(void)
 """
 
 
-@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+@pytest.mark.parametrize("tasks", ["thread", pytest.param("greenlet", marks=pytest.mark.slow)])
 def test_a_loop_without_an_end_is_a_fault_of_its_application(tmp_path: Path, tasks: str) -> None:
     compile_c(tmp_path, "TEST", LOOPING)
     compile_c(tmp_path, "WITNESS", WITNESS)

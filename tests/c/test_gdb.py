@@ -38,7 +38,7 @@ def cfepy(folder: Path, *words: str, typed: str = "") -> str:
     return done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+@pytest.mark.parametrize("tasks", [pytest.param("thread", marks=pytest.mark.slow), "greenlet"])
 def test_gdb_stops_at_the_main_function_and_sees_lines_and_variables(tmp_path: Path, tasks: str) -> None:
     compile_c(tmp_path, "TEST", SOURCE, "-O0")
     folder = write_mission(tmp_path, "TEST")

@@ -119,6 +119,7 @@ def test_every_public_name_is_declared(tmp_path: Path) -> None:
     assert compile_text(tmp_path, text) == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(names()))
 def test_each_header_stands_alone(name: str, tmp_path: Path) -> None:
     file = tmp_path / "alone.c"

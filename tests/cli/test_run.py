@@ -287,8 +287,16 @@ def test_ctrl_c_ends_a_run_with_its_report(make_mission: Write, options: tuple[s
     ("body", "told"),
     [
         ("    while True: pass\n", "task QUIET has not given up the CPU since"),
-        ("    try:\n        while True: cfe.os.task_delay(100)\n    finally:\n        while True: pass\n", ""),
-        ("    import time\n    time.sleep(1000)\n", "task QUIET has waited for something outside of the simulation"),
+        pytest.param(
+            "    try:\n        while True: cfe.os.task_delay(100)\n    finally:\n        while True: pass\n",
+            "",
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            "    import time\n    time.sleep(1000)\n",
+            "task QUIET has waited for something outside of the simulation",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 @pytest.mark.parametrize("tasks", [pytest.param("thread", marks=pytest.mark.slow), "greenlet"])

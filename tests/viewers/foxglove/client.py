@@ -40,7 +40,9 @@ class FoxgloveClient:
         self.answers: list[tuple[int, str, bytes]] = []
         self._topics: dict[int, str] = {}
         self._meanwhile = meanwhile
-        self.socket: ClientConnection = connect(url, subprotocols=[PROTOCOL], max_size=None, legacy=True, **options)
+        # Behind a full queue it would wait ten seconds for the end of a connection that it closes.
+        options = {"max_size": None, "max_queue": None, "legacy": True, **options}
+        self.socket: ClientConnection = connect(url, subprotocols=[PROTOCOL], **options)
 
     def __enter__(self) -> FoxgloveClient:
         return self
