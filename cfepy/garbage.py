@@ -1,4 +1,4 @@
-"""Times in which Python does not look for garbage: a finalizer must not run where nobody expects it.
+"""When Python looks for garbage: not where nobody expects a finalizer to run, and at the end of a flight.
 
 Whether garbage is collected is a property of the whole interpreter, so what holds it up is counted here, over all
 threads: a mission that ends in one thread must not bring the collector back into a mission of another.
@@ -50,3 +50,38 @@ class _NoCollection:
 
 
 no_collection = _NoCollection()
+
+
+CAN_FREEZE = hasattr(gc, "freeze")  # PyPy, which has generations of its own, cannot
+MOST_OBJECTS = 20_000  # more objects are frozen: looking for garbage in them takes milliseconds
+LOOKS = 64  # of so many looks for garbage at the end of a run one goes through everything,
+OBJECTS = 100_000  # or of several times as many, when it has several times so many objects
+
+
+def freeze() -> None:
+    """Leave out all objects that there are when garbage is looked for, where the interpreter can."""
+    if CAN_FREEZE:
+        gc.freeze()
+
+
+def freeze_many() -> None:
+    """Freeze all objects when there are so many that looking for garbage in them takes long.
+
+    They stay frozen, for to count many objects at each run takes as long.
+    """
+    if CAN_FREEZE and len(gc.get_objects()) > MOST_OBJECTS:
+        gc.freeze()
+
+
+def collect_leftovers() -> None:
+    """Look for garbage in what is not frozen; every so many times in everything.
+
+    A run leaves classes, whose circles reference counting cannot free; the simulation itself is still
+    referenced, and is found the next time. What was there before the first run stays frozen: to go through it takes
+    longer than all the rest.
+    """
+    looks = gc.get_stats()[-1]["collections"] + 1 if CAN_FREEZE else 1
+    if looks % LOOKS == 0 and looks // LOOKS % max(1, gc.get_freeze_count() // OBJECTS) == 0:
+        gc.unfreeze()
+    gc.collect()
+    freeze_many()

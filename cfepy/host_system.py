@@ -10,6 +10,8 @@ import signal
 import sys
 from collections.abc import Callable, Sequence
 
+from cfepy.status import UsageError
+
 _LOCKED_BYTE = 1 << 40
 
 
@@ -52,3 +54,21 @@ def command_line(words: Sequence[str]) -> str:
     from shlex import join
 
     return join(words)
+
+
+def has_own_builtins() -> bool:
+    """Whether `__builtins__` of a module's own count in this Python; PyPy leaves them aside."""
+    return eval("len", {"__builtins__": {"len": None}}) is None
+
+
+def check_own_builtins() -> None:
+    """That nodes, and applications of a mission's own, can have functions of their own in place of Python's.
+
+    Raises:
+        UsageError: this Python gives them those of the computer.
+    """
+    if not has_own_builtins():
+        raise UsageError(
+            f"{sys.implementation.name} gives ROS nodes and a mission's own applications no builtins of their own, "
+            "such as `open` and `__import__`: fly them with CPython. cFE and cfepy's own applications fly here"
+        )

@@ -8,7 +8,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import errno
-import gc
 import importlib
 import io
 import os
@@ -22,7 +21,7 @@ from cfepy.cli.failures import NO_ROOM
 from cfepy.cli.json_output import standard_output
 from cfepy.cli.options import MISSION_HELP
 from cfepy.cli.parser import CommandParser, RootParser
-from cfepy.garbage import no_collection
+from cfepy.garbage import freeze, no_collection
 from cfepy.status import StallError, UsageError
 
 ENDED_WELL = 0
@@ -62,7 +61,7 @@ def process() -> int:
     try:
         return main()
     finally:
-        gc.freeze()
+        freeze()
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -137,7 +136,7 @@ def _command(module: str) -> Any:
         try:
             return importlib.import_module(name)
         finally:
-            gc.freeze()
+            freeze()
 
 
 class _Version(argparse.Action):

@@ -10,7 +10,6 @@ long as the run took from that keeper on. Only tasks on greenlets can be forked,
 from __future__ import annotations
 
 import contextlib
-import gc
 import os
 import pickle
 import signal
@@ -21,6 +20,7 @@ from contextlib import AbstractContextManager
 from typing import NamedTuple
 
 from cfepy.debugger.journey import BackSearch, Journey, LineMoment, RunMoment
+from cfepy.garbage import freeze
 
 FIRST = 500  # things that happen between two keepers, at first
 LEAST = 50
@@ -73,7 +73,7 @@ class Keepers:
         self._next = happened + self._every
         sys.stdout.flush()
         sys.stderr.flush()
-        gc.freeze()  # a child that went through these objects would have to copy them
+        freeze()  # a child that went through these objects would have to copy them
         with waiting():
             self._fork(journey, happened)
 

@@ -25,6 +25,7 @@ from cfepy.exploration.moves import MoveNotingPolicy
 from cfepy.exploration.shrink import NotedFlight, fly_noting
 from cfepy.exploration.trial import Trial, told_as
 from cfepy.exploration.verdict import Verdict
+from cfepy.garbage import freeze
 from cfepy.mission import Mission
 from cfepy.rtos import GREENLET, Decision, From, Policy, Schedule, task_kind
 
@@ -169,7 +170,7 @@ class ForkServer:
     def wait_for_schedule(self) -> Schedule:
         """The schedule of the child in which this returns; the template stays in here until the server is closed."""
         gc.collect()
-        gc.freeze()  # a child that went through these objects would have to copy them
+        freeze()  # a child that went through these objects would have to copy them
         while (schedule := self._requests.receive()) is not None:
             child = _fork()
             if not child:

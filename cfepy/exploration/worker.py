@@ -9,7 +9,6 @@ middle of a schedule too, when the process at the other end does.
 from __future__ import annotations
 
 import faulthandler
-import gc
 import os
 import signal
 import sys
@@ -22,6 +21,7 @@ from typing import Any
 from cfepy.child_pipes import connection_of
 from cfepy.exploration.fork_server import ForkingJudge
 from cfepy.exploration.lot import Lot
+from cfepy.garbage import freeze
 from cfepy.host_system import in_forked_process
 from cfepy.status import UsageError
 
@@ -44,7 +44,7 @@ def _serve(connection: Connection[Any, Any], inbox: SimpleQueue[bytes]) -> None:
 
     trial = pickle.loads(inbox.get())
     judge = trial.judge if isinstance(trial, Lot) else ForkingJudge(trial).judge
-    gc.freeze()
+    freeze()
     connection.send(READY)
     while True:
         jobs = pickle.loads(inbox.get())

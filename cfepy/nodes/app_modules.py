@@ -19,6 +19,7 @@ from importlib.machinery import PathFinder, SourceFileLoader
 from types import ModuleType
 from typing import IO, TYPE_CHECKING, Any
 
+from cfepy.host_system import check_own_builtins
 from cfepy.nodes.sources import code_of_source
 
 if TYPE_CHECKING:
@@ -64,7 +65,12 @@ class AppModules:
 
         Args:
             module: as `importlib.util.module_from_spec` makes it; it has source.
+
+        Raises:
+            UsageError: it would have the files of the computer.
+            BaseException: what its code raises.
         """
+        check_own_builtins()
         loader = module.__loader__
         assert isinstance(loader, SourceFileLoader)
         vars(module)["__builtins__"] = self.builtins

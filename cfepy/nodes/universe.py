@@ -20,6 +20,7 @@ from importlib.machinery import SourceFileLoader
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from cfepy.host_system import check_own_builtins
 from cfepy.nodes.files import OpenFiles
 from cfepy.nodes.importer import Factory, Importer
 from cfepy.nodes.report import traceback_text
@@ -114,6 +115,7 @@ class Universe:
         accesses: Accesses | None = None,
         on_thread_start: StartThread | None = None,
     ) -> None:
+        check_own_builtins()
         self.kernel = kernel
         self.name = name
         self._root = root

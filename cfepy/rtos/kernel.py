@@ -16,7 +16,7 @@ from typing import Any
 
 from cfepy import trace as tr
 from cfepy.compiled import mypyc_attr
-from cfepy.garbage import no_collection
+from cfepy.garbage import collect_leftovers, freeze_many, no_collection
 from cfepy.rtos.context import make_context, take_back
 from cfepy.rtos.errors import DeadlockError
 from cfepy.rtos.scheduler import Scheduler
@@ -24,9 +24,6 @@ from cfepy.rtos.task import Task, TaskExit
 from cfepy.rtos.wait_graph import Wait, circles, endless, waiting_report
 
 ENDLESS = 1 << 62
-MOST_OBJECTS = 20_000  # more objects are frozen: looking for garbage in them takes milliseconds
-LOOKS = 64  # of so many looks for garbage at the end of a run one goes through everything,
-OBJECTS = 100_000  # or of several times as many, when it has several times so many objects
 COLLECT_NS = 10_000_000_000  # garbage is collected at multiples of this: finalizers always run at the same place
 
 
@@ -258,7 +255,7 @@ class Kernel(Scheduler):
         self._stopped = self._exhausted = False
         if not self._begun:
             self._begun = True
-            _freeze_many()
+            freeze_many()
         with no_collection:
             try:
                 with self._letting_run():
@@ -413,7 +410,7 @@ class Kernel(Scheduler):
         self.context.end_run()
         if tidy and gc.isenabled():
             with self._letting_run():
-                self._collect(_tidy)
+                self._collect(collect_leftovers)
         self._begun = False
 
     def waiting(self) -> str:
@@ -500,26 +497,3 @@ class Kernel(Scheduler):
                 except KeyboardInterrupt:
                     continue  # Ctrl-C once more; there is nothing more to do about it
         raise error
-
-
-def _tidy() -> None:
-    """Look for garbage in what is not frozen; every so many times in everything.
-
-    A run leaves classes, whose circles reference counting cannot free; the simulation itself is still
-    referenced, and is found the next time. What was there before the first run stays frozen: to go through it takes
-    longer than all the rest.
-    """
-    looks = gc.get_stats()[-1]["collections"] + 1
-    if looks % LOOKS == 0 and looks // LOOKS % max(1, gc.get_freeze_count() // OBJECTS) == 0:
-        gc.unfreeze()
-    gc.collect()
-    _freeze_many()
-
-
-def _freeze_many() -> None:
-    """Freeze all objects when there are so many that looking for garbage in them takes long.
-
-    They stay frozen, for to count many objects at each run takes as long.
-    """
-    if len(gc.get_objects()) > MOST_OBJECTS:
-        gc.freeze()
