@@ -230,7 +230,12 @@ def test_rqt_graph_has_the_same_picture(real: RosGraph, mission: RosGraph) -> No
     command = f"{PYTHON} {real.folder / 'picture.py'}"
     mission.wait_for("rosnode ping -c 1 /talker", "xmlrpc reply")
     assert "/talker" in real.run(command)
-    assert mission.run(command) == real.run(command)
+    assert seen(mission.run(command)) == seen(real.run(command))
+
+
+def seen(picture: str) -> list[str]:
+    """What is in a picture, without rosgraph's word on connections of tools that have just gone."""
+    return [line for line in picture.splitlines() if not line.startswith("cannot add edge")]
 
 
 def test_a_rate_is_measured_alike(real: RosGraph, mission: RosGraph) -> None:
