@@ -18,7 +18,7 @@ from xmlrpc.client import ServerProxy
 
 import pytest
 
-from tests.ros_host.test_debian_ros import (
+from tests.ros_host.graphs import (
     HAS_ROS,
     PYTHON,
     RosGraph,

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.ros_host.test_debian_ros import HAS_ROS, RosGraph, cfepy_run, rosmaster, started
+from tests.ros_host.graphs import HAS_ROS, RosGraph, cfepy_run, rosmaster, started
 
 SOURCE = Path(__file__).with_name("peer.cpp")
 HEADERS = ("ros/ros.h", "std_msgs/String.h", "std_srvs/SetBool.h")

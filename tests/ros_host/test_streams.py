@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.ros_host.test_debian_ros import HAS_ROS, PYTHON, RosGraph, cfepy_run, rosmaster, started, wait_for_line
+from tests.ros_host.graphs import HAS_ROS, PYTHON, RosGraph, cfepy_run, rosmaster, started, wait_for_line
 
 NODE = Path(__file__).with_name("streams.py")
 MESSAGES = 10_000  # in 10 s, where there is time
