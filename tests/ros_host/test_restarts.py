@@ -200,7 +200,7 @@ def test_the_mission_is_killed_and_comes_back(tmp_path: Path) -> None:
             for each in survivors:
                 each.check()
             with ServerProxy(uri) as asked:
-                _, _, state = asked.getSystemState("/test")  # type: ignore[misc]
+                state = asked.getSystemState("/test")
     assert "/mission" not in str(state)
     for flight in terminated:
         assert {name: row["connections"] for name, row in flight.rows().items()} == {"/of_mission": 1, "/of_peer": 1}
