@@ -46,14 +46,20 @@ class PeerSocket:
         self._size = 0
         self._under_way = b""  # the rest of a message whose beginning is out
         self._ends_when_sent = self._is_paused = False
+        self._watched = 0  # events, as the selector has them
         connected.setblocking(False)
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        selector.register(connected, EVENT_READ, self.handle)
+        self._watch()
 
     @property
     def is_full(self) -> bool:
         """Whether a message would have to wait for the other side to read."""
         return bool(self._under_way or self._waiting)
+
+    @property
+    def waiting(self) -> int:
+        """Messages that have not begun to go out."""
+        return len(self._waiting)
 
     def send(self, data: bytes) -> None:
         """Send a message, now or as soon as there is room."""
@@ -80,17 +86,35 @@ class PeerSocket:
             self._size -= len(waiting.popleft())
             self.dropped += 1
 
+    def flush(self) -> None:
+        """Send of what waits as much as there is room for."""
+        while self.is_open and (self._under_way or self._waiting):
+            if not self._under_way:
+                self._under_way = self._waiting.popleft()
+                self._size -= len(self._under_way)
+            try:
+                sent = self.socket.send(self._under_way)
+            except BlockingIOError:
+                return
+            except OSError:
+                self._under_way = b""
+                self._waiting.clear()
+                break
+            self._under_way = self._under_way[sent:]
+        if self._ends_when_sent:
+            self.close()
+        else:
+            self._watch()
+
     def pause(self) -> None:
         """Leave what comes in the other program, for now."""
-        if self.is_open and not self._is_paused:
-            self._is_paused = True
-            self._selector.unregister(self.socket)
+        self._is_paused = True
+        self._watch()
 
     def resume(self) -> None:
         """Take it again."""
-        if self.is_open and self._is_paused:
-            self._is_paused = False
-            self._selector.register(self.socket, EVENT_READ, self.handle)
+        self._is_paused = False
+        self._watch()
 
     def finish(self) -> None:
         """Close it as soon as everything is out."""
@@ -103,15 +127,14 @@ class PeerSocket:
         """Close it; `lost` is not called."""
         if self.is_open:
             self.is_open = False
-            if not self._is_paused:
-                self._selector.unregister(self.socket)
+            self._watch()
             self.socket.close()
             self._waiting.clear()
 
     def handle(self, events: int) -> None:
         """The socket can be read or written."""
         if events & EVENT_WRITE:
-            self._flush()
+            self.flush()
         if events & EVENT_READ and self.is_open:
             self._read()
 
@@ -143,28 +166,20 @@ class PeerSocket:
             self.close()
             self._lost(why)
 
-    def _flush(self) -> None:
-        while self._under_way or self._waiting:
-            if not self._under_way:
-                self._under_way = self._waiting.popleft()
-                self._size -= len(self._under_way)
-            try:
-                sent = self.socket.send(self._under_way)
-            except BlockingIOError:
-                return
-            except OSError:
-                self._under_way = b""
-                self._waiting.clear()
-                break
-            self._under_way = self._under_way[sent:]
-        if self._ends_when_sent:
-            self.close()
-        else:
-            self._watch()
-
     def _watch(self) -> None:
+        """Have the selector look for what is to be done next."""
+        reads = 0 if self._is_paused else EVENT_READ
         writes = EVENT_WRITE if self._under_way or self._waiting else 0
-        self._selector.modify(self.socket, EVENT_READ | writes, self.handle)
+        wanted, watched = reads | writes if self.is_open else 0, self._watched
+        self._watched = wanted
+        if wanted == watched:
+            return
+        if not watched:
+            self._selector.register(self.socket, wanted, self.handle)
+        elif not wanted:
+            self._selector.unregister(self.socket)
+        else:
+            self._selector.modify(self.socket, wanted, self.handle)
 
 
 class Listening:

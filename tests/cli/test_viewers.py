@@ -89,10 +89,9 @@ def test_what_is_wrong_is_told(mission: str, options: list[str], why: str, capsy
 def test_the_library_is_asked_for(
     mission: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(sys.modules, "foxglove", None)
+    monkeypatch.setitem(sys.modules, "websockets", None)
     assert main(["run", mission, "--foxglove", "0"]) == 2
     assert "pip install 'cfepy[viz]'" in capsys.readouterr().err
-    monkeypatch.setitem(sys.modules, "websockets", None)
     assert main(["run", mission, "--rosbridge", "0"]) == 2
     assert "pip install 'cfepy[web]'" in capsys.readouterr().err
 

@@ -1,7 +1,6 @@
 """`--foxglove`: the mission in Foxglove, live, over its WebSocket protocol (docs.foxglove.dev, "Foxglove WebSocket").
 
-What belongs here says in Foxglove's terms what the mission has, and the other way round. The protocol itself is spoken
-by the library foxglove-sdk, in threads of its own.
+What belongs here says in Foxglove's terms what the mission has, and the other way round.
 
 `FoxgloveViewer` watches the bus, as a recording does, so a run that is shown has the trace of one that is not. What
 comes in enters while the run stands still, through `cfepy.mission.outside`; so a journal has it, and a replay needs
@@ -11,29 +10,18 @@ none of this.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from cfepy.ground import TOO_SHORT, Dictionary, ShownPackets, dictionary_of
-from cfepy.io import INTO, OUT_OF, PeerCounts
+from cfepy.io import OUT_OF, PeerCounts
 from cfepy.mission import Mission, Seen, TopicMessage, TopicWatch
 from cfepy.msg import get_header_version
-from cfepy.viewers.foxglove.client_listener import ClientListener
-from cfepy.viewers.foxglove.client_topics import PEER, ClientTopics
-from cfepy.viewers.foxglove.door import ViewerDoor
+from cfepy.viewers.foxglove.client_topics import ClientTopics
 from cfepy.viewers.foxglove.graph_mirror import GraphMirror, ParameterMirror, ServiceMirror
-from cfepy.viewers.foxglove.inbox import (
-    Advertised,
-    Called,
-    Entry,
-    ParametersSet,
-    Published,
-    Subscribed,
-    Unadvertised,
-    ViewerInbox,
-)
-from cfepy.viewers.foxglove.sdk_server import SdkServer
+from cfepy.viewers.foxglove.protocol import Advertised, Called, Op, ParametersSet, Published, Unadvertised, parameters
 from cfepy.viewers.foxglove.shown_channels import ShownChannels
+from cfepy.viewers.foxglove.viewer import PEER, Viewer
+from cfepy.viewers.foxglove.viewer_server import ViewerServer
 from cfepy.viewers.listen import Admission, ListenPlace
 
 if TYPE_CHECKING:
@@ -42,9 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["FoxgloveViewer"]
 
 LOOK_S = 0.05  # wall time between two looks at what there is
-ALL = "(connections)"
 TABLE = "viewer_peers"
-LOST = "lost on the way to viewers that are too slow, or left"
 
 
 class FoxgloveViewer(TopicWatch):
@@ -57,7 +43,7 @@ class FoxgloveViewer(TopicWatch):
         counts: of the run's report.
 
     Raises:
-        UsageError: foxglove-sdk is not installed, or the port is taken.
+        UsageError: the package websockets is not installed, or the port is taken.
 
     Attributes:
         place: where viewers connect, with the port that was free.
@@ -66,24 +52,15 @@ class FoxgloveViewer(TopicWatch):
     def __init__(self, place: ListenPlace, admission: Admission, name: str, counts: PeerCounts) -> None:
         super().__init__(lambda message: self._channels.show_message(message))
         self._counts = counts
-        self._inbox = ViewerInbox()
         self._dictionary = Dictionary()
         self._ros: RosRuntime | None = None
         self._look_at_s = 0.0
-        self._is_closed = False
-        listener = ClientListener(self._inbox, self._known_parameters, self._parameter)
-        self._listener = listener
-        self._server = SdkServer(name, listener, self._log)
+        self._server = ViewerServer(place, admission, name, counts, self._do, self._gone)
         self._parameters = ParameterMirror(self._server)
-        self._services = ServiceMirror(self._server, self._inbox.put)
+        self._services = ServiceMirror(self._server)
         self._graph_shown = GraphMirror(self._server)
-        try:
-            self._door = ViewerDoor(place, admission, (self._server.host, self._server.port))
-        except BaseException:
-            self._server.close()
-            self._inbox.close()
-            raise
-        self.place = self._door.place
+        self._incoming: ClientTopics | None = None
+        self.place = self._server.place
 
     # -- the mission -------------------------------------------------------------------------------------------------
 
@@ -92,7 +69,7 @@ class FoxgloveViewer(TopicWatch):
         super().begin(mission)
         mission.record.tables[TABLE] = self._counts.rows
         self._dictionary = dictionary_of(mission.spec)
-        self._channels = ShownChannels(self._server.channel, self._dictionary, self._listener.listeners, self._counts)
+        self._channels = ShownChannels(self._server, self._dictionary, self._counts)
         self._shown = shown = ShownPackets(mission.spec)
         self._shown_as: dict[int, list[str]] = {}
         for topic, packet in shown.packets.items():
@@ -126,28 +103,22 @@ class FoxgloveViewer(TopicWatch):
         else:
             self._channels.show_message(TopicMessage(topic, header, payload, seen.at_ns, self._stamp(seen.at_ns)))
 
-    def _known_parameters(self) -> Mapping[str, Any]:
-        return self._parameters.values
-
-    def _parameter(self, name: str, value: Any) -> Any:
-        return self._server.parameter(name, value)
-
     # -- the host ----------------------------------------------------------------------------------------------------
 
     def fileno(self) -> int:
         """What can be read when something wants to come in."""
-        return self._inbox.fileno()
+        return self._server.fileno()
 
     def exchange(self) -> None:
         """Bring in what arrived, and show what is new; the run stands still."""
-        mission = self._mission
+        mission, incoming = self._mission, self._incoming
         assert mission is not None
+        assert incoming is not None
         if mission.ros is not self._ros:
             self._ros = mission.ros
             self._begin_ros()
-        for entry in self._inbox.take():
-            self._do(mission, entry)
-        self._incoming.enter()
+        self._server.exchange()
+        incoming.enter()
         self._parameters.look()
         now_s = time.monotonic()
         if now_s >= self._look_at_s:
@@ -155,39 +126,43 @@ class FoxgloveViewer(TopicWatch):
             self._look(mission)
 
     def close(self) -> None:
-        """The run is over: let the last messages out, and end all connections."""
-        if self._is_closed:
-            return
-        self._is_closed = True
-        self._services.close()
-        self._door.drain()
+        """The run is over: let the last messages out, and end all connections; may be called more than once."""
+        self._incoming = None  # viewers that leave now leave nothing in the mission
+        self._services.forget("the run is over")
         self._server.close()
-        self._door.close()
-        self._inbox.close()
-        if self._mission is not None:
-            self._count()
 
     def _begin_ros(self) -> None:
         ros = self._ros
-        self._services.forget()
+        self._services.forget("the service has ended")
         if ros is not None:
+            assert self._incoming is not None
             self._parameters.watch(ros.graph.params)
             self._incoming.begin()
 
-    def _do(self, mission: Mission, entry: Entry) -> None:
-        match entry:
-            case Subscribed():
-                self._channels.greet(entry.channel, entry.client)
+    def _do(self, viewer: Viewer, op: Op) -> None:
+        mission, incoming = self._mission, self._incoming
+        if mission is None or incoming is None:
+            return  # the run has not begun, or is over
+        match op:
             case Advertised():
-                self._incoming.advertise(entry)
+                incoming.advertise(viewer, op)
             case Unadvertised():
-                self._incoming.unadvertise(entry)
+                for number in op.numbers:
+                    incoming.unadvertise(viewer, number)
             case Published():
-                self._incoming.publish(entry)
+                incoming.publish(viewer, op)
             case ParametersSet():
-                self._parameters.set(mission, entry)
+                self._parameters.set(mission, op)
+                if op.request is not None:
+                    values = self._server.values
+                    viewer.tell(parameters([(name, values.get(name)) for name in op.values], op.request))
             case Called():
-                self._services.begin(mission, entry, self)
+                self._services.begin(mission, viewer, op, self)
+
+    def _gone(self, viewer: Viewer) -> None:
+        self._services.gone(viewer)
+        if self._incoming is not None:
+            self._incoming.gone(viewer)
 
     def _look(self, mission: Mission) -> None:
         self._server.tell_time(self._stamp(mission.kernel.now) or 0)
@@ -215,22 +190,3 @@ class FoxgloveViewer(TopicWatch):
     def answer(self, number: int, good: bool, body: bytes) -> None:
         """See `WayOut.answer`."""
         self._services.answer(number, good, body)
-
-    # -- counts ------------------------------------------------------------------------------------------------------
-
-    def _log(self, line: str) -> None:
-        """The server says something of a connection or a frame, in a thread of its own."""
-        row = self._counts.of(ALL, PEER, INTO)
-        row.dropped += 1
-        row.why = line
-
-    def _count(self) -> None:
-        door = self._door
-        row = self._counts.of(ALL, PEER, OUT_OF)
-        row.connections, row.ended, row.refused = door.admitted, door.ended, door.refused
-        row.messages, row.size, row.why = door.messages, door.size, door.why
-        row.dropped = self._channels.sent - door.messages
-        if row.dropped and not row.why:
-            row.why = LOST
-        if self._inbox.lost:
-            self._counts.of(ALL, PEER, INTO).dropped += self._inbox.lost

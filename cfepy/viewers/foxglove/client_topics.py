@@ -19,17 +19,16 @@ from cfepy.io import INTO, PeerCounts
 from cfepy.mission import PACKET, ROS, Mission
 from cfepy.msg import Command
 from cfepy.status import CfeError, UsageError
-from cfepy.viewers.foxglove.inbox import Advertised, Published, Unadvertised
+from cfepy.viewers.foxglove.protocol import JSON, ROS1, Advertised, Published
+from cfepy.viewers.foxglove.viewer import ALL, PEER, Viewer
 
 if TYPE_CHECKING:
     from rospy_shim.graph.graph import TopicEntry
 
-PEER = "foxglove"
 NODE = "/foxglove_"
 MOST_TOPICS = 100  # of all viewers together: each takes a MsgId of the mission
 MOST_WAITING = 1000  # messages of one topic for which the mission has no room yet
 NAME = re.compile(r"/[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
-JSON, ROS1 = "json", "ros1"
 
 
 class RosPublication(NamedTuple):
@@ -75,31 +74,39 @@ class ClientTopics:
         self._counts = counts
         self._way_out = way_out
         self._tell = tell
-        self._publications: dict[tuple[int, int], RosPublication | CommandPublication] = {}
-        self._numbers: dict[int, int] = {}  # of viewers that publish
+        self._publications: dict[tuple[Viewer, int], RosPublication | CommandPublication] = {}  # by the viewer's number
+        self._numbers: dict[Viewer, int] = {}  # of viewers that publish
 
-    def advertise(self, wanted: Advertised) -> None:
+    def advertise(self, viewer: Viewer, wanted: Advertised) -> None:
         """A viewer wants to publish."""
-        key = (wanted.client, wanted.number)
+        key = (viewer, wanted.number)
         self._leave(key)
         try:
             if len(self._publications) >= MOST_TOPICS:
                 raise UsageError(f"viewers publish on {MOST_TOPICS} topics already")
-            self._publications[key] = self._publication(wanted)
+            self._publications[key] = self._publication(viewer, wanted)
         except (UsageError, CfeError, ValueError, KeyError) as error:
             self._refuse(wanted.topic, f"{wanted.topic} cannot be published: {error}")
             self._counts.of(_name_of(wanted.topic), PEER, INTO).refused += 1
         else:
             self._counts.of(wanted.topic, PEER, INTO).connections += 1
 
-    def unadvertise(self, gone: Unadvertised) -> None:
+    def unadvertise(self, viewer: Viewer, number: int) -> None:
         """It will not any more."""
-        self._leave((gone.client, gone.number))
+        self._leave((viewer, number))
 
-    def publish(self, message: Published) -> None:
-        """A message of a viewer; one of which nobody knows the topic has been refused already."""
-        publication = self._publications.get((message.client, message.number))
-        if publication is None:
+    def gone(self, viewer: Viewer) -> None:
+        """A viewer has left."""
+        for key in [key for key in self._publications if key[0] is viewer]:
+            self._leave(key)
+
+    def publish(self, viewer: Viewer, message: Published) -> None:
+        """A message of a viewer."""
+        publication = self._publications.get((viewer, message.number))
+        if publication is None:  # what is wrong with it was told when it was advertised, if it was
+            row = self._counts.of(ALL, PEER, INTO)
+            row.dropped += 1
+            row.why = f"channel {message.number} of a viewer is not, or cannot be, published"
             return
         row = self._counts.of(publication.topic, PEER, INTO)
         row.messages += 1
@@ -136,7 +143,7 @@ class ClientTopics:
         self._counts.of(_name_of(topic), PEER, INTO).why = why
         self._tell(why, f"publish {topic}")
 
-    def _leave(self, key: tuple[int, int]) -> None:
+    def _leave(self, key: tuple[Viewer, int]) -> None:
         publication = self._publications.pop(key, None)
         if isinstance(publication, RosPublication):
             row = self._counts.of(publication.topic, PEER, INTO)
@@ -146,7 +153,7 @@ class ClientTopics:
 
     # -- what a viewer wants -----------------------------------------------------------------------------------------
 
-    def _publication(self, wanted: Advertised) -> RosPublication | CommandPublication:
+    def _publication(self, viewer: Viewer, wanted: Advertised) -> RosPublication | CommandPublication:
         """What becomes of it.
 
         Raises:
@@ -166,17 +173,17 @@ class ClientTopics:
         library = _library(kind, definition)
         made = library.message_class(kind)
         encode = _encoder(library.message_class, kind, wanted.encoding == JSON)
-        node = f"{NODE}{self._number_of(wanted.client)}"
+        node = f"{NODE}{self._number_of(viewer)}"
         found = RosPublication(topic, node, kind, made._md5sum, definition, encode, deque())
         self._join(found)
         return found
 
-    def _number_of(self, client: int) -> int:
+    def _number_of(self, viewer: Viewer) -> int:
         """The number of a viewer that publishes: the least that is free, so that no names are left behind."""
-        here = {client for client, _ in self._publications}
+        here = {viewer for viewer, _ in self._publications}
         self._numbers = {each: number for each, number in self._numbers.items() if each in here}
         taken = set(self._numbers.values())
-        return self._numbers.setdefault(client, next(number for number in count(1) if number not in taken))
+        return self._numbers.setdefault(viewer, next(number for number in count(1) if number not in taken))
 
     def _definition(self, topic: str, wanted: Advertised) -> str:
         """The definition of a type: as the mission knows it, or else as the viewer says."""
@@ -187,8 +194,8 @@ class ClientTopics:
         for entry in sorted(entries, key=lambda each: each.name != topic):
             if entry.type == wanted.kind and entry.definition:
                 return entry.definition
-        if wanted.schema:
-            return wanted.schema
+        if wanted.definition:
+            return wanted.definition
         return message_class(wanted.kind)._full_text
 
     def _join(self, publication: RosPublication) -> None:

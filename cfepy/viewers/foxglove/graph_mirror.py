@@ -2,39 +2,34 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+import time
+from typing import TYPE_CHECKING, Any, NamedTuple
 from xmlrpc.client import dumps
 
 from cfepy.mission import ROS, Mission
 from cfepy.status import CfeError, UsageError
-from cfepy.viewers.foxglove.inbox import Called, ParametersSet
-from cfepy.viewers.foxglove.sdk_server import SdkServer
+from cfepy.viewers.foxglove.protocol import ROS1, Called, Graph, ParametersSet, service_failure, service_response
+from cfepy.viewers.foxglove.viewer import Viewer
+from cfepy.viewers.foxglove.viewer_server import NOTHING, ViewerServer
 from rospy_shim.parameters.tree import ParameterTree
 
 if TYPE_CHECKING:
-    from rospy_shim.graph.graph import Graph
+    from rospy_shim.graph.graph import Graph as RosGraph
 
 CALLER = "/foxglove"
 HIGHEST, LOWEST = 2**63 - 1, -(2**63)
 CALL_S = 60.0  # wall time for which a viewer waits for an answer
-
-Graphs = tuple[dict[str, tuple[list[str], list[str]]], dict[str, list[str]]]
+MOST_CALLS = 32  # of one viewer that wait for their answers; as foxglove-sdk has it
 
 
 class ParameterMirror:
-    """The mission's parameters, as the server's threads may read them.
+    """The mission's parameters, as viewers know them.
 
     Args:
         server: tells viewers of changes.
-
-    Attributes:
-        values: all of them by name; replaced, never changed.
     """
 
-    def __init__(self, server: SdkServer) -> None:
-        self.values: Mapping[str, Any] = {}
+    def __init__(self, server: ViewerServer) -> None:
         self._server = server
         self._tree: ParameterTree | None = None
         self._is_stale = False
@@ -54,17 +49,12 @@ class ParameterMirror:
         if not self._is_stale or tree is None:
             return
         self._is_stale = False
-        before, now = self.values, {name: _plain(tree.find(name)) for name in tree.names()}
-        self.values = now
+        before, now = self._server.values, {name: _plain(tree.find(name)) for name in tree.names()}
+        self._server.values = now
         changed = [name for name, value in now.items() if name not in before or before[name] != value]
         gone = [name for name in before if name not in now]
         if changed or gone:
-            self.tell([*changed, *gone])
-
-    def tell(self, names: list[str]) -> None:
-        """Tell what parameters are now."""
-        values = self.values
-        self._server.tell_parameters(self._server.parameter(name, values.get(name)) for name in names)
+            self._server.tell_parameters([*changed, *gone])
 
     def set(self, mission: Mission, wanted: ParametersSet) -> None:
         """A viewer sets parameters; what was not possible it sees at once."""
@@ -80,11 +70,11 @@ class ParameterMirror:
                 self._server.tell_problem(f"parameter {name} cannot be set: {why}", f"parameter {name}")
         self._is_stale = True
         self.look()
-        self.tell(list(wanted.values))
+        self._server.tell_parameters(wanted.values)
 
 
 def _plain(value: Any) -> Any:
-    """A value as the library takes it."""
+    """A value as viewers take it."""
     if isinstance(value, dict):
         return {str(name): _plain(each) for name, each in value.items()}
     if isinstance(value, list | tuple):
@@ -94,81 +84,96 @@ def _plain(value: Any) -> Any:
     return value if isinstance(value, str | int | float | bool | bytes) else str(value)
 
 
+class _Call(NamedTuple):
+    """A call that waits for its answer."""
+
+    viewer: Viewer
+    wanted: Called
+    since_s: float
+
+
 class ServiceMirror:
     """The mission's services, for viewers to call.
 
     Args:
         server: offers them.
-        put: leaves a call in the inbox; False when it found no room.
     """
 
-    def __init__(self, server: SdkServer, put: Callable[[Called], bool]) -> None:
+    def __init__(self, server: ViewerServer) -> None:
         self._server = server
-        self._put = put
-        self._offered: dict[str, str] = {}  # with the md5sum
-        self._calls: dict[int, Called] = {}
+        self._offered: dict[str, tuple[int, str]] = {}  # the number under which viewers know it, and the md5sum
+        self._calls: dict[int, _Call] = {}
         self._last = 0
-        self._is_over = False
 
-    def look(self, graph: Graph) -> None:
-        """Offer what is new, and what is gone no more."""
+    def look(self, graph: RosGraph) -> None:
+        """Offer what is new, and what is gone no more; end calls that have waited for too long."""
         here = {name: entry.service.service_class for name, entry in list(graph.services.items())}
-        known = {name: kind for name, kind in here.items() if kind._md5sum not in ("", "*")}
-        gone = [name for name, md5sum in self._offered.items() if name not in known or known[name]._md5sum != md5sum]
+        known = {name: kind._md5sum for name, kind in here.items() if kind._md5sum not in ("", "*")}
+        gone = [name for name, (_, md5sum) in self._offered.items() if known.get(name) != md5sum]
         if gone:
-            self._server.withdraw(gone)
-        for name in gone:
-            del self._offered[name]
-        for name, kind in known.items():
+            self._server.withdraw([self._offered.pop(name)[0] for name in gone])
+        for name, md5sum in known.items():
             if name not in self._offered:
-                self._offered[name] = kind._md5sum
-                self._offer(graph, name)
+                self._offer(graph, name, md5sum)
+        now_s = time.monotonic()
+        for number in [number for number, call in self._calls.items() if now_s - call.since_s > CALL_S]:
+            self._fail(self._calls.pop(number), "the service has not answered")
 
-    def _offer(self, graph: Graph, name: str) -> None:
+    def _offer(self, graph: RosGraph, name: str, md5sum: str) -> None:
         try:
             _, kind = graph.caller(name)
             request, response = kind._request_class._full_text, kind._response_class._full_text
         except Exception:  # a compiled node's, of a type that no node in Python knows: it cannot be described
-            return
-        self._server.offer(name, kind._type, request, response, self._handle)
+            self._offered[name] = (0, md5sum)
+        else:
+            self._offered[name] = (self._server.offer(name, kind._type, request, response), md5sum)
 
-    def _handle(self, request: Any) -> bytes:
-        """In a thread of the server, which waits: the run goes on meanwhile, and answers."""
-        call = Called(request.client_id, request.service_name, bytes(request.payload))
-        if self._is_over or not self._put(call) or not call.over.wait(CALL_S):
-            raise RuntimeError(f"service {call.service} has not answered")
-        if call.error:
-            raise RuntimeError(call.error)
-        return call.answer
-
-    def begin(self, mission: Mission, call: Called, way_out: Any) -> None:
+    def begin(self, mission: Mission, viewer: Viewer, wanted: Called, way_out: Any) -> None:
         """A viewer calls a service of the mission."""
+        call = _Call(viewer, wanted, time.monotonic())
+        service = next((name for name, (number, _) in self._offered.items() if number == wanted.service), None)
+        if service is None:
+            self._fail(call, "there is no such service")
+        elif wanted.encoding != ROS1:
+            self._fail(call, f"the encoding of a request is {ROS1}, not {wanted.encoding[:40]}")
+        elif sum(each.viewer is viewer for each in self._calls.values()) >= MOST_CALLS:
+            self._fail(call, f"{MOST_CALLS} calls wait for their answers already")
+        else:
+            self._enter(mission, service, call, way_out)
+
+    def _enter(self, mission: Mission, service: str, call: _Call, way_out: Any) -> None:
         self._last = number = self._last + 1
         self._calls[number] = call
         try:
             mission.outside.act(ROS)
             assert mission.ros is not None
             mission.ros.outside.ways_out[CALLER] = way_out
-            mission.outside.act(ROS, "call", call.service, number, CALLER, call.request)
+            mission.outside.act(ROS, "call", service, number, CALLER, call.wanted.request)
         except (KeyError, CfeError, UsageError) as error:
-            self.answer(number, False, f"service {call.service} cannot be called: {error}".encode())
+            self.answer(number, False, f"service {service} cannot be called: {error}".encode())
 
     def answer(self, number: int, good: bool, body: bytes) -> None:
         """The mission has answered."""
         call = self._calls.pop(number, None)
-        if call is not None:
-            call.end(body, "" if good else body.decode(errors="replace") or "the service has failed")
+        if call is None:
+            return
+        if good:
+            call.viewer.tell(service_response(call.wanted.service, call.wanted.call, body))
+        else:
+            self._fail(call, body.decode(errors="replace") or "the service has failed")
 
-    def forget(self) -> None:
-        """The graph that was asked is gone."""
-        for call in self._calls.values():
-            call.end(b"", f"service {call.service} has ended")
-        self._calls.clear()
+    def _fail(self, call: _Call, why: str) -> None:
+        call.viewer.tell(service_failure(call.wanted.service, call.wanted.call, why))
 
-    def close(self) -> None:
-        """The run is over."""
-        self._is_over = True
-        self.forget()
+    def gone(self, viewer: Viewer) -> None:
+        """A viewer has left: nobody waits for the answers to its calls."""
+        self._calls = {number: call for number, call in self._calls.items() if call.viewer is not viewer}
+
+    def forget(self, why: str) -> None:
+        """Nobody answers any more."""
+        calls, self._calls = self._calls, {}
+        for call in calls.values():
+            self._fail(call, why)
 
 
 class GraphMirror:
@@ -178,22 +183,20 @@ class GraphMirror:
         server: tells it.
     """
 
-    def __init__(self, server: SdkServer) -> None:
+    def __init__(self, server: ViewerServer) -> None:
         self._server = server
-        self._told: Graphs = ({}, {})
+        self._told = NOTHING
 
-    def look(self, graph: Graph) -> None:
+    def look(self, graph: RosGraph) -> None:
         """Tell it, if it is another than before."""
-        topics = {}
+        published, subscribed = {}, {}
         for name, entry in list(graph.topics.items()):
-            publishers = [link.node.names.name for link in entry.links]
-            publishers += [node.names.name for node in entry.compiled_publishers]
-            hearers = [each.node.names.name for each in entry.subscriptions]
-            hearers += [node.names.name for node in entry.compiled_subscribers]
-            topics[name] = (publishers, hearers)
+            published[name] = [link.node.names.name for link in entry.links]
+            published[name] += [node.names.name for node in entry.compiled_publishers]
+            subscribed[name] = [each.node.names.name for each in entry.subscriptions]
+            subscribed[name] += [node.names.name for node in entry.compiled_subscribers]
         services = {name: [entry.service.node.names.name] for name, entry in list(graph.services.items())}
-        found = (topics, services)
+        found: Graph = (published, subscribed, services)
         if found != self._told:
             self._told = found
-            with contextlib.suppress(RuntimeError):  # the server is closing
-                self._server.tell_graph(topics, services)
+            self._server.tell_graph(found)

@@ -6,8 +6,9 @@ MCAP file (`cfepy.ground.json_packets`). What nobody has subscribed to costs a l
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Mapping
+from itertools import count
+from typing import TYPE_CHECKING, Any
 
 from cfepy.ground import (
     EVENT_IDS,
@@ -24,82 +25,85 @@ from cfepy.io import OUT_OF, PeerCounts
 from cfepy.mission import Seen, TopicMessage
 from cfepy.msg import Command, Telemetry
 from cfepy.status import CfeError, UsageError
-from cfepy.viewers.foxglove.client_topics import PEER
+from cfepy.viewers.foxglove.protocol import JSON, JSON_SCHEMA, ROS1, ROS1_SCHEMA
+from cfepy.viewers.foxglove.viewer import PEER, Viewer
 
-MakeChannel = Callable[[str, str, tuple[str, str, bytes], Mapping[str, str]], Any]
-"""Takes topic, encoding, schema (name, encoding, text) and metadata."""
-NO_LISTENERS: frozenset[int] = frozenset()
+if TYPE_CHECKING:
+    from cfepy.viewers.foxglove.viewer_server import ViewerServer
 
 
 class ShownChannel:
     """One channel.
 
     Args:
+        number: of the channel, no other's.
         topic: its name.
-        channel: the library's.
-        listeners: who has subscribed to which channel, by its id.
+        encoding: of its messages.
+        schema: name, encoding and text of the schema.
         counts: of the run's report.
 
     Attributes:
+        viewers: those that have subscribed, with the numbers of their subscriptions.
         latched: the last message and its time of each publisher that latches.
     """
 
-    def __init__(self, topic: str, channel: Any, listeners: Mapping[int, set[int]], counts: PeerCounts) -> None:
+    def __init__(
+        self, number: int, topic: str, encoding: str, schema: tuple[str, str, str], counts: PeerCounts
+    ) -> None:
+        self.number = number
         self.topic = topic
-        self.id: int = channel.id()
+        self.viewers: dict[Viewer, int] = {}
         self.latched: dict[str, tuple[bytes, int]] = {}
-        self._channel = channel
-        self._listeners = listeners
+        self._encoding = encoding
+        self._schema = schema
         self._counts = counts
+
+    @property
+    def description(self) -> dict[str, Any]:
+        """The channel as it is advertised."""
+        name, encoding, text = self._schema
+        about = {"schemaName": name, "schemaEncoding": encoding, "schema": text}
+        return {"id": self.number, "topic": self.topic, "encoding": self._encoding, **about}
 
     @property
     def is_heard(self) -> bool:
         """Whether anybody has subscribed."""
-        return bool(self._listeners.get(self.id))
+        return bool(self.viewers)
 
-    def show(self, data: bytes, time_ns: int, client: int | None = None) -> int:
-        """Send a message to all that have subscribed, or to one of them alone; returns to how many."""
-        count = len(self._listeners.get(self.id, NO_LISTENERS)) if client is None else 1
-        if count:
-            self._channel.log(data, log_time=time_ns, sink_id=client)
+    def show(self, data: bytes, time_ns: int) -> None:
+        """Send a message to all that have subscribed."""
+        if self.viewers:
             row = self._counts.of(self.topic, PEER, OUT_OF)
-            row.messages += count
-            row.size += count * len(data)
-        return count
+            for viewer, number in self.viewers.items():
+                viewer.show(self, number, data, time_ns, row)
 
-    def close(self) -> None:
-        """There is no such topic any more."""
-        self._channel.close()
+    def greet(self, viewer: Viewer) -> None:
+        """A viewer has subscribed: it gets the latched messages, as a new subscriber in ROS does."""
+        row = self._counts.of(self.topic, PEER, OUT_OF)
+        for data, time_ns in self.latched.values():
+            viewer.show(self, self.viewers[viewer], data, time_ns, row)
 
 
 class ShownChannels:
     """All channels.
 
     Args:
-        make: makes one of the library's.
+        server: tells viewers of them.
         dictionary: of the mission.
-        listeners: as of `ShownChannel`.
         counts: of the run's report.
-
-    Attributes:
-        sent: messages so far, each counted once for each viewer that it was for.
     """
 
-    def __init__(
-        self, make: MakeChannel, dictionary: Dictionary, listeners: Mapping[int, set[int]], counts: PeerCounts
-    ) -> None:
-        self.sent = 0
-        self._make = make
+    def __init__(self, server: ViewerServer, dictionary: Dictionary, counts: PeerCounts) -> None:
+        self._server = server
         self._dictionary = dictionary
-        self._listeners = listeners
         self._counts = counts
-        self._by_id: dict[int, ShownChannel] = {}
+        self._numbers = count(1)
         self._topics: dict[str, tuple[str, ShownChannel]] = {}  # with the md5sum
         self._packets: dict[str, ShownChannel] = {}
         for declared in dictionary.telemetry.values():
             if isinstance(declared, Telemetry):
-                self._packet(f"{PACKETS}{declared.name}", declared, declared.msg_id)
-        self._events = self._json(EVENTS, "foxglove.Log", log_schema(), {})
+                self._packet(f"{PACKETS}{declared.name}", declared)
+        self._events = self._json(EVENTS, "foxglove.Log", log_schema())
 
     # -- topics ------------------------------------------------------------------------------------------------------
 
@@ -114,10 +118,8 @@ class ShownChannels:
         if known is not None and known[0] == header["md5sum"]:
             return known[1]
         if known is not None:
-            del self._by_id[known[1].id]
-            known[1].close()
-        schema = (header["type"], "ros1msg", header["message_definition"].encode())
-        made = self._keep(topic, self._make(topic, "ros1", schema, {"md5sum": header["md5sum"]}))
+            self._server.unadvertise(known[1])
+        made = self._new(topic, ROS1, (header["type"], ROS1_SCHEMA, header["message_definition"]))
         self._topics[topic] = (header["md5sum"], made)
         return made
 
@@ -130,23 +132,16 @@ class ShownChannels:
         time_ns = message.stamp_ns or 0  # /clock has not begun
         if header.get("latching") == "1":
             channel.latched[header.get("callerid", "")] = (message.data, time_ns)
-        self.sent += channel.show(message.data, time_ns)
-
-    def greet(self, channel: int, client: int) -> None:
-        """A viewer has subscribed to a channel: it gets the latched messages, as a new subscriber in ROS does."""
-        found = self._by_id.get(channel)
-        if found is not None:
-            for data, time_ns in found.latched.values():
-                self.sent += found.show(data, time_ns, client)
+        channel.show(message.data, time_ns)
 
     # -- packets and events ------------------------------------------------------------------------------------------
 
     def show_packet(self, seen: Seen, declared: Command | Telemetry | None, time_ns: int) -> None:
         """A packet was sent that is no message of ROS."""
         name = f"{PACKETS}{f'0x{seen.msg_id:04X}' if declared is None else declared.name}"
-        channel = self._packets.get(name) or self._packet(name, declared, seen.msg_id)
+        channel = self._packets.get(name) or self._packet(name, declared)
         if channel.is_heard:
-            self.sent += channel.show(packet_json(seen, self._dictionary.decode(seen.packet)), time_ns)
+            channel.show(packet_json(seen, self._dictionary.decode(seen.packet)), time_ns)
         if seen.msg_id in EVENT_IDS and self._events.is_heard:
             self._show_event(seen, time_ns)
 
@@ -155,18 +150,16 @@ class ShownChannels:
             event = DecodedEvent.of(seen)
         except (CfeError, UsageError):
             return  # an application has sent something else on this MsgId, which the packet's own channel shows
-        self.sent += self._events.show(event_json(event, time_ns), time_ns)
+        self._events.show(event_json(event, time_ns), time_ns)
 
-    def _packet(self, name: str, declared: Command | Telemetry | None, msg_id: int) -> ShownChannel:
-        title = name[1:].replace("/", ".")
-        made = self._json(name, title, packet_schema(name, declared), {"msg_id": f"0x{msg_id:04X}"})
-        self._packets[name] = made
+    def _packet(self, name: str, declared: Command | Telemetry | None) -> ShownChannel:
+        made = self._packets[name] = self._json(name, name[1:].replace("/", "."), packet_schema(name, declared))
         return made
 
-    def _json(self, name: str, title: str, schema: bytes, about: Mapping[str, str]) -> ShownChannel:
-        return self._keep(name, self._make(name, "json", (title, "jsonschema", schema), about))
+    def _json(self, name: str, title: str, schema: bytes) -> ShownChannel:
+        return self._new(name, JSON, (title, JSON_SCHEMA, schema.decode()))
 
-    def _keep(self, name: str, channel: Any) -> ShownChannel:
-        made = ShownChannel(name, channel, self._listeners, self._counts)
-        self._by_id[made.id] = made
+    def _new(self, topic: str, encoding: str, schema: tuple[str, str, str]) -> ShownChannel:
+        made = ShownChannel(next(self._numbers), topic, encoding, schema, self._counts)
+        self._server.advertise(made)
         return made

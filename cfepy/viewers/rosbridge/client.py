@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import json
 import time
-from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cfepy.io import INTO, OUT_OF, PeerCounts
 from cfepy.status import UsageError
@@ -21,15 +20,11 @@ from cfepy.viewers.rosbridge.outgoing import Outgoing
 from cfepy.viewers.rosbridge.rosapi import Rosapi
 from cfepy.viewers.rosbridge.rosauth import MacCheck
 from cfepy.viewers.rosbridge.sending import CBOR_RAW, LONGEST_QUEUE, NONE, Pacing, Wish
-from cfepy.viewers.rosbridge.websocket import LONGEST_MESSAGE
+from cfepy.viewers.websocket import LONGEST_MESSAGE, WebSocket
 from rospy_shim.genpy import DeserializationError
-
-if TYPE_CHECKING:
-    from cfepy.viewers.rosbridge.websocket import WebSocket
 
 LEVELS = ("none", "error", "warning", "info")
 """Of `status`, from the one that tells least."""
-MOST_OPS = 256  # of a client between two pieces of the run; the others wait
 MOST_CALLS = 1000  # of a client that wait for their answers
 MOST_TOPICS = 1000  # that a client publishes, and that it hears
 MOST_PATIENCE_S = 1.0  # wall time for which the mission may be full, before a message is lost
@@ -67,8 +62,6 @@ class RosbridgeClient:
         self._fragment_size: int | None = None
         self._fragment_number = 0
         self._assembly = Assembly(LONGEST_MESSAGE)
-        self._coming: deque[str | bytes] = deque()
-        self._left = MOST_OPS
         self._stalled: tuple[str, bytes, float] | None = None  # topic, message, since when
         self._advertised: dict[str, set[object]] = {}  # by topic: ids
         self._published: set[str] = set()  # topics that it publishes or has published
@@ -95,37 +88,32 @@ class RosbridgeClient:
 
     # -- what comes ----------------------------------------------------------------------------------------------------
 
-    def take(self, message: str | bytes) -> None:
-        """A message of the client's has come."""
-        self._coming.append(message)
-        self._work()
+    @property
+    def is_ready(self) -> bool:
+        """Whether there is room in the mission for what the client asks for."""
+        return self._stalled is None
 
     @property
-    def is_behind(self) -> bool:
-        """Whether something waits that could be done at once."""
-        return bool(self._coming) and self._stalled is None
+    def has_more(self) -> bool:
+        """Whether it has messages that wait for room: the connection itself has them."""
+        return False
 
-    def _work(self) -> None:
-        """Do what the client asks for, as long as the mission has room and it is not too much for once."""
-        while self._coming and self._left and self._stalled is None and self.socket.is_open:
-            self._left -= 1
-            self._incoming(self._coming.popleft())
-        if self._coming or self._stalled is not None:
-            self.socket.pause()
-        else:
-            self.socket.resume()
+    def begin(self, connection: WebSocket) -> None:
+        """The connection is there."""
+        self.socket = connection
+        self._counts.of(CONNECTION, self._peer, INTO).connections += 1
 
     def go_on(self, now_s: float) -> None:
-        """Go on with what the client asks for, after a piece of the run; send what has waited for its time."""
-        self._left = MOST_OPS
-        if self._stalled is None or self._enter(*self._stalled, now_s):
-            self._work()
+        """After a piece of the run: let in what the mission had no room for, and send what has waited for its time."""
+        if self._stalled is not None:
+            self._enter(*self._stalled, now_s)
         for by_name in list(self._hears.values()):
             for name, pacing in by_name.items():
                 while (message := pacing.due(now_s)) is not None:
                     self._tell(name, pacing, message)
 
-    def _incoming(self, message: str | bytes) -> None:
+    def take(self, message: str | bytes) -> None:
+        """A message of the client's has come."""
         count = self._counts.of(CONNECTION, self._peer, INTO)
         count.messages += 1
         count.size += len(message)
@@ -233,10 +221,10 @@ class RosbridgeClient:
         self._stalled = (topic, payload, now_s)
         self._enter(topic, payload, now_s, now_s)
 
-    def _enter(self, topic: str, payload: bytes, since_s: float, now_s: float) -> bool:
-        """Let a message in, if the mission has room for it, or has had none for too long; whether it is done."""
+    def _enter(self, topic: str, payload: bytes, since_s: float, now_s: float) -> None:
+        """Let a message in, if the mission has room for it, or has had none for too long."""
         if not self._node.has_room(topic, payload) and now_s - since_s < MOST_PATIENCE_S:
-            return False
+            return
         self._stalled = None
         count = self._counts.of(topic, self._peer, INTO)
         count.messages += 1
@@ -245,7 +233,6 @@ class RosbridgeClient:
             count.dropped += 1
             count.why = f"the Software Bus did not take a message of {topic}"
             self._status("error", f"publish: {count.why}")
-        return True
 
     # -- topics that it hears ------------------------------------------------------------------------------------------
 
@@ -387,7 +374,7 @@ class RosbridgeClient:
     def _fragment(self, op: Op) -> None:
         whole = self._assembly.add(op, time.monotonic())
         if whole is not None:
-            self._coming.appendleft(whole)
+            self.take(whole)
 
     def _set_level(self, op: Op) -> None:
         level = op.get("level")
@@ -407,7 +394,6 @@ class RosbridgeClient:
         count = self._counts.of(CONNECTION, self._peer, INTO)
         count.refused += 1
         count.why = why
-        self._coming.clear()
         self.socket.close(POLICY, why)
 
     def gone(self, why: str) -> None:
@@ -424,7 +410,6 @@ class RosbridgeClient:
             self._node.unadvertise(self, topic, now_s)
         self._published.clear()
         self._advertised.clear()
-        self._coming.clear()
         self._stalled = None
         count = self._counts.of(CONNECTION, self._peer, INTO)
         count.ended += 1

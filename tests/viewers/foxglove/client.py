@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Callable
-from typing import Any
+from concurrent.futures import ThreadPoolExecutor, wait
+from functools import partial
+from typing import Any, TypeVar
 
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
@@ -13,6 +15,7 @@ from websockets.typing import Subprotocol
 PROTOCOL = Subprotocol("foxglove.sdk.v1")
 WAIT_S = 0.001  # for what comes, before the run goes on
 PATIENCE_S = 20.0  # of a test that hangs
+T = TypeVar("T")
 
 
 class FoxgloveClient:
@@ -42,13 +45,26 @@ class FoxgloveClient:
         self._meanwhile = meanwhile
         # Behind a full queue it would wait ten seconds for the end of a connection that it closes.
         options = {"max_size": None, "max_queue": None, "legacy": True, **options}
-        self.socket: ClientConnection = connect(url, subprotocols=[PROTOCOL], **options)
+        self.socket: ClientConnection = self._served(partial(connect, url, subprotocols=[PROTOCOL], **options))
 
     def __enter__(self) -> FoxgloveClient:
         return self
 
     def __exit__(self, *error: object) -> None:
-        self.socket.close()
+        self.close()
+
+    def close(self) -> None:
+        """End the connection, as the protocol has it."""
+        self._served(self.socket.close)
+
+    def _served(self, step: Callable[[], T]) -> T:
+        """Do something that waits for the server, which answers when the run goes on."""
+        with ThreadPoolExecutor(1) as aside:
+            done = aside.submit(step)
+            while not done.done():
+                self._meanwhile()
+                wait([done], WAIT_S)
+            return done.result()
 
     # -- what it sends -------------------------------------------------------------------------------------------------
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -15,7 +16,7 @@ from cfepy.mission import Mission, MissionSpec
 from cfepy.nodes.config import RosConfig
 from cfepy.viewers.foxglove import FoxgloveViewer
 from cfepy.viewers.listen import Admission, ListenPlace
-from tests.viewers.foxglove.client import FoxgloveClient
+from tests.viewers.foxglove.client import PATIENCE_S, PROTOCOL, WAIT_S, FoxgloveClient
 
 TALKER = """
     import rospy
@@ -70,6 +71,30 @@ class ShownRun:
     def client(self, **options: Any) -> FoxgloveClient:
         """A viewer; the run goes on while it waits."""
         return FoxgloveClient(self.url, self.go_on, **options)
+
+    def shake_hands(self, peer: socket.socket) -> None:
+        """Become the only viewer, without a library that reads what comes."""
+        lines = ("GET / HTTP/1.1", f"Host: {self.viewer.place}", "Upgrade: websocket", "Connection: Upgrade")
+        lines += ("Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Version: 13")
+        lines += (f"Sec-WebSocket-Protocol: {PROTOCOL}", "", "")
+        peer.sendall("\r\n".join(lines).encode())
+        while not self.viewer._server.viewers:
+            self.go_on()
+
+    def until_it_ends(self, peer: socket.socket) -> None:
+        """The run goes on until the server has ended a connection."""
+        peer.settimeout(WAIT_S)
+        left = int(PATIENCE_S / WAIT_S)
+        while left:
+            self.go_on()
+            try:
+                if not peer.recv(65_536):
+                    return
+            except TimeoutError:
+                left -= 1
+            except ConnectionError:
+                return  # reset, as the server did not want the rest
+        raise AssertionError("the connection does not end")
 
     def rows(self) -> dict[tuple[str, str], dict[str, Any]]:
         """The report's rows by name and direction."""

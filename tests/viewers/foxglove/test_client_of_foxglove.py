@@ -44,7 +44,7 @@ def test_foxgloves_own_client_sees_decodes_sets_publishes_and_calls(tmp_path: Pa
         done = subprocess.run(client, capture_output=True, text=True, env=environ, timeout=4 * PATIENCE_S)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout) == {
-        "older": "Unexpected server response: 400",  # the subprotocol that the library names, an older one
+        "protocols": ["foxglove.websocket.v1", "foxglove.sdk.v1", "Unexpected server response: 400"],
         "capabilities": ["clientPublish", "connectionGraph", "parameters", "parametersSubscribe", "services", "time"],
         "channel": ["ros1", "ros1msg", "std_msgs/String"],
         "fields": ["string data"],
@@ -56,7 +56,7 @@ def test_foxgloves_own_client_sees_decodes_sets_publishes_and_calls(tmp_path: Pa
         "loud": "LOUD",
         "event": "CFE_ES",
         "on": {"success": True, "message": "on"},
-        "off": "RuntimeError: error processing request: off is not possible",
+        "off": "error processing request: off is not possible",
         "publishers": ["/robot"],
         "time": "bigint",
         "errors": [],

@@ -249,12 +249,13 @@ def test_at_the_end_everything_is_out(tmp_path: Path) -> None:
     with shown(spec_of(tmp_path, {"talker": TALKER})) as run:
         client = run.client()
         client.subscribe("/cfe/events")
-        client.wait_for(lambda: run.viewer._listener.listeners)
+        client.wait_for(lambda: run.viewer._channels._events.is_heard)
         run.until(2)
         run.viewer.close()
         client.take_rest()
-        row = run.rows()["(connections)", "out"]
+        row = run.rows()["/cfe/events", "out"]
         assert (row["messages"], row["dropped"]) == (len(client.messages), 0)
+        row = run.rows()["(connections)", "out"]
         assert (row["connections"], row["ended"], row["refused"]) == (1, 1, 0)
 
 

@@ -27,10 +27,10 @@ class Came {
   }
 }
 
-/** The protocol that a server agrees to, or why it does not. */
+/** The protocol of those asked for that a server agrees to, or why it agrees to none. */
 function protocolOf(asked) {
   return new Promise((done) => {
-    const socket = new WebSocket(url, [asked]);
+    const socket = new WebSocket(url, asked);
     socket.on("open", () => (done(socket.protocol), socket.close()));
     socket.on("error", (error) => done(error.message));
   });
@@ -42,8 +42,10 @@ async function main() {
     console.error("what comes next never came:", found);
     process.exit(1);
   }, PATIENCE_MS).unref();
-  found.older = await protocolOf(FoxgloveClient.SUPPORTED_SUBPROTOCOL);
-  const client = new FoxgloveClient({ ws: new WebSocket(url, ["foxglove.sdk.v1"]) });
+  const protocol = FoxgloveClient.SUPPORTED_SUBPROTOCOL;
+  const both = protocolOf([protocol, "foxglove.sdk.v1"]); // as Foxglove itself asks
+  found.protocols = [await protocolOf([protocol]), await both, await protocolOf(["another"])];
+  const client = new FoxgloveClient({ ws: new WebSocket(url, [protocol]) });
   const errors = new Came(client, "error");
   const came = {};
   for (const kind of ["serverInfo", "advertise", "advertiseServices", "message", "time", "parameterValues",

@@ -30,7 +30,7 @@ def _session(run: Bridged) -> None:
     while client.next().get("id") != "last":
         pass
     client.close()
-    run.run_while(lambda: bool(run.server._clients))
+    run.run_while(lambda: bool(run.server._listener.clients))
 
 
 def _nonsense(run: Bridged, numbers: random.Random, count: int) -> None:
@@ -61,7 +61,7 @@ def _nonsense(run: Bridged, numbers: random.Random, count: int) -> None:
         if numbers.random() < 0.2:
             run.step()
     client.close()
-    run.run_while(lambda: bool(run.server._clients))
+    run.run_while(lambda: bool(run.server._listener.clients))
 
 
 def _held() -> tuple[int, int, int]:

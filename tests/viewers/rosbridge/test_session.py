@@ -106,7 +106,7 @@ def test_a_caller_that_leaves_is_forgotten(tmp_path: Path) -> None:
         asker.send(op="call_service", service="/mine")
         request = server.next()
         asker.close()
-        run.run_while(lambda: len(run.server._clients) > 1)
+        run.run_while(lambda: len(run.server._listener.clients) > 1)
         values = {"success": True, "message": "too late"}
         server.send(op="service_response", service="/mine", id=request["id"], values=values, result=True)
         assert server.call("/rosapi/get_param", "/none") == {"value": "null"}

@@ -15,11 +15,12 @@ import pytest
 
 from cfepy.io import PeerCounts
 from cfepy.status import UsageError
+from cfepy.viewers import websocket_listener as listener_module
 from cfepy.viewers.listen import Admission, ListenPlace
 from cfepy.viewers.rosbridge import bridge_node
 from cfepy.viewers.rosbridge import client as client_module
-from cfepy.viewers.rosbridge import server as server_module
 from cfepy.viewers.rosbridge.rosauth import MacCheck
+from cfepy.viewers.rosbridge.server import RosbridgeServer
 from tests.ros_host.peers import TALKER
 from tests.viewers.rosbridge.bridged import LOOPBACK, Bridged, bridged
 
@@ -298,7 +299,7 @@ def test_auth_is_not_needed_without_a_token(talker: Bridged) -> None:
 
 
 def test_no_more_clients_than_there_is_room_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server_module, "MOST_CLIENTS", 2)
+    monkeypatch.setattr(listener_module, "MOST_CLIENTS", 2)
     with bridged(tmp_path, {"TALKER": TALKER}) as run:
         clients = [run.client() for _ in range(3)]
         assert [each.is_open for each in clients] == [True, True, False]
@@ -317,7 +318,7 @@ def test_who_asks_for_nothing_is_dropped(tmp_path: Path, monkeypatch: pytest.Mon
         stranger.sendall(b"GET / HTTP/1.1\r\n")
         for _ in range(20):
             run.step()
-        monkeypatch.setattr(server_module, "HANDSHAKE_S", 0.0)
+        monkeypatch.setattr(listener_module, "HANDSHAKE_S", 0.0)
         assert _sent_until_over(run, stranger, b"") == b""
         stranger.close()
 
@@ -351,7 +352,7 @@ def test_a_message_waits_until_the_mission_has_room(tmp_path: Path, monkeypatch:
 
 
 def test_a_flood_does_not_hold_up_the_run(talker: Bridged, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(client_module, "MOST_OPS", 10)
+    monkeypatch.setattr(listener_module, "MOST_MESSAGES", 10)
     client = talker.client()
     for _ in range(100):
         client.text("nonsense")
@@ -386,7 +387,7 @@ def test_a_client_that_does_not_read_loses_its_own_messages_alone(
             quick.send(op="publish", topic="/orders", msg={"data": f"{number}:" + "x" * 100_000})
             assert quick.next()["msg"]["data"].startswith(f"{number}:")
         slow.close()
-        run.run_while(lambda: len(run.server._clients) > 1)
+        run.run_while(lambda: len(run.server._listener.clients) > 1)
         rows = {(row["name"], row["direction"]): row for row in run.counts.rows()}
         assert rows["(connections)", "out"]["dropped"] > 0
         assert rows["/orders", "in"]["dropped"] == 0
@@ -411,6 +412,6 @@ def test_a_burst_is_held_back_and_nothing_of_it_is_lost(tmp_path: Path, monkeypa
 
 
 def test_a_system_without_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server_module, "DefaultSelector", selectors.SelectSelector)
+    monkeypatch.setattr(listener_module, "DefaultSelector", selectors.SelectSelector)
     with pytest.raises(UsageError, match="--rosbridge: needs epoll or kqueue"):
-        server_module.RosbridgeServer(ListenPlace(LOOPBACK, 0), Admission(), PeerCounts())
+        RosbridgeServer(ListenPlace(LOOPBACK, 0), Admission(), PeerCounts())

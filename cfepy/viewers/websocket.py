@@ -7,13 +7,12 @@ happens between two pieces of a run.
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from http import HTTPStatus
 from selectors import BaseSelector
 from typing import TYPE_CHECKING, Any
 
 from cfepy.io import PeerSocket
-from cfepy.status import UsageError
 
 if TYPE_CHECKING:
     from websockets.frames import Frame
@@ -26,15 +25,9 @@ OPEN = "OPEN"
 
 
 def protocols() -> Any:
-    """The module `websockets.server`.
+    """The module `websockets.server`; ImportError without the package websockets."""
+    from websockets import server
 
-    Raises:
-        UsageError: the package is not installed.
-    """
-    try:
-        from websockets import server
-    except ImportError:
-        raise UsageError("needs the package websockets: pip install 'cfepy[web]'", field="--rosbridge") from None
     return server
 
 
@@ -45,8 +38,10 @@ class WebSocket:
         selector: of the server.
         connected: the socket.
         refusal: says why a request is refused, with the HTTP status; None takes it.
+        began: called once, when messages may be sent.
         take: gets each message, a text or bytes.
         gone: called once, when the connection is over; takes why.
+        subprotocols: one of which the request has to name, the best first; none if it need not.
         longest: bytes of a message.
     """
 
@@ -55,12 +50,15 @@ class WebSocket:
         selector: BaseSelector,
         connected: socket.socket,
         refusal: Callable[[Request], tuple[HTTPStatus, str] | None],
+        began: Callable[[], object],
         take: Callable[[str | bytes], object],
         gone: Callable[[str], object],
+        subprotocols: Sequence[str] = (),
         longest: int = LONGEST_MESSAGE,
     ) -> None:
-        self._protocol = protocols().ServerProtocol(max_size=longest)
+        self._protocol = protocols().ServerProtocol(subprotocols=list(subprotocols) or None, max_size=longest)
         self._refusal = refusal
+        self._began = began
         self._take = take
         self._gone = gone
         self._parts: list[bytes] = []  # of a message that comes in more than one frame
@@ -79,6 +77,11 @@ class WebSocket:
         """Whether messages wait for the client to read."""
         return self._socket.is_full
 
+    @property
+    def unread(self) -> int:
+        """Messages that wait for the client to read, besides one that is on its way."""
+        return self._socket.waiting
+
     def send(self, message: str | bytes) -> None:
         """Send a message, now or as soon as there is room."""
         if not self.is_open or self._protocol.state.name != OPEN:
@@ -88,6 +91,10 @@ class WebSocket:
         else:
             self._protocol.send_binary(message)
         self._flush()
+
+    def flush(self) -> None:
+        """Try again to send what waits."""
+        self._socket.flush()
 
     def pause(self) -> None:
         """Leave what comes with the client, for now."""
@@ -147,6 +154,7 @@ class WebSocket:
         protocol.send_response(response)
         if response.status_code == HTTPStatus.SWITCHING_PROTOCOLS:
             self.is_open = True
+            self._began()
         else:
             self._flush()
             self._end(response.body.decode(errors="replace").strip() if response.body else response.reason_phrase)
