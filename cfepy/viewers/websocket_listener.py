@@ -36,7 +36,7 @@ NO_REQUEST = "that was no request for a WebSocket"
 Refusal = tuple[HTTPStatus, str]
 
 
-class Client(Protocol):
+class ConnectedClient(Protocol):
     """What the owner of a listener has for each connection."""
 
     @property
@@ -60,7 +60,7 @@ class Client(Protocol):
         """The connection is over; of those that began alone."""
 
 
-C = TypeVar("C", bound=Client)
+C = TypeVar("C", bound=ConnectedClient)
 T = TypeVar("T")
 
 

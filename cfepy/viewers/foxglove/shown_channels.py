@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import count
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cfepy.ground import (
     EVENT_IDS,
@@ -27,9 +27,7 @@ from cfepy.msg import Command, Telemetry
 from cfepy.status import CfeError, UsageError
 from cfepy.viewers.foxglove.protocol import JSON, JSON_SCHEMA, ROS1, ROS1_SCHEMA
 from cfepy.viewers.foxglove.viewer import PEER, Viewer
-
-if TYPE_CHECKING:
-    from cfepy.viewers.foxglove.viewer_server import ViewerServer
+from cfepy.viewers.foxglove.viewer_server import ViewerServer
 
 
 class ShownChannel:

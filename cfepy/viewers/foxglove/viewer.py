@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from cfepy.io import INTO, OUT_OF, PeerCount, PeerCounts
 from cfepy.viewers.foxglove.protocol import (
@@ -23,7 +23,6 @@ from cfepy.viewers.foxglove.protocol import (
 )
 
 if TYPE_CHECKING:
-    from cfepy.viewers.foxglove.shown_channels import ShownChannel
     from cfepy.viewers.websocket import WebSocket
 
 PEER = "foxglove"
@@ -34,6 +33,27 @@ MOST_UNREAD = 900  # of what is not to be lost; the socket keeps few more
 TOO_MUCH = 1008  # RFC 6455, 7.4.1
 LOST = "lost on the way to viewers that are too slow, or left"
 LONGEST_TROUBLE = 200  # characters
+
+
+class ViewerChannel(Protocol):
+    """What a viewer may subscribe to.
+
+    Attributes:
+        number: of the channel, no other's.
+        topic: its name.
+        viewers: those that have subscribed, with the numbers of their subscriptions.
+    """
+
+    number: int
+    topic: str
+    viewers: dict[Viewer, int]
+
+    @property
+    def description(self) -> dict[str, Any]:
+        """The channel as it is advertised."""
+
+    def greet(self, viewer: Viewer) -> None:
+        """A viewer has subscribed."""
 
 
 class _Waiting(NamedTuple):
@@ -63,7 +83,7 @@ class Viewer:
     def __init__(
         self,
         counts: PeerCounts,
-        channel: Callable[[int], ShownChannel | None],
+        channel: Callable[[int], ViewerChannel | None],
         welcome: Callable[[Viewer], object],
         do: Callable[[Viewer, Op], object],
         farewell: Callable[[Viewer], object],
@@ -76,7 +96,7 @@ class Viewer:
         self._do = do
         self._farewell = farewell
         self._connection: WebSocket
-        self._subscribed: dict[int, ShownChannel] = {}  # by the viewer's own number
+        self._subscribed: dict[int, ViewerChannel] = {}  # by the viewer's own number
         self._waiting: deque[_Waiting] = deque()
         self._size = 0
 
@@ -84,17 +104,17 @@ class Viewer:
 
     @property
     def is_ready(self) -> bool:
-        """See `Client.is_ready`: what it publishes waits elsewhere for room."""
+        """See `ConnectedClient.is_ready`: what it publishes waits elsewhere for room."""
         return True
 
     def begin(self, connection: WebSocket) -> None:
-        """See `Client.begin`."""
+        """See `ConnectedClient.begin`."""
         self._connection = connection
         self._counts.of(ALL, PEER, OUT_OF).connections += 1
         self._welcome(self)
 
     def take(self, message: str | bytes) -> None:
-        """See `Client.take`."""
+        """See `ConnectedClient.take`."""
         try:
             ops = ops_of(message)
         except FrameError as error:
@@ -118,7 +138,7 @@ class Viewer:
         self.tell(status(ERROR, what))
 
     def gone(self, why: str) -> None:
-        """See `Client.gone`."""
+        """See `ConnectedClient.gone`."""
         for number in list(self._subscribed):
             self._unsubscribe(number)
         row = self._counts.of(ALL, PEER, OUT_OF)
@@ -145,7 +165,7 @@ class Viewer:
             del channel.viewers[self]
             self._forget(channel.number)
 
-    def ends(self, channel: ShownChannel) -> None:
+    def ends(self, channel: ViewerChannel) -> None:
         """There is no such channel any more."""
         number = channel.viewers.get(self)
         if number is not None:
@@ -170,7 +190,7 @@ class Viewer:
         if not self._connection.is_slow:
             self._connection.send(message)
 
-    def show(self, channel: ShownChannel, number: int, data: bytes, time_ns: int, row: PeerCount) -> None:
+    def show(self, channel: ViewerChannel, number: int, data: bytes, time_ns: int, row: PeerCount) -> None:
         """Send a message of a channel, or let it wait; `number` is that of the subscription."""
         message = _Waiting(channel.number, message_head(number, time_ns) + data, len(data), row)
         if not self._waiting and not self._connection.is_slow:
@@ -184,11 +204,11 @@ class Viewer:
 
     @property
     def has_more(self) -> bool:
-        """See `Client.has_more`."""
+        """See `ConnectedClient.has_more`."""
         return bool(self._waiting)
 
     def go_on(self, now_s: float) -> None:
-        """See `Client.go_on`."""
+        """See `ConnectedClient.go_on`."""
         connection = self._connection
         if connection.unread >= MOST_UNREAD or connection.dropped:
             connection.close(TOO_MUCH, "too much is unread")

@@ -25,14 +25,12 @@ from cfepy.viewers.foxglove.protocol import (
     text,
     time_message,
 )
-from cfepy.viewers.foxglove.viewer import ALL, PEER, Viewer
+from cfepy.viewers.foxglove.viewer import ALL, PEER, Viewer, ViewerChannel
 from cfepy.viewers.listen import Admission, ListenPlace
 from cfepy.viewers.websocket_listener import Refusal, WebSocketListener, token_of
 
 if TYPE_CHECKING:
     from websockets.http11 import Request
-
-    from cfepy.viewers.foxglove.shown_channels import ShownChannel
 
 OPTION, EXTRA = "--foxglove", "viz"
 APPS = ("https://app.foxglove.dev", "https://studio.foxglove.dev")
@@ -76,7 +74,7 @@ class ViewerServer:
         self._do = do
         self._gone = gone
         self._service_numbers = count(1)
-        self._channels: dict[int, ShownChannel] = {}
+        self._channels: dict[int, ViewerChannel] = {}
         self._services: dict[int, dict[str, Any]] = {}
         self._graph = NOTHING
         self._listener = WebSocketListener(
@@ -156,12 +154,12 @@ class ViewerServer:
         for viewer in self.viewers:
             viewer.tell(message)
 
-    def advertise(self, channel: ShownChannel) -> None:
+    def advertise(self, channel: ViewerChannel) -> None:
         """There is a new channel; its number is no other's."""
         self._channels[channel.number] = channel
         self._tell(text("advertise", channels=[channel.description]))
 
-    def unadvertise(self, channel: ShownChannel) -> None:
+    def unadvertise(self, channel: ViewerChannel) -> None:
         """There is no such channel any more."""
         del self._channels[channel.number]
         for viewer in list(channel.viewers):
