@@ -70,6 +70,7 @@ def test_an_import_loads_next_to_nothing() -> None:
     assert [name for name in done.stdout.split() if name.startswith("cfepy")] == ["cfepy", "cfepy.faces"]
 
 
+@pytest.mark.slow
 def test_the_guide_s_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.copytree(MISSIONS / "lost_update", tmp_path / "lost_update")
     monkeypatch.chdir(tmp_path)

@@ -100,6 +100,7 @@ def test_without_the_guard_it_goes_unnoticed(tmp_path: Path, name: str, capsys: 
     assert fly(tmp_path, Bug(RUN, ()), capsys)[0] == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("flags", [(), ("-DMENDED",)])
 def test_what_was_never_written_makes_two_runs_differ(tmp_path: Path, flags: tuple[str, ...], capsys: Any) -> None:
     """With and without the guard an application sends the same, unless it sends what it never wrote."""

@@ -90,6 +90,7 @@ def test_several_series_in_one_file_and_in_a_folder(
     assert capsys.readouterr().out == ""
 
 
+@pytest.mark.slow
 def test_parquet_has_the_same_values(
     sources: dict[str, list[str]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

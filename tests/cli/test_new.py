@@ -27,6 +27,7 @@ def test_it_runs_at_once(kind: str, name: str, capsys: pytest.CaptureFixture[str
     assert "initialized, version" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "name"), KINDS)
 def test_its_own_tests_pass(kind: str, name: str) -> None:
     main(["new", kind, name])

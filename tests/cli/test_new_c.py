@@ -33,6 +33,7 @@ def test_it_is_built_and_flies(capsys: pytest.CaptureFixture[str]) -> None:
     assert "THERMAL initialized" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_its_own_tests_pass() -> None:
     main(["new", "app", "--c", "thermal"])
     root = Path(__file__).parents[2]

@@ -83,9 +83,10 @@ def test_a_failure_replays_to_its_digest(plan: RunPlan) -> None:
     assert report.trial.run(deviations).trace == first.trace
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("policy", "seeds"),
-    [("pct", 10), pytest.param("dfs", 60, marks=pytest.mark.slow), pytest.param("all", 10, marks=pytest.mark.slow)],
+    [("pct", 10), ("dfs", 60), ("all", 10)],
 )
 def test_every_policy_draws_delays(plan: RunPlan, policy: str, seeds: int) -> None:
     assert [told.finding.failure.kind for told in explored(plan, policy, seeds).findings] == ["ended with an error"]

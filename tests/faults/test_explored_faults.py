@@ -80,6 +80,7 @@ def explored(plan: RunPlan, policy: str = "all", seeds: int = 60, depth: int | N
     return Expedition(plan, seeds=seeds, policy=policy, depth=depth, jobs=1, until_failure=True).run()
 
 
+@pytest.mark.slow
 def test_a_crash_between_two_steps_is_found_and_shrunk_to_itself(tmp_path: Path) -> None:
     (told,) = explored(plan_of(tmp_path, CRASH)).findings
     assert told.finding.failure.kind == INVARIANT

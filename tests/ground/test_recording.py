@@ -416,6 +416,7 @@ def test_an_index_that_is_damaged_renames_no_topic(suffix: str, kind: str, folde
     assert read(left) == read(file)
 
 
+@pytest.mark.slow
 @NOT_PACKED
 def test_a_damaged_record_behind_a_message_does_not_take_it_along(suffix: str, folder: Path, tmp_path: Path) -> None:
     """The message before the last one of a chunk, and the last one, before which an index begins."""

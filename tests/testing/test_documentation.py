@@ -14,6 +14,7 @@ TEXT = (ROOT / "docs/testing.md").read_text()
 EXAMPLES = re.findall(r"^```python\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
 
 
+@pytest.mark.slow
 def test_its_examples_pass(pytester: pytest.Pytester, loaded: None) -> None:
     tests = pytester.path / "tests"
     shutil.copytree(PROBE / "mission", pytester.path / "mission")

@@ -287,6 +287,7 @@ COMPILED = (ROOT / "missions/cfs/startup.scr",)
 """A mission of NASA's applications, whose shared objects are not in this repository."""
 
 
+@pytest.mark.slow
 def test_the_missions_of_this_repository_are_good() -> None:
     assert [problem for script in SCRIPTS if script not in COMPILED for problem in check_mission(str(script))] == []
     assert len(SCRIPTS) > 30
