@@ -64,7 +64,7 @@ LIBRARY = """
 
 
 @pytest.mark.parametrize("tasks", ["thread", pytest.param("greenlet", marks=pytest.mark.slow)])
-@pytest.mark.parametrize("link", LINKS)
+@pytest.mark.parametrize("link", ["static", pytest.param("shared", marks=pytest.mark.slow)])
 def test_the_standard_library_and_exceptions(tmp_path: Path, link: str, tasks: str) -> None:
     compile_cpp(tmp_path, "TEST", LIBRARY, *LINKS[link])
     folder = write_mission(tmp_path, "TEST")

@@ -72,6 +72,7 @@ def test_a_message_that_nobody_was_there_for_is_found_and_shrunk(plan: RunPlan) 
     assert report.to_dict()["failures"][0]["shrunk"]["moves"][0]["question"] == "slow connection"
 
 
+@pytest.mark.slow
 def test_a_failure_replays_to_its_digest(plan: RunPlan) -> None:
     report = explored(plan, "random", 10)
     (told,) = report.findings

@@ -45,7 +45,13 @@ def test_worker_processes_find_what_this_process_finds() -> None:
     assert len({verdict.schedule for verdict in told}) == 6
 
 
-@pytest.mark.parametrize("text", ["random:3", "pct:3:3:60:hold=1ms", "random:4:from=600ms"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "random:3",
+        *(pytest.param(text, marks=pytest.mark.slow) for text in ("pct:3:3:60:hold=1ms", "random:4:from=600ms")),
+    ],
+)
 def test_a_schedule_is_one_run_in_any_process_on_any_context_under_any_hash_seed(text: str, tmp_path: Path) -> None:
     schedule = Schedule.parse(text)
     bank = missions.write(tmp_path, {"BANK": missions.LOST_UPDATE})

@@ -40,7 +40,9 @@ def test_a_search_to_a_depth_says_so() -> None:
     assert not any("no others" in line for line in report.breadth.lines())
 
 
-@pytest.mark.parametrize(("name", "orders"), [("lock_order", 7), ("mutex_order", 6)])
+@pytest.mark.parametrize(
+    ("name", "orders"), [("lock_order", 7), pytest.param("mutex_order", 6, marks=pytest.mark.slow)]
+)
 def test_all_orders_of_two_locks(name: str, orders: int) -> None:
     report = explored(name)
     seen = report.breadth.seen

@@ -9,7 +9,7 @@ import pytest
 from tests.fuzz.kinds import KINDS
 from tests.fuzz.runs import failures
 
-SLOW = {"mission": 3, "table": 5, "table-yaml": 5, "launch": 10, "service-definition": 10}
+SLOW = {"mission": 3, "table": 5, "table-yaml": 5, "launch": 10, "service-definition": 10, "manifest": 10}
 """Kinds of which a case takes long, and how many of them are done here."""
 
 

@@ -63,7 +63,7 @@ class LongPiece(PressedInTheBus):
             self._clocks.wait_for_looks()
 
 
-@TASKS
+@pytest.mark.parametrize("tasks", ["thread", pytest.param("greenlet", marks=pytest.mark.slow)])
 def test_a_flight_goes_on_after_it_however_busy_the_computer_is(tasks: str, monkeypatch: pytest.MonkeyPatch) -> None:
     with cfepy.boot("capture", tasks=tasks) as usual:
         usual.run_until(2)

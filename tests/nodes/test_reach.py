@@ -129,7 +129,13 @@ LEADING = [
 NOT_LEADING = [not_at_all, Thing, threading, threading.Thread(), "THING", weakref.ref(Thing()), len, Literal["up"]]
 
 
-@pytest.mark.parametrize("root", LEADING, ids=range(len(LEADING)))
+@pytest.mark.parametrize(
+    "root",
+    [
+        pytest.param(root, id=str(number), marks=[pytest.mark.slow] * (root in (by_anything, sys.modules[__name__])))
+        for number, root in enumerate(LEADING)
+    ],
+)
 def test_a_way_leads_there(root: object) -> None:
     assert reaches([root], THING)
     assert not reaches([root], object())

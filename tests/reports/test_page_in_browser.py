@@ -21,7 +21,10 @@ from tests.reports.conftest import Shown
 
 NEEDS = "needs a browser: install the package chromium"
 IS_REQUIRED = os.environ.get("CFEPY_BROWSER") == "required"  # as .ci/run says where it has installed one
-pytestmark = pytest.mark.skipif(find_browser() is None and not IS_REQUIRED, reason=NEEDS)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(find_browser() is None and not IS_REQUIRED, reason=NEEDS),
+]
 
 
 @pytest.fixture(scope="module")
@@ -251,7 +254,6 @@ def test_it_fits_and_can_be_read(opened: Browser, width: int, scheme: str) -> No
     opened.prefer("light")
 
 
-@pytest.mark.slow
 def test_a_minute_of_capture_is_small_and_quick(browser: Browser, tmp_path: Path) -> None:
     collector, recorder = Collector(), SeriesRecorder(most=10_000)
     flown = looked_at.fly("capture", collector, recorder, seconds=60)

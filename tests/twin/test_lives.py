@@ -11,7 +11,7 @@ from tests.twin.flight import differences
 from tests.twin.lives import LivesCommander
 from tests.twin.lives_flight import settled, simulated
 
-RELEASES = ("7.0.0", "7.0.1")
+RELEASES = ("7.0.0", pytest.param("7.0.1", marks=pytest.mark.slow))
 ORDINARY = 25
 """Steps that every run of the tests flies; the slow ones fly all."""
 
