@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import socket
 import subprocess
 import sys
 import tempfile
@@ -25,6 +24,7 @@ from benchmarks.measure import rate
 from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
 from cfepy.nodes import NodeConfig
+from tests.host_ports import free_port
 from tests.twin.real import VARIABLE, RealCfe, installed
 
 HERE = Path(__file__).parent
@@ -93,8 +93,7 @@ def with_master() -> Iterator[dict[str, str] | None]:
         print("  no rospy of Debian (python3-rospy, python3-rosmaster): left out", file=sys.stderr)
         yield None
         return
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port = probe.getsockname()[1]
+    port = free_port()
     environ = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_IP": "127.0.0.1"}
     with tempfile.TemporaryDirectory() as folder:
         environ |= {"ROS_HOME": folder, "ROS_LOG_DIR": folder}

@@ -10,7 +10,6 @@ import json
 import os
 import pty
 import signal
-import socket
 import subprocess
 import threading
 import time
@@ -23,6 +22,7 @@ from tests.corpus.flight import LONGEST_S, SHUTDOWN_S, STAND_INS
 from tests.corpus.scenarios import Program, Scenario
 from tests.corpus.sources import Sources
 from tests.corpus.verdict import Outcome
+from tests.host_ports import free_port
 
 PYTHON, MASTER = "/usr/bin/python3", "/usr/bin/rosmaster"
 PATH = "CFEPY_ROS_PYTHONPATH"
@@ -43,7 +43,7 @@ class RosFlight:
         self._scenario = scenario
         self._sources = sources
         self._folder = folder
-        self._port = _free_port()
+        self._port = free_port()
         self._processes: list[subprocess.Popen[bytes]] = []
 
     def run(self) -> Outcome:
@@ -147,13 +147,6 @@ class RosFlight:
 
 def _without(start: str, text: str) -> str:
     return "".join(line for line in text.splitlines(keepends=True) if not line.startswith(start))
-
-
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 def _answers(master: ServerProxy) -> bool:

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import os
 import shutil
-import socket
 import subprocess
 import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+from tests.host_ports import free_port
 
 TALKER = Path(__file__).parent / "talker.py"
 PYTHON = "/usr/bin/python3"
@@ -53,10 +54,12 @@ class RosGraph:
 
     def wait_for(self, command: str, text: str) -> None:
         """Until the output of a command has a text; a node's start is waited for like this."""
+        said = ""
         for _ in range(LIMIT_S // 2):
-            if text in self.run(command):
+            said = self.run(command)
+            if text in said:
                 return
-        raise AssertionError(f"{command} never said {text!r}")
+        raise AssertionError(f"{command} never said {text!r}; the last it said was {said!r}")
 
 
 @contextmanager
@@ -84,9 +87,7 @@ def wait_for_line(process: subprocess.Popen[str], text: str, limit_s: float = LI
 
 def free_graph(folder: Path) -> RosGraph:
     """A graph at a free port, which has no master yet."""
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port = probe.getsockname()[1]
-    return RosGraph(f"http://127.0.0.1:{port}", folder)
+    return RosGraph(f"http://127.0.0.1:{free_port()}", folder)
 
 
 @contextmanager

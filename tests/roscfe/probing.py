@@ -24,6 +24,7 @@ from cfepy.console import Console
 from cfepy.convert import build_for_flight
 from cfepy.mission import Mission
 from cfepy.mission.launch import read_launch
+from tests.host_ports import free_port
 from tests.roscfe.building import compile_program
 
 PROBES = Path(__file__).parent / "probes"
@@ -105,8 +106,7 @@ def master(folder: Path) -> Iterator[dict[str, str]]:
     Args:
         folder: for the logs of ROS.
     """
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
+    port = free_port()
     environ = {
         **os.environ,
         "ROS_MASTER_URI": f"http://127.0.0.1:{port}",

@@ -15,6 +15,7 @@ from cfepy.mission import Arrival, Mission
 from cfepy.msg import command, get_msg_id
 from cfepy.time import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID
 from cfepy.time import packets as time
+from tests.host_ports import free_port
 from tests.twin.real import in_network_of, installed
 from tests.twin.sbn_flight import CLIENT_VARIABLE, PAIR, SBN_VARIABLE, Paced, paced, real_sbn
 from tests.twin.sbn_peer import RealPeer, VirtualPeer, serve_time
@@ -34,16 +35,13 @@ def counter(packets: list[bytes]) -> int:
     return packets[-1][17] if packets else -1
 
 
-def free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
 @pytest.mark.slow
 def test_two_missions_over_udp() -> None:
-    ports = {2234: free_port(), 2235: free_port()}
-    with paced("pair", {**ports, 1234: free_port()}) as first, paced(str(PAIR / "client.scr"), ports) as second:
+    ports = {number: free_port(socket.SOCK_DGRAM) for number in (2234, 2235)}
+    with (
+        paced("pair", {**ports, 1234: free_port(socket.SOCK_DGRAM)}) as first,
+        paced(str(PAIR / "client.scr"), ports) as second,
+    ):
 
         def both() -> bool:
             second.step()
