@@ -1,7 +1,7 @@
 """A WebSocket connection with a client, on a socket that nobody waits for (RFC 6455).
 
-The protocol itself is that of the package websockets, without its servers: bytes go in, frames come out, and all of it
-happens between two pieces of a run.
+The protocol itself is that of the package websockets, without its servers: bytes go in, frames come out, and what
+comes in does so between two pieces of a run.
 """
 
 from __future__ import annotations
@@ -42,7 +42,6 @@ class WebSocket:
         take: gets each message, a text or bytes.
         gone: called once, when the connection is over; takes why.
         subprotocols: one of which the request has to name, the best first; none if it need not.
-        longest: bytes of a message.
     """
 
     def __init__(
@@ -54,9 +53,8 @@ class WebSocket:
         take: Callable[[str | bytes], object],
         gone: Callable[[str], object],
         subprotocols: Sequence[str] = (),
-        longest: int = LONGEST_MESSAGE,
     ) -> None:
-        self._protocol = protocols().ServerProtocol(subprotocols=list(subprotocols) or None, max_size=longest)
+        self._protocol = protocols().ServerProtocol(subprotocols=list(subprotocols) or None, max_size=LONGEST_MESSAGE)
         self._refusal = refusal
         self._began = began
         self._take = take

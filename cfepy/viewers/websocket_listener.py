@@ -1,6 +1,6 @@
 """`WebSocketListener`: takes clients that speak a protocol over WebSocket (RFC 6455) while a mission runs.
 
-Everything happens between two pieces of the run, on sockets that nobody waits for: a client that is slow loses
+What comes in is taken between two pieces of the run, and nobody waits for a socket: a client that is slow loses
 messages, one that sends nonsense is told so or loses its connection, and the mission goes on.
 """
 
@@ -23,6 +23,8 @@ from cfepy.viewers.websocket import WebSocket, protocols
 if TYPE_CHECKING:
     from websockets.http11 import Request
 
+TABLE = "viewer_peers"  # of the report
+CONNECTIONS = "(connections)"  # its row of all that is no message
 MOST_CLIENTS = 64
 MOST_MESSAGES = 256  # of a client between two pieces of the run; the others wait
 HANDSHAKE_S = 10.0  # wall time that a client has for asking for the connection

@@ -23,6 +23,7 @@ from cfepy.viewers.foxglove.shown_channels import ShownChannels
 from cfepy.viewers.foxglove.viewer import PEER, Viewer
 from cfepy.viewers.foxglove.viewer_server import ViewerServer
 from cfepy.viewers.listen import Admission, ListenPlace
+from cfepy.viewers.websocket_listener import TABLE
 
 if TYPE_CHECKING:
     from rospy_shim.runtime import RosRuntime
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 __all__ = ["FoxgloveViewer"]
 
 LOOK_S = 0.05  # wall time between two looks at what there is
-TABLE = "viewer_peers"
 
 
 class FoxgloveViewer(TopicWatch):

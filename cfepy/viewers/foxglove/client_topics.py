@@ -20,7 +20,8 @@ from cfepy.mission import PACKET, ROS, Mission
 from cfepy.msg import Command
 from cfepy.status import CfeError, UsageError
 from cfepy.viewers.foxglove.protocol import JSON, ROS1, Advertised, Published
-from cfepy.viewers.foxglove.viewer import ALL, PEER, Viewer
+from cfepy.viewers.foxglove.viewer import PEER, Viewer
+from cfepy.viewers.websocket_listener import CONNECTIONS
 
 if TYPE_CHECKING:
     from rospy_shim.graph.graph import TopicEntry
@@ -104,7 +105,7 @@ class ClientTopics:
         """A message of a viewer."""
         publication = self._publications.get((viewer, message.number))
         if publication is None:  # what is wrong with it was told when it was advertised, if it was
-            row = self._counts.of(ALL, PEER, INTO)
+            row = self._counts.of(CONNECTIONS, PEER, INTO)
             row.dropped += 1
             row.why = f"channel {message.number} of a viewer is not, or cannot be, published"
             return

@@ -101,7 +101,8 @@ class ServiceMirror:
 
     def __init__(self, server: ViewerServer) -> None:
         self._server = server
-        self._offered: dict[str, tuple[int, str]] = {}  # the number under which viewers know it, and the md5sum
+        self._offered: dict[str, tuple[int | None, str]] = {}
+        """The number under which viewers know a service, None for one that they do not know, and its md5sum."""
         self._calls: dict[int, _Call] = {}
         self._last = 0
 
@@ -110,8 +111,8 @@ class ServiceMirror:
         here = {name: entry.service.service_class for name, entry in list(graph.services.items())}
         known = {name: kind._md5sum for name, kind in here.items() if kind._md5sum not in ("", "*")}
         gone = [name for name, (_, md5sum) in self._offered.items() if known.get(name) != md5sum]
-        if gone:
-            self._server.withdraw([self._offered.pop(name)[0] for name in gone])
+        numbers = [self._offered.pop(name)[0] for name in gone]
+        self._server.withdraw([number for number in numbers if number is not None])
         for name, md5sum in known.items():
             if name not in self._offered:
                 self._offer(graph, name, md5sum)
@@ -124,7 +125,7 @@ class ServiceMirror:
             _, kind = graph.caller(name)
             request, response = kind._request_class._full_text, kind._response_class._full_text
         except Exception:  # a compiled node's, of a type that no node in Python knows: it cannot be described
-            self._offered[name] = (0, md5sum)
+            self._offered[name] = (None, md5sum)
         else:
             self._offered[name] = (self._server.offer(name, kind._type, request, response), md5sum)
 

@@ -21,12 +21,12 @@ from cfepy.viewers.foxglove.protocol import (
     ops_of,
     status,
 )
+from cfepy.viewers.websocket_listener import CONNECTIONS
 
 if TYPE_CHECKING:
     from cfepy.viewers.websocket import WebSocket
 
 PEER = "foxglove"
-ALL = "(connections)"
 MOST_WAITING = 1024  # messages of channels for one viewer
 MOST_BYTES = 1 << 26  # of them; one message may be longer
 MOST_UNREAD = 900  # of what is not to be lost; the socket keeps few more
@@ -110,7 +110,7 @@ class Viewer:
     def begin(self, connection: WebSocket) -> None:
         """See `ConnectedClient.begin`."""
         self._connection = connection
-        self._counts.of(ALL, PEER, OUT_OF).connections += 1
+        self._counts.of(CONNECTIONS, PEER, OUT_OF).connections += 1
         self._welcome(self)
 
     def take(self, message: str | bytes) -> None:
@@ -132,7 +132,7 @@ class Viewer:
 
     def complain(self, what: str) -> None:
         """Tell the viewer, and the report, what is wrong with something that it has sent."""
-        row = self._counts.of(ALL, PEER, INTO)
+        row = self._counts.of(CONNECTIONS, PEER, INTO)
         row.dropped += 1
         row.why = what = what[:LONGEST_TROUBLE]
         self.tell(status(ERROR, what))
@@ -141,7 +141,7 @@ class Viewer:
         """See `ConnectedClient.gone`."""
         for number in list(self._subscribed):
             self._unsubscribe(number)
-        row = self._counts.of(ALL, PEER, OUT_OF)
+        row = self._counts.of(CONNECTIONS, PEER, OUT_OF)
         row.ended += 1
         row.why = why or row.why
         self._farewell(self)

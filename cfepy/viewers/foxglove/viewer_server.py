@@ -25,9 +25,9 @@ from cfepy.viewers.foxglove.protocol import (
     text,
     time_message,
 )
-from cfepy.viewers.foxglove.viewer import ALL, PEER, Viewer, ViewerChannel
+from cfepy.viewers.foxglove.viewer import PEER, Viewer, ViewerChannel
 from cfepy.viewers.listen import Admission, ListenPlace
-from cfepy.viewers.websocket_listener import Refusal, WebSocketListener, token_of
+from cfepy.viewers.websocket_listener import CONNECTIONS, Refusal, WebSocketListener, token_of
 
 if TYPE_CHECKING:
     from websockets.http11 import Request
@@ -114,7 +114,7 @@ class ViewerServer:
         return HTTPStatus.FORBIDDEN, f"pages of {origin!r:.100} are strangers\n"
 
     def _refused(self, address: str, why: str) -> None:
-        row = self._counts.of(ALL, PEER, OUT_OF)
+        row = self._counts.of(CONNECTIONS, PEER, OUT_OF)
         row.refused += 1
         row.why = why
 
@@ -183,7 +183,8 @@ class ViewerServer:
         """Offer services no more."""
         for each in services:
             del self._services[each]
-        self._tell(text("unadvertiseServices", serviceIds=services))
+        if services:
+            self._tell(text("unadvertiseServices", serviceIds=services))
 
     def tell_time(self, time_ns: int) -> None:
         """Tell the viewers what time it is in the mission."""

@@ -21,6 +21,7 @@ from cfepy.viewers.rosbridge.rosapi import Rosapi
 from cfepy.viewers.rosbridge.rosauth import MacCheck
 from cfepy.viewers.rosbridge.sending import CBOR_RAW, LONGEST_QUEUE, NONE, Pacing, Wish
 from cfepy.viewers.websocket import LONGEST_MESSAGE, WebSocket
+from cfepy.viewers.websocket_listener import CONNECTIONS
 from rospy_shim.genpy import DeserializationError
 
 LEVELS = ("none", "error", "warning", "info")
@@ -30,7 +31,6 @@ MOST_TOPICS = 1000  # that a client publishes, and that it hears
 MOST_PATIENCE_S = 1.0  # wall time for which the mission may be full, before a message is lost
 SHORTEST_FRAGMENT = 16  # characters
 POLICY = 1008  # RFC 6455, 7.4.1
-CONNECTION = "(connections)"  # the row of all that is no message
 
 Op = dict[str, Any]
 _TEXT, _NUMBER, _OBJECT, _FLAG = (str,), (int,), (dict,), (bool,)
@@ -101,7 +101,7 @@ class RosbridgeClient:
     def begin(self, connection: WebSocket) -> None:
         """The connection is there."""
         self.socket = connection
-        self._counts.of(CONNECTION, self._peer, INTO).connections += 1
+        self._counts.of(CONNECTIONS, self._peer, INTO).connections += 1
 
     def go_on(self, now_s: float) -> None:
         """After a piece of the run: let in what the mission had no room for, and send what has waited for its time."""
@@ -114,7 +114,7 @@ class RosbridgeClient:
 
     def take(self, message: str | bytes) -> None:
         """A message of the client's has come."""
-        count = self._counts.of(CONNECTION, self._peer, INTO)
+        count = self._counts.of(CONNECTIONS, self._peer, INTO)
         count.messages += 1
         count.size += len(message)
         try:
@@ -160,7 +160,7 @@ class RosbridgeClient:
         return f"{text} {names}.  Original message was: {str(op)[:200]}"
 
     def _wrong(self, text: str, name: object) -> None:
-        count = self._counts.of(CONNECTION, self._peer, INTO)
+        count = self._counts.of(CONNECTIONS, self._peer, INTO)
         count.dropped += 1
         count.why = text
         self._status("error", text, name)
@@ -391,7 +391,7 @@ class RosbridgeClient:
             self._turn_away("did not authenticate")
 
     def _turn_away(self, why: str) -> None:
-        count = self._counts.of(CONNECTION, self._peer, INTO)
+        count = self._counts.of(CONNECTIONS, self._peer, INTO)
         count.refused += 1
         count.why = why
         self.socket.close(POLICY, why)
@@ -411,10 +411,10 @@ class RosbridgeClient:
         self._published.clear()
         self._advertised.clear()
         self._stalled = None
-        count = self._counts.of(CONNECTION, self._peer, INTO)
+        count = self._counts.of(CONNECTIONS, self._peer, INTO)
         count.ended += 1
         count.why = why or count.why
-        self._counts.of(CONNECTION, self._peer, OUT_OF).dropped += self.socket.dropped
+        self._counts.of(CONNECTIONS, self._peer, OUT_OF).dropped += self.socket.dropped
 
 
 def _check(op: Op, *fields: tuple[str, bool, tuple[type, ...]]) -> None:

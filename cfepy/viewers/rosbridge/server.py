@@ -11,16 +11,15 @@ from cfepy.io import INTO, OUT_OF, PeerCounts
 from cfepy.mission import PacketWatch
 from cfepy.viewers.listen import Admission, ListenPlace
 from cfepy.viewers.rosbridge.bridge_node import BridgeNode
-from cfepy.viewers.rosbridge.client import CONNECTION, RosbridgeClient
+from cfepy.viewers.rosbridge.client import RosbridgeClient
 from cfepy.viewers.rosbridge.rosapi import Rosapi
 from cfepy.viewers.rosbridge.rosauth import MacCheck
-from cfepy.viewers.websocket_listener import Refusal, WebSocketListener, token_of
+from cfepy.viewers.websocket_listener import CONNECTIONS, TABLE, Refusal, WebSocketListener, token_of
 
 if TYPE_CHECKING:
     from websockets.http11 import Request
 
 OPTION, EXTRA = "--rosbridge", "web"
-TABLE = "viewer_peers"  # of the report
 OUTSIDE = "rosbridge"
 
 
@@ -100,7 +99,7 @@ class RosbridgeServer(PacketWatch):
         count.why = why
 
     def _refused(self, address: str, why: str) -> None:
-        count = self._counts.of(CONNECTION, _peer(address), INTO)
+        count = self._counts.of(CONNECTIONS, _peer(address), INTO)
         count.refused += 1
         count.why = why
 

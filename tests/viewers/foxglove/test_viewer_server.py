@@ -13,6 +13,7 @@ from cfepy.status import UsageError
 from cfepy.viewers.foxglove import FoxgloveViewer, graph_mirror
 from cfepy.viewers.foxglove.protocol import WARNING, status
 from cfepy.viewers.listen import Admission, ListenPlace
+from rospy_shim.graph.graph import Graph
 from tests.viewers.foxglove.client import FoxgloveClient
 from tests.viewers.foxglove.runs import TALKER, ShownRun, shown, spec_of
 
@@ -132,3 +133,38 @@ def test_a_service_that_does_not_answer(tmp_path: Path, monkeypatch: pytest.Monk
         monkeypatch.setattr(graph_mirror, "CALL_S", 0.0)
         client.wait_for(lambda: len(client.told("serviceCallFailure")) == 33)
         assert client.told("serviceCallFailure")[-1]["message"] == "the service has not answered"
+
+
+def test_a_service_that_nobody_can_describe_is_not_offered_and_may_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A compiled node's, of a type that no node in Python knows."""
+    short = """
+        import rospy
+        from std_srvs.srv import Empty
+        rospy.init_node("short")
+        service = rospy.Service("/short", Empty, lambda request: None)
+        rospy.sleep(1)
+        service.shutdown()
+        rospy.spin()
+    """
+
+    def caller(graph: Graph, name: str) -> object:
+        raise UsageError(f"nobody knows the type of {name}")
+
+    monkeypatch.setattr(Graph, "caller", caller)
+    with shown(spec_of(tmp_path, {"short": short})) as run, run.client() as client:
+        run.until(1)
+        assert run.mission.ros is not None
+        assert "/short" in run.mission.ros.graph.services
+        client.services["/short"] = {"id": 0}
+        client.call("/short", 1, b"")
+        client.wait_for(lambda: client.told("serviceCallFailure"))
+        assert client.told("serviceCallFailure")[0]["message"] == "there is no such service"
+        run.viewer._look_at_s = 0.0
+        run.go_on()  # it has been looked at
+        run.until(2)
+        run.viewer._look_at_s = 0.0
+        run.go_on()
+        assert "/short" not in run.mission.ros.graph.services
+        assert client.told("unadvertiseServices") == []
