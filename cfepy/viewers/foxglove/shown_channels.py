@@ -70,16 +70,16 @@ class ShownChannel:
 
     def show(self, data: bytes, time_ns: int) -> None:
         """Send a message to all that have subscribed."""
-        if self.viewers:
-            row = self._counts.of(self.topic, PEER, OUT_OF)
-            for viewer, number in self.viewers.items():
-                viewer.show(self, number, data, time_ns, row)
+        for viewer in self.viewers:
+            self._show_to(viewer, data, time_ns)
 
     def greet(self, viewer: Viewer) -> None:
         """A viewer has subscribed: it gets the latched messages, as a new subscriber in ROS does."""
-        row = self._counts.of(self.topic, PEER, OUT_OF)
         for data, time_ns in self.latched.values():
-            viewer.show(self, self.viewers[viewer], data, time_ns, row)
+            self._show_to(viewer, data, time_ns)
+
+    def _show_to(self, viewer: Viewer, data: bytes, time_ns: int) -> None:
+        viewer.show(self, self.viewers[viewer], data, time_ns, self._counts.of(self.topic, PEER, OUT_OF))
 
 
 class ShownChannels:
