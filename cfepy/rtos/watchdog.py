@@ -56,8 +56,8 @@ class Spent(NamedTuple):
 
     Attributes:
         wall_s: of the wall clock.
-        used_s: of CPU.
-        ready_s: in which its threads, but for the calling one, were ready for a CPU that other programs had.
+        used_s: of CPU, by its threads but for the calling one.
+        ready_s: in which these were ready for a CPU that other programs had.
     """
 
     wall_s: float
@@ -88,7 +88,8 @@ class Expenses:
                     open(f"{THREADS}/{thread}/schedstat") as told,
                 ):
                     self._count(thread, int(told.read().split()[1]))
-        return Spent(time.monotonic(), time.process_time(), self._ready_ns / NS_PER_S)
+        used_s = time.process_time() - time.thread_time()
+        return Spent(time.monotonic(), used_s, self._ready_ns / NS_PER_S)
 
     def _count(self, thread: str, ready_ns: int) -> None:
         before = self._of_threads.get(thread, 0)

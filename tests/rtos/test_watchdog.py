@@ -408,11 +408,21 @@ def test_time_in_which_others_have_the_cpu_counts(tmp_path: Path, monkeypatch: p
         (tmp_path / thread / "schedstat").write_text(text)
     (tmp_path / "4").mkdir()  # a thread that has just ended
     monkeypatch.setattr(watchdog, "THREADS", str(tmp_path))
-    monkeypatch.setattr(time, "process_time", lambda: 1.0)
+    monkeypatch.setattr(time, "process_time", lambda: 1.5)
+    monkeypatch.setattr(time, "thread_time", lambda: 0.5)
     monkeypatch.setattr(time, "monotonic", lambda: 9.0)
     assert Expenses()() == Spent(wall_s=9.0, used_s=1.0, ready_s=2.5)
     monkeypatch.setattr(watchdog, "THREADS", str(tmp_path / "none"))
     assert Expenses()() == Spent(wall_s=9.0, used_s=1.0, ready_s=0.0)
+
+
+def test_what_the_look_itself_takes_is_not_counted() -> None:
+    """On a computer so slow that looking takes a tenth of its time, a task that waits seemed to compute."""
+    spent = Expenses()
+    before, begun_s = spent().used_s, time.thread_time()
+    while time.thread_time() < begun_s + 0.2:
+        pass
+    assert spent().used_s - before < 0.1
 
 
 def test_what_a_thread_was_counted_for_stays_when_it_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
