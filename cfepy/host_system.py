@@ -45,6 +45,22 @@ def lock_file(descriptor: int) -> None:
     os.lseek(descriptor, at, os.SEEK_SET)
 
 
+def is_absent(program: str, error: OSError) -> bool:
+    """Check whether a program could not be started because there is none of that name.
+
+    Linux answers "permission denied" for a missing program if one folder of PATH may not be searched.
+
+    Args:
+        program: its name or path, the first word of a command.
+        error: raised when the command was started.
+    """
+    from shutil import which
+
+    if isinstance(error, FileNotFoundError):
+        return True
+    return isinstance(error, PermissionError) and os.path.basename(program) == program and which(program) is None
+
+
 def command_line(words: Sequence[str]) -> str:
     """A command as it is typed into the shell of this system."""
     if os.name == "nt":

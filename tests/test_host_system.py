@@ -12,6 +12,20 @@ from cfepy.mission import Mission
 from tests.mission.flights import write_mission
 
 
+@pytest.mark.parametrize(
+    ("program", "error", "absent"),
+    [
+        ("no-such-program", FileNotFoundError(), True),
+        ("no-such-program", PermissionError(), True),  # the answer where a folder of PATH may not be searched
+        ("sh", PermissionError(), False),
+        ("./no-program", PermissionError(), False),
+        ("no-such-program", OSError(), False),
+    ],
+)
+def test_absent_program_is_told_from_one_that_cannot_be_started(program: str, error: OSError, absent: bool) -> None:
+    assert host_system.is_absent(program, error) is absent
+
+
 def test_modules_of_cpython_may_have_builtins_of_their_own() -> None:
     assert host_system.has_own_builtins()
 

@@ -17,8 +17,8 @@ from cfepy.faces import face
 if TYPE_CHECKING:
     from cfepy.c.abi import AbiProfile, abi_profile
     from cfepy.c.api import function_names
+    from cfepy.c.build_cache import cache_folder, writing_cache
     from cfepy.c.elf import ElfError, read_shared_object
-    from cfepy.c.engine import cache_folder
     from cfepy.c.linking import wanted_names
     from cfepy.c.loading import CompiledLoader
     from cfepy.c.runtime import CRuntime
@@ -41,6 +41,7 @@ __all__ = [
     "headers_folder",
     "read_shared_object",
     "wanted_names",
+    "writing_cache",
 ]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
@@ -49,8 +50,8 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         {
             ".abi": ("AbiProfile", "abi_profile"),
             ".api": ("function_names",),
+            ".build_cache": ("cache_folder", "writing_cache"),
             ".elf": ("ElfError", "read_shared_object"),
-            ".engine": ("cache_folder",),
             ".linking": ("wanted_names",),
             ".loading": ("CompiledLoader",),
             ".runtime": ("CRuntime",),

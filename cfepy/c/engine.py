@@ -19,6 +19,8 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
+from cfepy.c.build_cache import cache_folder, writing_cache
+from cfepy.host_system import is_absent
 from cfepy.status import UsageError
 
 SOURCES = Path(__file__).with_name("engine")
@@ -61,16 +63,10 @@ def built(folder: Path | None = None) -> Path:
     where = folder or cache_folder()
     target = where / (f"_engine{suffix}" if folder else f"_engine-{digest.hexdigest()[:16]}{suffix}")
     if folder or not target.exists():
-        where.mkdir(parents=True, exist_ok=True)
-        _compile(sources, target)
+        with writing_cache(where):
+            where.mkdir(parents=True, exist_ok=True)
+            _compile(sources, target)
     return target
-
-
-def cache_folder() -> Path:
-    """Where what cfepy builds is kept: CFEPY_CACHE, or cfepy in the user's cache folder."""
-    if "CFEPY_CACHE" in os.environ:
-        return Path(os.environ["CFEPY_CACHE"])
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "cfepy"
 
 
 def compiler() -> list[str]:
@@ -91,7 +87,9 @@ def _compile(sources: list[Path], target: Path) -> None:
                 capture_output=True,
                 text=True,
             )
-        except FileNotFoundError:
+        except OSError as error:
+            if not is_absent(command[0], error):
+                raise UsageError(f"{command[0]} cannot be started: {error.strerror}") from None
             raise UsageError(
                 f"compiled applications need a C compiler, once: {command[0]} is not there. Install one (on Debian "
                 "`apt-get install gcc python3-dev`), or say with CC which one to take"

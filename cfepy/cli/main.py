@@ -101,10 +101,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:
         if error.errno == errno.ENOMEM:
             return _tell_out_of_memory(words)
-        no_room = error.filename is None and error.errno in NO_ROOM
-        what = f"standard output cannot be written: {error.strerror}" if no_room else error
-        print(f"cfepy: {what}", file=sys.stderr)
+        print(f"cfepy: {_without_room(error) or error}", file=sys.stderr)
         return BAD_USAGE
+
+
+def _without_room(error: OSError) -> str:
+    """Name what was written when a disk had no more room and the error names no file; empty for another error."""
+    if error.filename is not None or error.errno not in NO_ROOM:
+        return ""
+    try:
+        print(flush=True)  # standard output that had no room for a text has none for an empty line
+    except OSError:
+        return f"standard output cannot be written: {error.strerror}"
+    import tempfile
+
+    return f"a file cannot be written: {error.strerror}; make room where the outputs go and in {tempfile.gettempdir()}"
 
 
 def _tell_out_of_memory(words: Sequence[str]) -> int:

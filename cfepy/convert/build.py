@@ -12,18 +12,20 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from cfepy.c import CompilerError, cache_folder, cpp_compiler, headers_folder
+from cfepy.c import CompilerError, cache_folder, cpp_compiler, headers_folder, writing_cache
 from cfepy.convert.capacities import Capacities
 from cfepy.convert.configurations import CONFIGURATION_TYPES, configuration_headers
 from cfepy.convert.entry import NodeEntry, main_header
 from cfepy.convert.messages import Profile, write_headers
 from cfepy.convert.packages import Program
 from cfepy.convert.sources import SourceSet, collect, message_types
+from cfepy.host_system import is_absent
 from cfepy.mission import ARENA_BYTES
 from cfepy.resources import shipped
 from cfepy.status import UsageError
@@ -218,7 +220,8 @@ class NodeBuild:
             archive = built_core(self._options, self._real_boost, self._types, self.sources.contents)
             told = compile_units(units)
             _link([*(each.object for each in units), archive], made, link_flags(self._options.profile))
-            warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
+            with writing_cache(warnings.parent):
+                warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
         told = [warnings.read_text(encoding="utf-8")] if warnings.is_file() else []
         return BuiltNode(made, entry.symbol, self.sources, self.types, list(filter(None, told)))
 
@@ -257,8 +260,8 @@ def messages_folder(types: Sequence[str], library: Library, options: BuildOption
         options: what messages are made of.
     """
     folder = _folder()
-    with tempfile.TemporaryDirectory(dir=folder) as scratch:
-        made = Path(scratch) / "messages"
+    with _scratch() as scratch:
+        made = scratch / "messages"
         made.mkdir()
         files = write_headers(types, made, options.profile, library, options.capacities)
         key = _digest(*(f"{each.relative_to(made)}\0{each.read_text(encoding='utf-8')}" for each in files))
@@ -278,8 +281,8 @@ def configurations_folder(headers: Mapping[str, str]) -> Path:
     key = _digest(*(f"{name}\0{text}" for name, text in sorted(headers.items())))
     kept = folder / f"configurations-{key}"
     if not kept.is_dir():
-        with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            made = Path(scratch) / "configurations"
+        with _scratch() as scratch:
+            made = scratch / "configurations"
             made.mkdir()
             for name, text in headers.items():
                 (made / name).parent.mkdir(exist_ok=True)
@@ -304,8 +307,8 @@ def built_core(options: BuildOptions, real_boost: bool, library: Library, used: 
     if not archive.is_file():
         print("cfepy: compiling the interface library of ROS nodes in C++, once", file=sys.stderr, flush=True)
         compile_units(units)
-        with tempfile.TemporaryDirectory(dir=archive.parent) as scratch:
-            made = Path(scratch) / archive.name
+        with _scratch() as scratch:
+            made = scratch / archive.name
             _call(["ar", "rcs", str(made), *(str(each.object) for each in units)])
             os.replace(made, archive)
     return archive
@@ -387,8 +390,8 @@ def compile_units(units: Iterable[CompileUnit]) -> list[str]:
     warnings: list[str] = []
     for at in range(0, len(missing), MOST_AT_ONCE):
         group = missing[at : at + MOST_AT_ONCE]
-        with tempfile.TemporaryDirectory(dir=_folder()) as scratch:
-            running = [_Compiler(each, Path(scratch) / str(index)) for index, each in enumerate(group)]
+        with _scratch() as scratch:
+            running = [_Compiler(each, scratch / str(index)) for index, each in enumerate(group)]
             warnings += [each.finished() for each in running]
     return warnings
 
@@ -427,7 +430,9 @@ class _Compiler:
 def _started(command: Sequence[str], log: int) -> subprocess.Popen[bytes]:
     try:
         return subprocess.Popen(command, stdout=log, stderr=log)
-    except FileNotFoundError:
+    except OSError as error:
+        if not is_absent(command[0], error):
+            raise UsageError(f"{command[0]} cannot be started: {error.strerror}") from None
         text = "is not there: ROS nodes in C++ need a C++ compiler (on Debian `apt-get install g++`)"
         raise UsageError(f"{command[0]} {text}, or say with CXX which one to take") from None
 
@@ -443,8 +448,8 @@ def _call(command: Sequence[str]) -> str:
 
 
 def _link(parts: Sequence[Path], made: Path, flags: Iterable[str]) -> None:
-    with tempfile.TemporaryDirectory(dir=made.parent) as scratch:
-        linked = Path(scratch) / made.name
+    with _scratch() as scratch:
+        linked = scratch / made.name
         _call([*cpp_compiler(), *flags, "-o", str(linked), *map(str, parts)])
         shared = unique_symbols(linked)
         if shared:
@@ -485,8 +490,17 @@ def _digest(*parts: str | bytes) -> str:
 
 def _folder() -> Path:
     folder = cache_folder() / "roscfe"
-    folder.mkdir(parents=True, exist_ok=True)
+    with writing_cache(folder):
+        folder.mkdir(exist_ok=True)
     return folder
+
+
+@contextmanager
+def _scratch() -> Iterator[Path]:
+    """A folder in the cache for what is not finished yet; what cannot be written there is the user's to mend."""
+    folder = _folder()
+    with writing_cache(folder), tempfile.TemporaryDirectory(dir=folder) as scratch:
+        yield Path(scratch)
 
 
 def _put(made: Path, kept: Path) -> None:

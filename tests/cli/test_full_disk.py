@@ -60,3 +60,14 @@ def test_a_full_standard_output_is_named(words: list[str]) -> None:
         process = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
     assert process.stderr == "cfepy: standard output cannot be written: No space left on device\n"
     assert process.returncode == 2
+
+
+def test_a_full_disk_is_not_taken_for_standard_output(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def command(name: str) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(entry, "_command", command)
+    assert main(["tbl", "show", TABLE]) == 2
+    assert capsys.readouterr().err.startswith("cfepy: a file cannot be written: No space left on device; make room")

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cfepy.c.engine import compiler
+from cfepy.host_system import is_absent
 from cfepy.status import UsageError
 
 CPP_SUFFIXES = (".cpp", ".cc", ".cxx", ".c++", ".C")
@@ -60,11 +61,11 @@ def is_cpp(source: Path) -> bool:
 def _call(command: list[str]) -> str:
     try:
         done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
-    except FileNotFoundError:
+    except OSError as error:
+        if not is_absent(command[0], error):
+            raise UsageError(f"{command[0]} cannot be started: {error.strerror}") from None
         text = "is not there: install a C compiler (on Debian `apt-get install gcc`, and g++ for C++)"
         raise UsageError(f"{command[0]} {text}, or say with CC or CXX which one to take") from None
-    except OSError as error:
-        raise UsageError(f"{command[0]} cannot be started: {error.strerror}") from None
     if done.returncode:
         raise CompilerError(done.stderr.rstrip() or f"{command[0]} ended with {done.returncode}")
     return done.stderr.rstrip()

@@ -16,7 +16,7 @@ import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.c.engine import cache_folder
+from cfepy.c.build_cache import cache_folder, writing_cache
 from cfepy.c.toolchain.sources import chosen_headers
 from cfepy.status import UsageError
 
@@ -30,14 +30,13 @@ def headers_folder() -> Path:
     """The folder for the compiler's -I, made before if need be.
 
     Raises:
-        OSError: it cannot be written.
+        UsageError: it cannot be written.
     """
     files = _files()
     digest = hashlib.sha256(repr(sorted(files.items())).encode()).hexdigest()[:16]
     folder = cache_folder() / f"headers-{digest}"
     if not folder.is_dir():
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=folder.parent) as made:
+        with writing_cache(folder.parent), tempfile.TemporaryDirectory(dir=folder.parent) as made:
             _write(files, Path(made) / "all")
             try:
                 os.rename(Path(made) / "all", folder)

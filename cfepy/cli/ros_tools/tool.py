@@ -23,6 +23,7 @@ from cfepy.cli.ros.source import FlightSource
 from cfepy.cli.ros_tools import words_of
 from cfepy.console import Console
 from cfepy.ground import BagReader, GroundConsole, empty_mission, ground_node_ended, is_bag, with_ground_node
+from cfepy.host_system import is_absent
 from cfepy.mission import MissionSpec
 from cfepy.pilot import BOOT_S, DEFAULT_S, RunPlan
 from cfepy.status import UsageError
@@ -199,7 +200,9 @@ def drawn(dot: str, kind: str) -> bytes:
     """
     try:
         run = subprocess.run(["dot", f"-T{kind}"], input=dot.encode(), capture_output=True, check=True)
-    except FileNotFoundError:
+    except OSError as error:
+        if not is_absent("dot", error):
+            raise UsageError(f"dot cannot be started: {error.strerror}", field=f"--{kind}") from None
         hint = "needs graphviz, whose command `dot` is not installed; --dot FILE writes what it takes"
         raise UsageError(hint, field=f"--{kind}") from None
     except subprocess.CalledProcessError as error:

@@ -20,6 +20,7 @@ from cfepy.convert.check.findings import CheckReport, SourcePlace
 from cfepy.convert.check.headers import SYSTEM, is_of_ros
 from cfepy.convert.check.rules import RULES
 from cfepy.convert.messages import Profile
+from cfepy.host_system import is_absent
 from cfepy.status import UsageError
 
 SECONDS = 120
@@ -180,7 +181,9 @@ def _call(command: list[str]) -> tuple[int, str]:
             timeout=_LAST_RESORT,
             check=False,
         )
-    except FileNotFoundError:
+    except OSError as error:
+        if not is_absent(command[0], error):
+            raise UsageError(f"{command[0]} cannot be started: {error.strerror}") from None
         raise UsageError(
             f"{command[0]} is not there: the check asks GCC's C++ compiler (on Debian `apt-get install g++`), or the "
             "one that CXX names"

@@ -1,0 +1,94 @@
+"""The folder that keeps what cfepy builds from one run to the next: the engine, C headers, ROS nodes in C++.
+
+`CFEPY_CACHE` names it. Without that it is `cfepy` in the user's cache folder, or, where that cannot be written (a
+container's user often has no home), a folder of the user's below the one for temporary files. What is loaded from it is
+machine code, so a fallback folder that another user could write is refused.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from cfepy.status import UsageError
+
+VARIABLE = "CFEPY_CACHE"
+_ADVICE = f"set {VARIABLE} to a folder that can be written and has room"
+
+
+def cache_folder() -> Path:
+    """Make the cache folder if it is not there yet.
+
+    Returns:
+        Its path.
+
+    Raises:
+        UsageError: it cannot be made, or is not safe to use.
+    """
+    named = os.environ.get(VARIABLE)
+    if named:
+        folder = Path(named)
+        with writing_cache(folder):
+            folder.mkdir(parents=True, exist_ok=True)
+        return folder
+    try:
+        folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "cfepy"
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        return _fallback(f"{folder} cannot be made: {error.strerror}")
+    except RuntimeError:  # of Path.home
+        return _fallback("this user has no home folder")
+    return folder if os.access(folder, os.W_OK | os.X_OK) else _fallback(f"{folder} cannot be written")
+
+
+@contextmanager
+def writing_cache(folder: Path) -> Iterator[None]:
+    """Turn an OSError of the block that concerns the cache into a UsageError that names the path and the variable.
+
+    Args:
+        folder: the cache folder, or the one below it that the block writes.
+    """
+    try:
+        yield
+    except OSError as error:
+        at = folder if error.filename is None else Path(os.fsdecode(error.filename))  # a full disk names no file
+        if not (at.is_relative_to(folder) or folder.is_relative_to(at)):
+            raise
+        raise UsageError(f"cannot be written: {error.strerror or error}; {_ADVICE}", file=at) from None
+
+
+def _fallback(reason: str) -> Path:
+    """Make the folder below the one for temporary files, and say so on standard error when it is new."""
+    owner = os.getuid() if hasattr(os, "getuid") else 0
+    folder = Path(tempfile.gettempdir()) / f"cfepy-cache-{owner}"
+    try:
+        folder.mkdir(mode=0o700)
+    except FileExistsError:
+        _check_owned(folder, owner)
+    except OSError as error:
+        text = f"cannot be made: {error.strerror} (and {reason}); {_ADVICE}"
+        raise UsageError(text, file=folder) from None
+    else:
+        text = f"{reason}; cfepy keeps what it builds in {folder} ({VARIABLE} names another folder)"
+        print(f"cfepy: {text}", file=sys.stderr, flush=True)
+    return folder
+
+
+def _check_owned(folder: Path, owner: int) -> None:
+    """Check that an existing fallback folder can be written by its owner alone, who is this user.
+
+    Raises:
+        UsageError: it is something else, such as a link of another user's.
+    """
+    found = folder.lstat()
+    theirs = hasattr(os, "getuid") and (found.st_uid != owner or found.st_mode & 0o022)
+    if not stat.S_ISDIR(found.st_mode) or theirs:
+        raise UsageError(f"is not a folder that you alone can write; {_ADVICE}", file=folder)
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise UsageError(f"cannot be written: {os.strerror(errno.EACCES)}; {_ADVICE}", file=folder)
