@@ -7,6 +7,8 @@ import sys
 
 import pytest
 
+from tests.own_paths import own_files
+
 
 def test_arguments_environment_and_names(run, tmp_path):
     program = run(
@@ -111,7 +113,7 @@ def test_a_nodes_own_tracebacks_hide_the_simulator_too(run):
             traceback.print_exc()
     """)
     assert sum(line.startswith("  File") for line in program.lines) == 1
-    assert "cfepy" not in program.text
+    assert own_files(program.text) == []
 
 
 def test_syntax_error(run):
