@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import pytest
@@ -40,6 +40,12 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
         option.numprocesses, option.dist = cores, "loadgroup" if option.markexpr == "slow" else "worksteal"
 
 
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """Print the seed of the order at the end, since `-q` leaves out the header that has it."""
+    if config.pluginmanager.has_plugin("randomly"):
+        terminalreporter.write_line(f"order of the tests: --randomly-seed={config.getoption('randomly_seed')}")
+
+
 @pytest.fixture(autouse=True)
 def _nobody_is_followed() -> Iterator[None]:
     """A debugger of a mission that went on after it would make all that comes in its process slow."""
@@ -54,9 +60,10 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     return True if asked and quick.is_long(collection_path.relative_to(Path(__file__).parent)) else None
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests of the quick loop."""
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> Generator[None, None, None]:
+    """Mark the tests of the quick loop, which are the first of their files, before the order is shuffled."""
     functions = [item for item in items if isinstance(item, pytest.Function) and not item.get_closest_marker("slow")]
     for item in quick.quick_ones(functions):
         item.add_marker(quick.MARK)
+    yield

@@ -33,7 +33,7 @@ SPEED = re.compile(r"virtual s in \S+ s: \S+ x real time, board (\w+), \w+ tasks
 """In the last line of a run; tasks are greenlets where they are installed."""
 NO_EXTRA = "does not provide the extra"
 PROGRAMS = {
-    **{"cfepy": "-m cfepy", "pytest": "-m pytest -p no:cacheprovider", "dask": "-m dask"},
+    **{"cfepy": "-m cfepy", "pytest": "-m pytest -p no:cacheprovider -p no:randomly", "dask": "-m dask"},
     **{"pip": "-m pip", "python": "", "python3": ""},
 }
 

@@ -19,6 +19,8 @@ from cfepy.pilot.plan import RunPlan
 from cfepy.testing import Flight
 
 ROOT = Path(__file__).parents[2]
+AS_WRITTEN = ("-p", "no:cacheprovider", "-p", "no:randomly")
+"""Options of a suite within a test: its tests in the order in which they stand, and nothing kept."""
 NODE_LINE = "CFE_APP, {name}.py, __main__, {app}, 100, 65536, 0x0, 0;\n"
 
 
@@ -120,7 +122,7 @@ def suite(pytester: pytest.Pytester, missions: Path) -> Suite:
 
     def run(text: str, *options: str) -> pytest.RunResult:
         pytester.makepyfile(test_it=text)
-        return pytester.runpytest_inprocess("-p", "cfepy.testing.plugin", "-p", "no:cacheprovider", *options)
+        return pytester.runpytest_inprocess("-p", "cfepy.testing.plugin", *AS_WRITTEN, *options)
 
     return run
 
@@ -136,6 +138,6 @@ def given_verbatim(command: str, folder: Path) -> subprocess.CompletedProcess[st
     """A command, given to a shell as it was printed."""
     bin_folder = str(Path(sys.executable).parent)
     env = {**os.environ, "PATH": os.pathsep.join([bin_folder, os.environ["PATH"]]), "PYTHONPATH": str(ROOT)}
-    env |= {"PYTEST_PLUGINS": "cfepy.testing.plugin", "PYTEST_ADDOPTS": "", "COLUMNS": "300"}
+    env |= {"PYTEST_PLUGINS": "cfepy.testing.plugin", "PYTEST_ADDOPTS": "-p no:randomly", "COLUMNS": "300"}
     assert shlex.split(command)[0] == "pytest"
     return subprocess.run(command, shell=True, cwd=folder, env=env, capture_output=True, text=True, check=False)

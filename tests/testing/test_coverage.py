@@ -24,7 +24,7 @@ FILES = {
 }
 MISSED = {"m/one.py": [12], "m/two.py": [9]}
 RUN = ["-m", "coverage", "run", "-m", "cfepy", "run", "m", "--for", "1", "--quiet", "--tasks"]
-TEST = ["-m", "pytest", "-q", "-p", "cfepy.testing.plugin", "--cov", "--cov-report="]
+TEST = ["-m", "pytest", "-q", "-p", "no:randomly", "-p", "cfepy.testing.plugin", "--cov", "--cov-report="]
 
 
 @pytest.mark.parametrize("tasks", ["auto", "thread", "greenlet"])
