@@ -187,7 +187,11 @@ class ServiceProxy:
             raise self._unreadable(error) from None
 
     def _unreadable(self, error: Exception) -> ServiceException:
-        kind = "DeserializationError cannot deserialize:" if isinstance(error, DeserializationError) else "unexpected error"
+        kind = (
+            "DeserializationError cannot deserialize:"
+            if isinstance(error, DeserializationError)
+            else "unexpected error"
+        )
         what = f"receive_once[{self.resolved_name}]: {kind} {error}"
         return ServiceException(f"transport error completing service call: {what}")
 
