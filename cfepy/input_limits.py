@@ -54,6 +54,24 @@ JOURNAL_VALUES = 1_000_000  # of a frame
 JOURNAL_FILE_BYTES = 64 << 20  # of a file that a journal carries
 JOURNAL_FILES_BYTES = 512 << 20  # of all of them
 
+# what programs outside send to a run: XML-RPC, TCPROS, and messages of viewers
+RPC_BYTES = 8 << 20  # of a request or an answer
+RPC_VALUES = 100_000
+RPC_DEPTH = 100  # values inside each other
+RPC_CALLS = 1_000  # of a system.multicall
+RPC_ANSWER_BYTES = 32 << 20  # of the answer to one, about
+ROS_NAME = 1_000  # characters of a name of a topic, service, node or parameter, of a type and of a URI
+ROS_REGISTRATIONS = 10_000  # of all nodes outside at a master that a mission serves
+ROS_PUBLISHERS = 256  # outside, with which a mission connects
+PARAMETER_DEPTH = 100  # lists and namespaces inside each other, with those of its name
+PEER_CONNECTIONS = 512  # with all nodes of a mission and its master
+UNFINISHED_BYTES = 128 << 20  # of messages that are not whole yet, over all connections of a server
+TCPROS_HEADER_BYTES = 16 << 20  # definitions of messages are in it
+TCPROS_FRAME_BYTES = 64 << 20
+VIEWER_ROWS = 10_000  # of a list in a message of a viewer
+JSON_BRACKETS = 200_000  # lists and objects in a message of a viewer
+JSON_VALUES = 2_000_000
+
 # texts that are read line by line: startup scripts, scripts of commands
 LINE_FILE_BYTES = 16 << 20
 

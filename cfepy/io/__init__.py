@@ -3,8 +3,9 @@
 What belongs here opens a real socket, or waits for somebody outside: the bridge of a paced run to the loopback
 interface (`host_network`), the datagrams that a ground system sends and receives (`udp`), lines that are typed
 (`typed_lines`), and connections with programs that neither side waits for (`peer_socket`), with their counts
-(`peer_counts`). The simulation does not know of this package; the command that runs a mission joins the bridge to it.
-When input from outside comes in is decided in `cfepy.mission`.
+(`peer_counts`) and bounds (`peer_places`), and the names by which they call this computer (`own_names`). The
+simulation does not know of this package; the command that runs a mission joins the bridge to it. When input from
+outside comes in is decided in `cfepy.mission`.
 
 The names below are loaded when they are first used.
 """
@@ -17,7 +18,9 @@ from cfepy.faces import face
 
 if TYPE_CHECKING:
     from cfepy.io.host_network import Guest, HostNetwork
+    from cfepy.io.own_names import OwnNames, is_this_computer
     from cfepy.io.peer_counts import INTO, OUT_OF, PeerCount, PeerCounts
+    from cfepy.io.peer_places import InputRoom, PeerPlaces, Turn
     from cfepy.io.peer_socket import ENDED, Listening, PeerSocket, listening_socket
     from cfepy.io.typed_lines import TypedLines
     from cfepy.io.udp import UdpListener, own_address, send
@@ -28,12 +31,17 @@ __all__ = [
     "OUT_OF",
     "Guest",
     "HostNetwork",
+    "InputRoom",
     "Listening",
+    "OwnNames",
     "PeerCount",
     "PeerCounts",
+    "PeerPlaces",
     "PeerSocket",
+    "Turn",
     "TypedLines",
     "UdpListener",
+    "is_this_computer",
     "listening_socket",
     "own_address",
     "send",
@@ -47,11 +55,20 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "Guest",
                 "HostNetwork",
             ),
+            ".own_names": (
+                "OwnNames",
+                "is_this_computer",
+            ),
             ".peer_counts": (
                 "INTO",
                 "OUT_OF",
                 "PeerCount",
                 "PeerCounts",
+            ),
+            ".peer_places": (
+                "InputRoom",
+                "PeerPlaces",
+                "Turn",
             ),
             ".peer_socket": (
                 "ENDED",

@@ -94,10 +94,13 @@ class HostNetwork:
         readers += self._replies.values()
         readers += self._guests
         writers = [connection.host for connection in self._connections if connection.wants_to_write]
-        if readers or writers:
-            select.select(readers, writers, [], seconds)
-        else:
+        if not readers and not writers:
             time.sleep(seconds)
+            return
+        try:
+            select.select(readers, writers, [], seconds)
+        except ValueError:  # a program with 1024 files open: select has no room for their numbers
+            _poll(readers, writers, seconds)
 
     def exchange(self) -> None:
         """Open what was bound meanwhile, bring in what arrived, send out what is to leave.
@@ -242,6 +245,15 @@ class HostNetwork:
         """Whether a connection that waits on this computer can be brought in, or turned away."""
         listener = self._listener(port)
         return listener is None or listener.has_room
+
+
+def _poll(readers: list[Any], writers: list[Any], seconds: float) -> None:
+    poll = select.poll()
+    for each in readers:
+        poll.register(each, select.POLLIN)
+    for each in writers:
+        poll.register(each, select.POLLOUT | (select.POLLIN if each in readers else 0))
+    poll.poll(seconds * 1000)
 
 
 def _is_public(endpoint: Endpoint) -> bool:

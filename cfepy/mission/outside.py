@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 
 from cfepy.osal import Datagram, Network, Place, Stream
 from cfepy.rtos import Kernel
-from cfepy.status import CfeError, UsageError
 from cfepy.trace import Trace
 
 LOOPBACK = "127.0.0.1"
@@ -113,8 +112,8 @@ class Outside:
         elif kind == ACT:
             try:
                 self.act(*values)
-            except (CfeError, UsageError, KeyError):
-                pass  # as it was refused the first time
+            except Exception:  # as it was refused the first time, after which the run went on
+                pass
         else:
             self._repeat_on(self._stream(values[0]), kind, values)
 

@@ -11,19 +11,22 @@ from __future__ import annotations
 import os
 import struct
 import time
+from collections import deque
 from collections.abc import Callable, Mapping
 from selectors import EVENT_READ, DefaultSelector
 from typing import TYPE_CHECKING, Any, NamedTuple
 from xmlrpc.client import dumps
 
 from cfepy.ground import APPLICATIONS, CLOCK, TOO_SHORT, ShownPackets
-from cfepy.io import OUT_OF, PeerCounts
+from cfepy.input_limits import ROS_PUBLISHERS
+from cfepy.io import OUT_OF, InputRoom, OwnNames, PeerCounts, PeerPlaces, Turn
 from cfepy.mission import Mission
 from cfepy.ros_host.errands import Errands
 from cfepy.ros_host.mission_node import ANY, MissionNode, OutsideClient
 from cfepy.ros_host.peers import OutsideCall, OutsidePublisher
 from cfepy.ros_host.tcpros import frame
-from cfepy.status import CfeError
+from cfepy.ros_host.xmlrpc_server import ServerBounds
+from cfepy.status import CfeError, UsageError
 from cfepy.units import NS_PER_S
 from rospy_shim.master.calls import Answer
 
@@ -89,8 +92,10 @@ class RosHost:
     ) -> None:
         self.selector = DefaultSelector()
         self.address = address_of(environ)
-        self.errands = Errands()
+        self.errands = Errands(tell)
         self.counts = PeerCounts()
+        names = OwnNames(filter(None, (environ.get("ROS_HOSTNAME"), environ.get("ROS_IP"))))
+        self.bounds = ServerBounds(names, PeerPlaces(), InputRoom(), Turn(), deque(), self.errands.nudge, self.now_s)
         self.pid = os.getpid()
         self.tell = tell
         self.ros: RosRuntime | None = None
@@ -137,6 +142,9 @@ class RosHost:
         """Bring in what arrived, and look who has come and gone."""
         if self._mission.ros is not self.ros or self.ros is None:
             self._begin()
+        self.bounds.turn.begin()
+        for _ in range(len(self.bounds.late)):
+            self.bounds.late.popleft().go_on()
         todo, self._todo = self._todo, []
         for each in todo:
             each()
@@ -270,6 +278,7 @@ class RosHost:
     # -- who comes and goes ------------------------------------------------------------------------------------------
 
     def _look(self, now_s: float) -> None:
+        self.bounds.places.look(now_s)
         seen = self.see()
         self.world.look(seen, now_s)
         changed, self._params[:] = list(dict.fromkeys(self._params)), []
@@ -279,9 +288,8 @@ class RosHost:
         for key in [each for each in self._publishers if each not in wanted]:
             self._publishers.pop(key).close()
         for topic, uri in sorted(wanted):
-            if (topic, uri) not in self._publishers:
-                self._publishers[topic, uri] = OutsidePublisher(self, topic, uri)
-            self._publishers[topic, uri].look(now_s)
+            if (topic, uri) in self._publishers or len(self._publishers) < ROS_PUBLISHERS:
+                self._publishers.setdefault((topic, uri), OutsidePublisher(self, topic, uri)).look(now_s)
         self._look_at_services(seen)
 
     def _look_at_services(self, seen: OwnGraph) -> None:
@@ -295,10 +303,9 @@ class RosHost:
                 self._offered[service] = (name, uri)
                 self._probe(service, name, uri)
         here = {service for service, _ in seen.services}
-        for number, (service, client) in list(self._calls.items()):
+        for number, (service, _) in list(self._calls.items()):
             if service not in here:
-                del self._calls[number]
-                client.answer(False, f"service [{service}] has ended".encode())
+                self._answered(number, False, f"service [{service}] has ended".encode())
 
     def _probe(self, service: str, name: str, uri: str) -> None:
         def over(header: dict[str, str], good: bool, body: bytes) -> None:
@@ -450,7 +457,7 @@ class RosHost:
         self._calls[number] = (service, client)
         try:
             self.act("call", service, number, caller, request)
-        except (KeyError, CfeError) as error:
+        except (KeyError, CfeError, UsageError) as error:
             why = f"service [{service}] cannot be called: {error}".encode()
             self._todo.append(lambda: self._answered(number, False, why))
         return number
@@ -466,8 +473,13 @@ class RosHost:
 
     def _answered(self, number: int, good: bool, body: bytes) -> None:
         found = self._calls.pop(number, None)
-        if found is not None:
-            found[1].answer(good, body)
+        if found is None:
+            return
+        client = found[1]
+        try:
+            client.answer(good, body)
+        except Exception as error:  # its next request comes in here, and ends this connection alone
+            client.fail(f"{error}")
 
     def request(self, service: str, number: int, header: dict[str, str], body: bytes) -> None:
         """See `WayOut.request`."""

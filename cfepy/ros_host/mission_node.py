@@ -6,6 +6,7 @@ A subscriber that connects says which topic it wants but not of whom, so each no
 from __future__ import annotations
 
 import socket
+from collections import deque
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -38,7 +39,7 @@ class MissionNode:
         self.name = name
         self.inner = inner
         self._host = host
-        self._server = XmlRpcServer(host.selector, host.address.interface, self._answer)
+        self._server = XmlRpcServer(host.selector, host.address.interface, self._answer, host.bounds)
         self._listening = Listening(host.selector, listening_socket(host.address.interface), self._accept)
         self._clients: set[OutsideClient] = set()
         self.uri = f"http://{host.address.host}:{self._server.port}/"
@@ -111,9 +112,10 @@ class OutsideClient:
         self._frames = TcprosFrames()
         self._header: dict[str, str] | None = None
         self._topic = self._service = ""
-        self._requests: list[bytes] = []
+        self._requests: deque[bytes] = deque()
         self._number = 0  # of the call under way
         self._socket = PeerSocket(host.selector, connected, self._take, self._lost)
+        host.bounds.places.take(self, host.now_s())
 
     @property
     def caller(self) -> str:
@@ -125,7 +127,13 @@ class OutsideClient:
         self._socket.close()
         self._gone()
 
+    def fail(self, why: str) -> None:
+        """See `Guarded.fail`."""
+        self._socket.fail(why)
+
     def _take(self, data: bytes) -> None:
+        if self._topic:
+            return  # a subscriber says no more than its header
         self._frames.add(data)
         for each in self._frames.take():
             if self._header is None:
@@ -134,6 +142,8 @@ class OutsideClient:
             elif self._service:
                 self._requests.append(each)
                 self._next_request()
+        if self._socket.is_open:
+            self._host.bounds.room.hold(self, len(self._frames) + sum(map(len, self._requests)))
 
     def _begin(self, header: dict[str, str]) -> None:
         self._header = header
@@ -147,6 +157,8 @@ class OutsideClient:
             self._socket.send(pack_header({"error": error}))
             self._socket.finish()
             self._gone()
+        else:
+            self._host.bounds.places.keep(self)
 
     def _connect(self, header: dict[str, str]) -> str:
         """What is wrong with a connection; "" when nothing is."""
@@ -196,6 +208,7 @@ class OutsideClient:
         if header.get("probe") == "1":
             self._socket.finish()
             self._node.forget(self)
+            self._host.bounds.places.leave(self)
             return ""
         self._service = service
         host.counts.of(service, self.caller, INTO).connections += 1
@@ -203,12 +216,20 @@ class OutsideClient:
 
     def _next_request(self) -> None:
         if self._number or not self._requests:
+            self._hold_back()
             return
-        request = self._requests.pop(0)
+        request = self._requests.popleft()
         count = self._host.counts.of(self._service, self.caller, INTO)
         count.messages += 1
         count.size += len(request)
         self._number = self._host.begin_call(self._service, self.caller, request, self)
+
+    def _hold_back(self) -> None:
+        """Leave requests with a caller that does not wait for its answers."""
+        if self._requests:
+            self._socket.pause()
+        else:
+            self._socket.resume()
 
     def answer(self, good: bool, body: bytes) -> None:
         """The mission has answered."""
@@ -232,6 +253,8 @@ class OutsideClient:
 
     def _gone(self) -> None:
         self._node.forget(self)
+        self._host.bounds.places.leave(self)
+        self._host.bounds.room.release(self)
         if self._topic:
             topic, self._topic = self._topic, ""
             self._host.counts.of(topic, self.caller, OUT_OF).dropped += self._socket.dropped

@@ -83,6 +83,13 @@ class OutsidePublisher:
             else:
                 self._coming.append(each)
         self.enter()
+        if self._socket is not None:
+            self._host.bounds.room.hold(self, len(self._frames) + sum(map(len, self._coming)))
+
+    def fail(self, why: str) -> None:
+        """See `Guarded.fail`."""
+        if self._socket is not None:
+            self._socket.fail(why)
 
     def _begin(self, header: dict[str, str]) -> None:
         if "error" in header:
@@ -147,6 +154,7 @@ class OutsidePublisher:
             self._socket = None
         self._coming.clear()
         self._host.stalled.discard(self)
+        self._host.bounds.room.release(self)
         if self._name:
             self._host.act("publish no more", self.topic, self._name)
             self._name = ""

@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from cfepy.input_limits import ROS_NAME, ROS_REGISTRATIONS
 from cfepy.ros_host.world import CALLER
 from cfepy.ros_host.xmlrpc_server import XmlRpcServer
 from cfepy.status import UsageError
-from rospy_shim.master.calls import call
+from rospy_shim.master.calls import call, resolve
 from rospy_shim.parameters.tree import ParameterTree
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class ServedMaster:
     def __init__(self, host: RosHost, port: int = MASTER_PORT) -> None:
         self._host = host
         try:
-            self._server = XmlRpcServer(host.selector, host.address.interface, self._answer, port)
+            self._server = XmlRpcServer(host.selector, host.address.interface, self._answer, host.bounds, port)
         except OSError as error:
             remedy = "another master may run there; serve:PORT takes another port"
             text = f"port {port} cannot be opened: {error.strerror}; {remedy}"
@@ -79,6 +80,9 @@ class ServedMaster:
         if method == "getPid":
             return 1, "", host.pid
         if method.startswith((REGISTER, UNREGISTER)) or method in PARAMS | SUBSCRIPTIONS:
+            wrong = self._excess(method, arguments)
+            if wrong:
+                return -1, f"ERROR: {wrong}", 0
             answer = host.ask_inside("", body)
             if answer[0] == 1:
                 self._remember(method, arguments, body)
@@ -87,11 +91,20 @@ class ServedMaster:
         assert host.ros is not None
         return host.outer_answer(call(host.ros.switchboard.master, method, arguments))
 
+    def _excess(self, method: str, arguments: Sequence[Any]) -> str:
+        """What is too long or too much in a request that changes something; "" when nothing is."""
+        names = arguments[:2] if method in PARAMS else arguments
+        if any(isinstance(each, str) and len(each) > ROS_NAME for each in names):
+            return f"a name has more than {ROS_NAME:,} characters"
+        if method in PARAMS or method.startswith("un") or len(self._entered) < ROS_REGISTRATIONS:
+            return ""
+        return f"nodes have registered {ROS_REGISTRATIONS:,} times already, which is the limit"
+
     def _remember(self, method: str, arguments: Sequence[Any], body: bytes) -> None:
         if method in PARAMS:
             return  # critical tables keep them
         caller, *rest = map(str, arguments)
-        name = rest[1] if method in SUBSCRIPTIONS else rest[0]
+        name = resolve(rest[1] if method in SUBSCRIPTIONS else rest[0], caller)
         if method.startswith(("un",)):
             kind = method.removeprefix("un")
             self._entered.pop((kind[:1].lower() + kind[1:], name, caller), None)
@@ -103,14 +116,15 @@ class ServedMaster:
     def look(self, seen: OwnGraph, now_s: float) -> None:
         """See `RosWorld.look`: tell outside subscribers of the publishers, if there are others now."""
         registry = self._registry
-        publishers = registry.publishers()
+        publishers, told = registry.publishers(), {}
         for topic, held in registry.subscribers().items():
             uris = self._host.outer(list(publishers.get(topic, {}).values()))
             outside = [uri for name, uri in held.items() if seen.nodes.get(name) != uri]
             if outside and uris != self._told.get(topic, []):
                 for uri in outside:
                     self._tell(uri, "publisherUpdate", topic, uris)
-            self._told[topic] = uris
+            told[topic] = uris
+        self._told = told
 
     def params_changed(self, keys: list[str]) -> None:
         """See `RosWorld.params_changed`: tell those that have subscribed."""

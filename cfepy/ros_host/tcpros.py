@@ -9,10 +9,11 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterator, Mapping
 
+from cfepy.input_limits import TCPROS_FRAME_BYTES, TCPROS_HEADER_BYTES
 from cfepy.status import UsageError
 
-LONGEST_HEADER = 1 << 24  # bytes; definitions of messages are in it
-LONGEST_FRAME = 1 << 28
+LONGEST_HEADER = TCPROS_HEADER_BYTES
+LONGEST_FRAME = TCPROS_FRAME_BYTES
 _length = struct.Struct("<I")
 
 
@@ -65,6 +66,10 @@ class TcprosFrames:
         self.longest = LONGEST_HEADER
         self.has_status = False
         self._data = bytearray()
+
+    def __len__(self) -> int:
+        """Bytes of a frame that is not complete."""
+        return len(self._data)
 
     def add(self, data: bytes) -> None:
         """Take what came."""

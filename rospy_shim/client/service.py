@@ -20,7 +20,7 @@ from rospy_shim.client.exceptions import ROSInterruptException, ServiceException
 from rospy_shim.client.message import packer, unpacker
 from rospy_shim.client.subscription import DEFAULT_BUFF_SIZE, NO_PIPE
 from rospy_shim.client.transport import FIRST, LAST, MIDDLE, WHOLE
-from rospy_shim.genpy import Message, SerializationError
+from rospy_shim.genpy import Message
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,6 +42,8 @@ FOREVER_MS = -1
 PACE_NS = 100_000  # between two looks whether the callers have room for the next segment of an answer
 PATIENCE = 100  # looks
 WINDOW = 4  # packets of long requests and answers that may wait
+NO_CALL = -1  # the ground can put a packet of any length on the MsgId of a service
+MOST_BEGUN = 1000  # long requests or answers of which a segment is missing
 
 
 def request_packets(msg_id: int, number: int, body: bytes, most: int) -> Iterator[bytes]:
@@ -74,13 +76,17 @@ def answer_packets(msg_id: int, number: int, good: bool, body: bytes, most: int)
 
 
 def call_of_request(packet: bytes) -> int:
-    """The number of the call that a request belongs to."""
+    """The number of the call that a request belongs to; `NO_CALL` if the packet is too short to have one."""
+    if len(packet) < REQUEST_LEAD:
+        return NO_CALL
     number: int = _call.unpack_from(packet, REQUEST_LEAD - 4)[0]
     return number
 
 
 def call_of_answer(packet: bytes) -> tuple[int, bool]:
-    """The number of the call that an answer belongs to, and whether the call succeeded."""
+    """The number of the call that an answer belongs to, `NO_CALL` as above, and whether the call succeeded."""
+    if len(packet) < ANSWER_LEAD:
+        return NO_CALL, False
     number, good = _outcome.unpack_from(packet, ANSWER_LEAD - 5)
     return number, bool(good)
 
@@ -98,11 +104,15 @@ class Pieces:
 
     def add(self, number: int, packet: bytes) -> bytes | None:
         """Take a packet of a call; the whole request or answer if it is the last one."""
+        if number == NO_CALL:
+            return None
         flags, piece = packet[2] & WHOLE, packet[self._lead :]
         if flags == WHOLE:
             return piece
         if flags == FIRST:
             self._parts[number] = [piece]
+            if len(self._parts) > MOST_BEGUN:
+                del self._parts[next(iter(self._parts))]
             return None
         parts = self._parts.get(number)
         if parts is None:
@@ -326,14 +336,14 @@ class Service:
             good, body = self._result(number, request)
         finally:
             self._busy -= 1
-            del self._entry.serving[number]
+            self._entry.serving.pop(number, None)  # the ground may have sent a second request of that number
         self._answer(number, good, body)
 
     def _result(self, number: int, data: bytes) -> tuple[bool, bytes]:
         """Call the handler: whether it went well, and the serialised response or the error's text."""
         try:
             request = self._unpack(data, 0)
-        except SerializationError as error:
+        except Exception as error:  # a caller outside may send any bytes, and the type's own code raises what it likes
             return False, f"service cannot process request: {error}".encode()
         call = self._entry.calls.get(number)
         request._connection_header = call.header if call is not None else {}
@@ -341,7 +351,7 @@ class Service:
             response = response_of(self.handler(request), self.response_class)
             self._entry.half_answered.add(number)
             body = self._pack(response)
-            self._entry.half_answered.remove(number)
+            self._entry.half_answered.discard(number)
             return True, body
         except (ServiceException, ROSInterruptException) as error:
             return False, f"service cannot process request: {error}".encode()

@@ -154,7 +154,7 @@ class ServiceProxy:
             self._connection = PersistentConnection.HALF_A_RESPONSE
         if not good:
             raise ServiceException(f"service [{self.resolved_name}] responded with an error: {answer!r}")
-        response = self._unpack(answer, 0)
+        response = self._read(answer)
         response._connection_header = {
             "callerid": entry.service.node.names.name,
             "md5sum": self.service_class._md5sum,
@@ -175,6 +175,26 @@ class ServiceProxy:
                 self._node.universe.print_error(_NOTE.format(service=self.resolved_name))
             raise
 
+    def _read(self, answer: bytes) -> Any:
+        """Make the response of its bytes.
+
+        Raises:
+            ServiceException: they are not a response, as a service outside of the mission may send.
+        """
+        try:
+            return self._unpack(answer, 0)
+        except Exception as error:  # the type's own code raises what it likes
+            raise self._unreadable(error) from None
+
+    def _unreadable(self, error: Exception) -> ServiceException:
+        kind = (
+            "DeserializationError cannot deserialize:"
+            if isinstance(error, DeserializationError)
+            else "unexpected error"
+        )
+        what = f"receive_once[{self.resolved_name}]: {kind} {error}"
+        return ServiceException(f"transport error completing service call: {what}")
+
     def _wait_in_vain(self) -> NoReturn:
         """The service could not read the request that came behind half of another one, and does not answer."""
         life, waits = self._node.life, WaitList(f"an answer of service {self.resolved_name}, which got half a request")
@@ -191,10 +211,7 @@ class ServiceProxy:
         try:
             self.response_class().deserialize(b"")
         except DeserializationError as error:
-            what = f"receive_once[{self.resolved_name}]: DeserializationError cannot deserialize: {error}"
-        else:
-            return
-        raise ServiceException(f"transport error completing service call: {what}")
+            raise self._unreadable(error) from None
 
     def _check_type(self, entry: ServiceEntry) -> None:
         ours, theirs = self.service_class._md5sum, entry.service.service_class._md5sum

@@ -365,7 +365,10 @@ class OutsideGraph:
             node: a node of the mission, which is asked; "" for the master.
             body: method and arguments.
         """
-        arguments, method = loads(body, use_builtin_types=True)
+        try:
+            arguments, method = loads(body, use_builtin_types=True)
+        except Exception as error:  # of the parser, which raises a dozen kinds for what is no request
+            return -1, f"this is not a request: {error}", 0
         api = self._switchboard.api_of(node) if node else self._switchboard.master
         if api is None:
             return 0, f"[{node}] is no node of the mission", 0
@@ -570,9 +573,9 @@ class OutsideGraph:
         def take(packet: bytes) -> None:
             number = call_of_request(packet)
             body = pieces.add(number, packet)
-            way = self._way_to(entry.service.node.names.name)
-            if body is not None and way is not None:
-                way.request(service, number, entry.calls[number].header, body)
+            way, call = self._way_to(entry.service.node.names.name), entry.calls.get(number)
+            if body is not None and way is not None and call is not None:
+                way.request(service, number, call.header, body)
 
         return Outlet(self._cfe.sb, entry.request_id, f"requests to {service}", take)
 

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from rospy_shim.graph.compiled import CompiledNode
     from rospy_shim.graph.graph import Graph
 
+MOST_TYPES = 20_000  # of topics of others, also of those that are gone
+
 Entries = dict[str, dict[str, str]]
 """By topic or service, or by parameter: names of nodes and their URIs."""
 
@@ -100,13 +102,18 @@ class Registrations:
         """A node publishes a topic."""
         self._enter(self._publishers, topic, caller, uri)
         if kind != ANYTYPE or topic not in self._types:
-            self._types[topic] = kind
+            self._note_type(topic, kind)
 
     def register_subscriber(self, topic: str, kind: str, caller: str, uri: str) -> None:
         """A node subscribes to a topic."""
         self._enter(self._subscribers, topic, caller, uri)
-        if kind != ANYTYPE:
-            self._types.setdefault(topic, kind)
+        if kind != ANYTYPE and topic not in self._types:
+            self._note_type(topic, kind)
+
+    def _note_type(self, topic: str, kind: str) -> None:
+        self._types[topic] = kind
+        if len(self._types) > MOST_TYPES:
+            del self._types[next(iter(self._types))]
 
     def register_service(self, service: str, service_uri: str, caller: str, uri: str) -> None:
         """A node offers a service; it is the only one from now on."""

@@ -165,7 +165,7 @@ class OutsideSpeaker:
             selector, listening_socket("127.0.0.1"), lambda socket: self._accepted.append(Wire(run, socket))
         )
         self._server = XmlRpcServer(
-            selector, "127.0.0.1", lambda *_: (1, "", ["TCPROS", "127.0.0.1", self._opened.port])
+            selector, "127.0.0.1", lambda *_: (1, "", ["TCPROS", "127.0.0.1", self._opened.port]), run.host.bounds
         )
         self.uri = f"http://127.0.0.1:{self._server.port}/"
         if is_known:

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from cfepy.io import Listening, listening_socket
 from cfepy.ros_host.tcpros import frame, pack_header
 from tests.ros_host.peers import CALLER, SERVER, SET_BOOL, STRING, TALKER, OutsideSpeaker, Wire, joined, text
@@ -121,6 +123,51 @@ def test_a_service_of_the_mission_is_called_from_outside(tmp_path: Path) -> None
         assert wire.frame() == b"\x01" + b"\x01" + text(f"by {CALLER}")
         assert wire.frame() == b"\x00error processing request: off is not possible"
         wire.socket.close()
+
+
+SHORT_REQUEST = b"\x00service cannot process request: "
+
+
+def test_a_short_request_gets_an_error_and_the_next_one_is_answered(tmp_path: Path) -> None:
+    with joined(tmp_path, {"SERVER": SERVER}) as run:
+        uri = run.master("lookupService", "/switch")
+        wire = run.connected(uri, {"service": "/switch", "persistent": "1", **SET_BOOL})
+        wire.header()
+        wire.frames.has_status = True
+        wire.socket.sendall(frame(b"") + frame(b"\x01"))
+        assert wire.frame().startswith(SHORT_REQUEST)
+        assert wire.frame() == b"\x01" + b"\x01" + text(f"by {CALLER}")
+        wire.socket.close()
+        logging = run.connected(uri, {"service": "/server/set_logger_level", "md5sum": "*"})
+        logging.header()
+        logging.frames.has_status = True
+        logging.socket.sendall(frame(b"\xff\xff\xff\xffrosout"))
+        assert logging.frame().startswith(SHORT_REQUEST)
+        logging.socket.close()
+
+
+SHORT_ANSWERS = {"no bytes": b"", "no text": b"\x01\x01"}
+
+
+@pytest.mark.parametrize("body", SHORT_ANSWERS.values(), ids=list(SHORT_ANSWERS))
+def test_an_answer_that_cannot_be_read_is_a_service_exception(tmp_path: Path, body: bytes) -> None:
+    calling = CALLING.replace("print(switch(True).message)", "switch = rospy.ServiceProxy('/outside/switch', SetBool)")
+    with joined(tmp_path, {"CALLING": calling}) as run:
+        wires: list[Wire] = []
+        opened = Listening(
+            run.host.selector, listening_socket("127.0.0.1"), lambda socket: wires.append(Wire(run, socket))
+        )
+        run.master("registerService", "/outside/switch", f"rosrpc://127.0.0.1:{opened.port}", NOBODY)
+        answer = pack_header({"callerid": CALLER, "service": "/outside/switch", **SET_BOOL})
+        for _ in range(2):
+            run.run_while(lambda: not wires)
+            wire = wires.pop()
+            if wire.header().get("probe") == "1":
+                wire.socket.sendall(answer)
+                continue
+            wire.socket.sendall(answer + b"\x01" + frame(body))
+        run.run_while(lambda: not run.heard("receive_once[/outside/switch]: DeserializationError"))
+        opened.close()
 
 
 def test_the_mission_calls_a_service_outside(tmp_path: Path) -> None:

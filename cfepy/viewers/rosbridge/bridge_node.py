@@ -17,7 +17,7 @@ from cfepy.mission import Mission
 from cfepy.msg import get_msg_id
 from cfepy.status import CfeError, UsageError
 from cfepy.units import NS_PER_S
-from cfepy.viewers.rosbridge.json_values import Reading, json_values
+from cfepy.viewers.rosbridge.json_values import Reading, WrongMessage, json_values
 from cfepy.viewers.rosbridge.known_types import ANY, KnownTypes, NotPossible
 from cfepy.viewers.rosbridge.outgoing import Outgoing
 from rospy_shim.client.names import is_legal_name
@@ -474,10 +474,15 @@ class BridgeNode:
         if found is None:
             return
         service, kind, over = found
-        if good:
-            over(True, json_values(kind._response_class().deserialize(body)))
-        else:
+        if not good:
             over(False, f"service [{service}] responded with an error: {body!r}")
+            return
+        try:
+            values = _values_of(body, kind._response_class)
+        except WrongMessage as error:
+            over(False, f"service [{service}] has sent a response that cannot be read: {error}")
+        else:
+            over(True, values)
 
     # -- services of clients -------------------------------------------------------------------------------------------
 
@@ -526,10 +531,15 @@ class BridgeNode:
         offered = self._offered.get(service)
         if offered is None:
             return  # who called was told when it was withdrawn
+        try:
+            values = _values_of(body, offered.kind._request_class)
+        except WrongMessage as error:
+            self._act("answer", service, number, False, f"service cannot process request: {error}".encode())
+            return
         self._last_request += 1
         name = f"service_request:{service}:{self._last_request}"
         offered.calls[name] = number
-        offered.client.requested(service, name, json_values(offered.kind._request_class().deserialize(body)))
+        offered.client.requested(service, name, values)
 
     def respond(self, service: str, name: str, values: Any) -> None:
         """A client answers a call.
@@ -564,6 +574,18 @@ class BridgeNode:
     def answer(self, number: int, good: bool, body: bytes) -> None:
         """See `WayOut.answer`."""
         self._aside.append(lambda: self._answered(number, good, body))
+
+
+def _values_of(body: bytes, kind: MessageClass) -> dict[str, Any]:
+    """The values of a serialised message, which may come from a program outside.
+
+    Raises:
+        WrongMessage: the bytes are not a message of the type.
+    """
+    try:
+        return json_values(kind().deserialize(body))
+    except Exception as error:  # whatever the generated code raises for bytes that are no such message
+        raise WrongMessage(f"{kind._type}: {error}") from None
 
 
 def fields_of(arguments: Any, kind: MessageClass) -> dict[str, Any]:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable
-from typing import Any
+from functools import wraps
+from typing import Any, Concatenate, ParamSpec
 
 from cfepy.io import INTO, OUT_OF, PeerCounts
 from cfepy.status import UsageError
@@ -21,7 +22,7 @@ from cfepy.viewers.rosbridge.rosapi import Rosapi
 from cfepy.viewers.rosbridge.rosauth import MacCheck
 from cfepy.viewers.rosbridge.sending import CBOR_RAW, LONGEST_QUEUE, NONE, Pacing, Wish
 from cfepy.viewers.websocket import LONGEST_MESSAGE, WebSocket
-from cfepy.viewers.websocket_listener import CONNECTIONS
+from cfepy.viewers.websocket_listener import CONNECTIONS, INTERNAL, LONGEST_REASON
 from rospy_shim.genpy import DeserializationError
 
 LEVELS = ("none", "error", "warning", "info")
@@ -30,11 +31,29 @@ MOST_CALLS = 1000  # of a client that wait for their answers
 MOST_TOPICS = 1000  # that a client publishes, and that it hears
 MOST_PATIENCE_S = 1.0  # wall time for which the mission may be full, before a message is lost
 SHORTEST_FRAGMENT = 16  # characters
+LONGEST_ID = 1000  # characters
 POLICY = 1008  # RFC 6455, 7.4.1
 
 Op = dict[str, Any]
 _TEXT, _NUMBER, _OBJECT, _FLAG = (str,), (int,), (dict,), (bool,)
+_IDS = (str, int, float, bool, type(None))
 _NAMES: dict[type, str] = {str: "str", int: "int", dict: "dict", bool: "bool", type(None): "NoneType"}
+
+
+P = ParamSpec("P")
+
+
+def _alone(step: Callable[Concatenate[RosbridgeClient, P], None]) -> Callable[Concatenate[RosbridgeClient, P], None]:
+    """Let an error of a step that the mission takes for a client end the client's connection, and nothing else."""
+
+    @wraps(step)
+    def guarded(client: RosbridgeClient, *values: P.args, **named: P.kwargs) -> None:
+        try:
+            step(client, *values, **named)
+        except Exception as error:
+            client.socket.close(INTERNAL, f"{type(error).__name__}: {error}"[:LONGEST_REASON])
+
+    return guarded
 
 
 class RosbridgeClient:
@@ -139,6 +158,9 @@ class RosbridgeClient:
         name = op.get("op")
         if self._mac is not None and name != "auth":
             self._turn_away("did not authenticate")
+            return
+        if type(op.get("id")) not in _IDS or len(str(op.get("id"))) > LONGEST_ID:
+            self._wrong(f"Expected field id to be a text or a number of at most {LONGEST_ID} characters.", None)
             return
         known = self._ops.get(name) if isinstance(name, str) else None
         if known is None:
@@ -282,6 +304,7 @@ class RosbridgeClient:
             del self._hears[topic]
             self._node.unsubscribe(self, topic)
 
+    @_alone
     def heard(self, topic: str, message: Outgoing) -> None:
         """See `Hearer.heard`."""
         now_s = time.monotonic()
@@ -313,8 +336,7 @@ class RosbridgeClient:
         cid = op.get("id", old_id if mark else None)
 
         def answer(good: bool, values: Any) -> None:
-            named = {} if cid is None else {"id": cid}
-            self._send({"op": "service_response", "service": given, "values": values, "result": good, **named})
+            self._answer_call(given, cid, good, values)
 
         try:
             service = self._node.resolved(name)
@@ -326,6 +348,11 @@ class RosbridgeClient:
             self._begin_call(service, op.get("args", []), answer)
         except UsageError as error:
             answer(False, str(error))
+
+    @_alone
+    def _answer_call(self, given: str, cid: object, good: bool, values: Any) -> None:
+        named = {} if cid is None else {"id": cid}
+        self._send({"op": "service_response", "service": given, "values": values, "result": good, **named})
 
     def _begin_call(self, service: str, arguments: Any, answer: Callable[[bool, Any], None]) -> None:
         def over(good: bool, values: Any) -> None:
@@ -356,6 +383,7 @@ class RosbridgeClient:
         self._node.withdraw(service)
         self._status("info", f"Unadvertised service {name}.")
 
+    @_alone
     def requested(self, service: str, number: str, values: Op) -> None:
         """See `Hearer.requested`."""
         self._counts.of(service, self._peer, OUT_OF).messages += 1

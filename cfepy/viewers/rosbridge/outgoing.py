@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from cfepy.viewers.rosbridge.json_values import json_values
 from cfepy.viewers.rosbridge.sending import CBOR, CBOR_RAW, PNG
-from rospy_shim.genpy import Message
+from rospy_shim.genpy import DeserializationError, Message
 from rospy_shim.msgs import MessageClass
 
 _MARK = b"\x89PNG\r\n\x1a\n"
@@ -81,7 +81,10 @@ class Outgoing:
     def _parsed(self) -> Message:
         if self._message is None:
             assert self.kind is not None
-            self._message = self.kind().deserialize(self.payload)
+            try:
+                self._message = self.kind().deserialize(self.payload)
+            except Exception as error:  # whatever the generated code raises for bytes that are no such message
+                raise DeserializationError(str(error)) from None
         return self._message
 
 

@@ -144,6 +144,19 @@ def test_services_are_called(run: ShownRun) -> None:
         assert "off is not possible" in client.told("serviceCallFailure")[0]["message"]
 
 
+def test_a_request_that_is_too_short_fails_and_the_run_goes_on(run: ShownRun) -> None:
+    with run.client() as client:
+        for number, request in enumerate((b"", b"\xff\xff\xff\xff")):
+            client.call("/talker/set_logger_level", number, request)
+        client.call("/switch", 7, b"")
+        client.wait_for(lambda: len(client.told("serviceCallFailure")) == 3)
+        for failed in client.told("serviceCallFailure"):
+            assert failed["message"].startswith("service cannot process request: ")
+        client.call("/switch", 8, SET_BOOL._request_class(True)._pack())
+        client.wait_for(lambda: client.answers)
+        assert client.answers[0][0] == 8
+
+
 def test_a_client_publishes(run: ShownRun) -> None:
     run.until(0.7)
     with run.client() as client:

@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 
 from cfepy.console import Console
-from cfepy.io import HostNetwork, PeerCounts
+from cfepy.io import HostNetwork, Listening, PeerCounts, listening_socket
 from cfepy.mission import Mission
 from cfepy.ros_host import RosHost, ServedMaster
+from cfepy.ros_host.tcpros import frame, pack_header
 from cfepy.viewers.listen import Admission, ListenPlace
 from cfepy.viewers.rosbridge import RosbridgeServer
-from tests.ros_host.peers import CALLER, SERVER, SET_BOOL, Joined, OutsideSpeaker, text
+from tests.ros_host.peers import CALLER, SERVER, SET_BOOL, Joined, OutsideSpeaker, Wire, text
 from tests.viewers.rosbridge.bridged import Bridged
 
 
@@ -81,5 +82,45 @@ def test_messages_and_calls_between_them(both: Both) -> None:
     late.socket.close()
     mouth.close()
     for each in (ear, caller):
+        each.socket.close()
+    client.close()
+
+
+def test_bytes_of_nodes_outside_that_are_no_messages_end_nothing(both: Both) -> None:
+    """A short request to a service that a client offers, a short message, and a short answer."""
+    client = both.client()
+    client.send(op="advertise_service", service="/mine", type="std_srvs/SetBool")
+    client.send(op="subscribe", topic="/orders", type="std_msgs/String")
+    client.call("/rosapi/nodes")
+    caller = both.connected(both.master("lookupService", "/mine"), {"service": "/mine", "persistent": "1", **SET_BOOL})
+    caller.header()
+    caller.frames.has_status = True
+    caller.socket.sendall(frame(b""))
+    assert caller.frame().startswith(b"\0service cannot process request: ")
+    mouth = OutsideSpeaker(both, "/orders")
+    mouth.connect()
+    for payload in (b"", b"\1"):
+        mouth.send(payload)
+    mouth.send(text("whole"))
+    assert client.next()["msg"] == {"data": "whole"}
+
+    wires: list[Wire] = []
+    opened = Listening(both.host.selector, listening_socket("127.0.0.1"), lambda each: wires.append(Wire(both, each)))
+    both.master("registerService", "/far", f"rosrpc://127.0.0.1:{opened.port}", "http://127.0.0.1:1/")
+    header = pack_header({"callerid": CALLER, "service": "/far", **SET_BOOL})
+    both.run_while(lambda: not wires)
+    wires.pop().socket.sendall(header)
+    both.run_while(lambda: "/far" not in both.mission.ros.graph.services)
+    client.send(op="call_service", service="/far", id="short", args=[True])
+    both.run_while(lambda: not wires)
+    wires[0].socket.sendall(header + b"\1" + frame(b"\1"))
+    answer = client.next()
+    assert (answer["id"], answer["result"]) == ("short", False)
+    assert "cannot be read" in answer["values"]
+    client.send(op="service_response", service="/mine", id="nobody", result=True)
+    assert client.next()["level"] == "error"
+    opened.close()
+    mouth.close()
+    for each in (caller, wires[0]):
         each.socket.close()
     client.close()
