@@ -41,11 +41,17 @@ RANDOM = ("rand", "srand", "random", "srandom")
 CLOCKS = ("time", "gettimeofday", "clock_gettime")
 WRAPPED = ("exit", "abort", "sleep", "usleep", "nanosleep", "signal", "sigaction", *RANDOM, *CLOCKS)
 """Functions of libc in whose place the library's are called: they would be about the whole computer."""
+ALLOCATING = (
+    *("malloc", "calloc", "realloc", "reallocarray", "free", "strdup", "strndup"),
+    *("aligned_alloc", "posix_memalign", "memalign"),
+)
+"""Functions of libc in whose place those of the arena are called, in profiles that have one."""
 LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic")
 BOOST_REFUSED = ("config.hpp", "version.hpp")
 """Headers of the small Boost that stop a header of the real one which was found by chance."""
 BOOST_IN_PART = ("boost/thread.hpp", "boost/thread/thread.hpp", "boost/foreach.hpp", "boost/circular_buffer.hpp")
 """Headers of which the small Boost has the part that fits one task: a node for the host gets those of the computer."""
+WITH_ARENA = ("-Wl,--wrap=" + ",--wrap=".join(ALLOCATING),)
 OWN_CPP_LIBRARY = ("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL")
 SYSTEM_ROS = ("/opt/ros/", "/usr/include/ros/", "/usr/local/include/ros/")
 HEAP_SOURCE = "heap.cpp"
@@ -248,7 +254,7 @@ def core_flags(profile: Profile) -> Sequence[str]:
 
 def link_flags(profile: Profile) -> list[str]:
     """The linker's flags of a profile: where nodes have an arena, the C++ library's own code takes from it, too."""
-    return [*LINK, *(() if profile is Profile.HOST else OWN_CPP_LIBRARY)]
+    return [*LINK, *(() if profile is Profile.HOST else (*WITH_ARENA, *OWN_CPP_LIBRARY))]
 
 
 def messages_folder(types: Sequence[str], library: Library, options: BuildOptions) -> Path:

@@ -138,7 +138,7 @@ extern HIDDEN PyTypeObject table_type;
 typedef struct Heap Heap;
 extern HIDDEN PyTypeObject heap_type;
 HIDDEN uint64_t heap_take(Heap *, size_t);
-HIDDEN uint64_t heap_take_any(Heap *, size_t);
+HIDDEN uint64_t heap_take_any(Heap *, size_t, size_t);
 HIDDEN void heap_own(Heap *, uint32_t owner);    /* whose the blocks are that are taken from now on */
 HIDDEN int heap_give(Heap *, uint64_t);           /* 1; 0 for no block in use, less for one that was written past */
 HIDDEN const char *heap_damage(int);              /* that number in words: "past its end" */

@@ -81,7 +81,7 @@ static Block *new_block(Heap *heap, size_t size, size_t grain)
 {
     size_t room = 0;
     int class = class_of(size + heap->slack, &room);
-    uint64_t address = heap->top, next = address + room, end = next;
+    uint64_t address = grain > GRAIN ? up(heap->top, grain) : heap->top, next = address + room, end = next;
     if (heap->is_guarded) {
         address = place(heap, size, grain, &end);
         next = end + heap->page;
@@ -161,17 +161,29 @@ static void note(Heap *heap, const Block *block)
     Py_XDECREF(told);
 }
 
+/* The block that was given back last, of those of a class that have an alignment; NULL when there is none. */
+static Block *freed_block(Heap *heap, int class, size_t grain)
+{
+    int *numbers = heap->free_of[class];
+    for (int at = heap->free_count[class] - 1; at >= 0; at--) {
+        Block *block = &heap->blocks[numbers[at]];
+        if (grain <= GRAIN || block->address % grain == 0) {
+            memmove(&numbers[at], &numbers[at + 1], (--heap->free_count[class] - at) * sizeof *numbers);
+            memset((void *)block->address, 0, block->room);
+            return block;
+        }
+    }
+    return NULL;
+}
+
 static uint64_t take_aligned(Heap *heap, size_t size, size_t grain)
 {
     size_t room;
-    if (size > heap->end - heap->base)
+    if (size > heap->end - heap->base || grain > heap->end - heap->base)
         return 0;
     int class = class_of(size + heap->slack, &room);
-    Block *block = NULL;
-    if (class >= 0 && !heap->is_guarded && heap->free_count[class] > 0) {
-        block = &heap->blocks[heap->free_of[class][--heap->free_count[class]]];
-        memset((void *)block->address, 0, block->room);
-    } else
+    Block *block = class >= 0 && !heap->is_guarded ? freed_block(heap, class, grain) : NULL;
+    if (block == NULL)
         block = new_block(heap, size, grain);
     if (block == NULL)
         return 0;
@@ -189,9 +201,9 @@ static uint64_t take_aligned(Heap *heap, size_t size, size_t grain)
 HIDDEN uint64_t heap_take(Heap *heap, size_t size) { return take_aligned(heap, size, heap->grain); }
 
 /* As heap_take, for malloc, which promises nothing of what is in the block: a guarded heap shows that. */
-HIDDEN uint64_t heap_take_any(Heap *heap, size_t size)
+HIDDEN uint64_t heap_take_any(Heap *heap, size_t size, size_t alignment)
 {
-    uint64_t address = heap_take(heap, size);
+    uint64_t address = take_aligned(heap, size, alignment > heap->grain ? alignment : heap->grain);
     if (address != 0 && heap->is_guarded)
         memset((void *)address, POISON, size);
     return address;

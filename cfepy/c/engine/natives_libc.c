@@ -5,6 +5,7 @@
 #include "engine.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -175,13 +176,15 @@ NATIVE(format_list_unlimited) FORMATS(INT32_MAX, format_list, TEXT(1), WORD(2))
 
 /* ---- malloc ------------------------------------------------------------------------------------------------------- */
 
-static uint64_t take(Coroutine *call, uint64_t size)
+static uint64_t take_aligned(Coroutine *call, uint64_t size, uint64_t alignment)
 {
     if (call->table->heap == NULL)
         return 0;
     heap_own(call->table->heap, call->owner);
-    return heap_take_any(call->table->heap, size ? size : 1);
+    return heap_take_any(call->table->heap, size ? size : 1, alignment);
 }
+
+static uint64_t take(Coroutine *call, uint64_t size) { return take_aligned(call, size, 1); }
 
 /* Give a block back; what is wrong with it is a fault of the caller's. */
 static bool give(Coroutine *call, uint64_t address, const char *function)
@@ -205,6 +208,23 @@ NATIVE(allocate_many)
     return made == 0 ? 0 : (uint64_t)memset((void *)made, 0, size);
 }
 
+static bool is_power_of_two(uint64_t number) { return number != 0 && (number & (number - 1)) == 0; }
+
+/* Also the operator new of libstdc++ for types that want more than 16 bytes calls it. */
+NATIVE(allocate_aligned) { return is_power_of_two(WORD(0)) ? take_aligned(call, WORD(1), WORD(0)) : 0; }
+
+NATIVE(allocate_aligned_to)
+{
+    if (!is_power_of_two(WORD(1)) || WORD(1) % sizeof(void *) != 0)
+        return EINVAL;
+    uint64_t made = take_aligned(call, WORD(2), WORD(1));
+    if (made == 0)
+        return ENOMEM;
+    if (engine_copy(POINTER(0), &made, sizeof made))
+        PyErr_Format(fault_error, "posix_memalign(): bad address %p", (void *)WORD(0));
+    return 0;
+}
+
 NATIVE(let_go)
 {
     if (WORD(0) != 0)
@@ -226,6 +246,20 @@ NATIVE(allocate_again)
     }
     return made;
 }
+
+static uint64_t copy_of(Coroutine *call, uint64_t most)
+{
+    size_t size = strnlen(TEXT(0), most);
+    uint64_t made = take(call, size + 1);
+    if (made != 0) {
+        memcpy((void *)made, TEXT(0), size);
+        ((char *)made)[size] = 0;
+    }
+    return made;
+}
+
+NATIVE(copy_text) { return copy_of(call, INT64_MAX); }
+NATIVE(copy_text_limited) { return copy_of(call, WORD(1)); }
 
 /* The tables of isalpha() and its kin: copies in the arena, since an address of the host is another in each run. */
 NATIVE(ctype_table) { return call->table->ctype[0]; }
@@ -328,7 +362,12 @@ HIDDEN const NativeRow natives_of_libc[] = {
     {"malloc", allocate},
     {"calloc", allocate_many},
     {"realloc", allocate_again},
+    {"aligned_alloc", allocate_aligned},
+    {"memalign", allocate_aligned},
+    {"posix_memalign", allocate_aligned_to},
     {"free", let_go},
+    {"strdup", copy_text},
+    {"strndup", copy_text_limited},
     {"__getauxval", no_more_than_all_have},
     {"__assert_fail", asserted},
     {"__stack_chk_fail", smashed},
