@@ -13,6 +13,9 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from cfepy.cached import CachedProperty
+from cfepy.input_files import text_limited
+from cfepy.input_limits import PYTHON_BYTES, XML_BYTES
+from cfepy.status import UsageError
 
 _MANIFESTS = ("package.xml", "manifest.xml")
 _FENCES = ("CATKIN_IGNORE", "AMENT_IGNORE", "rospack_nosubdirs")
@@ -87,8 +90,8 @@ class Packages:
 def _code_roots(package: Path) -> list[str]:
     """Where a package has the code that it installs: `src`, or what its setup.py says of all its Python packages."""
     try:
-        match = _PACKAGE_DIR.search((package / "setup.py").read_text(encoding="utf-8", errors="replace"))
-    except OSError:
+        match = _PACKAGE_DIR.search(text_limited(package / "setup.py", PYTHON_BYTES, "replace"))
+    except (OSError, UsageError):
         match = None
     return list(dict.fromkeys(["src", *([match[1]] if match else [])]))
 
@@ -122,8 +125,8 @@ def crawl(root: Path) -> Iterator[Path]:
 def name_of(folder: Path) -> str:
     """What a package's manifest calls it; without one, or with rosbuild's, the folder's name."""
     try:
-        match = _NAME.search((folder / _MANIFESTS[0]).read_text(encoding="utf-8", errors="replace"))
-    except OSError:
+        match = _NAME.search(text_limited(folder / _MANIFESTS[0], XML_BYTES, "replace"))
+    except (OSError, UsageError):
         match = None
     return match[1] if match else folder.name
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from cfepy.input_limits import LAUNCH_NUMBER, XML_BYTES, XML_DEPTH, XML_ENTITY, XML_TAGS, read_limited
+from cfepy.input_files import read_limited
+from cfepy.input_limits import LAUNCH_NUMBER, XML_BYTES, XML_DEPTH, XML_ENTITY, XML_TAGS
 from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
 from rospy_shim.roslaunch.model import LaunchRemark

@@ -15,6 +15,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from cfepy.input_files import beginning_of, text_limited
+from cfepy.input_limits import CMAKE_BYTES, XML_BYTES
 from cfepy.marked_yaml import Mistakes
 from cfepy.nodes import ROSCORE_PARAMS, CppNode, NodeConfig
 from cfepy.status import UsageError
@@ -104,7 +106,7 @@ def _is_built(folder: Path, package: str, node_type: str) -> bool:
     word = re.compile(rf"(?<![\w.-]){re.escape(node_type)}(?![\w.-])")
     for file in folder.rglob("CMakeLists.txt") if not node_type.endswith(".py") else ():
         try:
-            text = file.read_text(encoding="utf-8", errors="replace")
+            text = text_limited(file, CMAKE_BYTES, "replace")
         except OSError:
             continue
         if word.search(text.replace("${PROJECT_NAME}", package)):
@@ -116,9 +118,9 @@ def _offers(folder: Path, nodelet: str) -> bool:
     """Whether a file of plugins that a package exports has a nodelet."""
     word = re.compile(rf'\b(?:name|type)\s*=\s*"{re.escape(nodelet)}"')
     try:
-        files = _EXPORTED.findall((folder / "package.xml").read_text(encoding="utf-8", errors="replace"))
-        texts = [(folder / each).read_text(encoding="utf-8", errors="replace") for each in files]
-    except OSError:
+        files = _EXPORTED.findall(text_limited(folder / "package.xml", XML_BYTES, "replace"))
+        texts = [text_limited(folder / each, XML_BYTES, "replace") for each in files]
+    except (OSError, UsageError):
         return False
     return any(word.search(text) for text in texts)
 
@@ -141,8 +143,7 @@ def is_python(file: Path) -> bool:
     """Whether a file is a Python script: by its name, or by its first line."""
     if file.suffix == ".py":
         return True
-    with file.open("rb") as stream:
-        first = stream.readline(200)
+    first = beginning_of(file, 200).partition(b"\n")[0]
     return first.startswith(b"#!") and b"python" in first
 
 

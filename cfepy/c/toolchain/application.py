@@ -18,6 +18,8 @@ from cfepy.c.elf import MACHINES, elf_file
 from cfepy.c.toolchain.compiler import CompilerError, compile_file, is_cpp, link
 from cfepy.c.toolchain.headers import CfsTree, headers_folder, read_tree
 from cfepy.c.toolchain.sources import Sources, find_sources
+from cfepy.input_files import read_limited
+from cfepy.input_limits import OBJECT_BYTES
 from cfepy.status import UsageError
 from cfepy.tbl import TableImage
 from cfepy.tbl import build as table_file
@@ -158,7 +160,7 @@ class _Builder:
             made = self._scratch / f"table-{source.name}.o"
             names = [f'-DCFE_APP_NAME="{self._sources.name}"', f"-DCFE_TABLE_NAME={source.stem}", "-DCFE_CPU_NAME=cpu1"]
             self._compile(source, made, [*self._flags, *names, *self._options.flags])
-            table = read_table(made.read_bytes(), source)
+            table = read_table(read_limited(made, OBJECT_BYTES), source)
             if table.addresses:
                 text = f"{table.addresses} words of the table are addresses, for which its file has 0"
                 self._built.warnings.append(f"{source}: warning: {text}")

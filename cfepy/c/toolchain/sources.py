@@ -20,6 +20,8 @@ from pathlib import Path
 
 from cfepy.c.toolchain.cmake_script import FILE, CMakeScript
 from cfepy.c.toolchain.compiler import SOURCE_SUFFIXES
+from cfepy.input_files import text_limited
+from cfepy.input_limits import CMAKE_BYTES
 from cfepy.status import UsageError
 
 INCLUDES = ("fsw/inc", "fsw/public_inc", "fsw/mission_inc", "fsw/platform_inc", "inc", "include")
@@ -124,7 +126,7 @@ def _declared(folder: Path) -> Iterator[str]:
     for name in ("mission_build.cmake", "arch_build.cmake"):
         file = folder / name
         if file.is_file():
-            for words in _FILE_LIST.findall(file.read_text(encoding="utf-8", errors="replace")):
+            for words in _FILE_LIST.findall(text_limited(file, CMAKE_BYTES, "replace")):
                 yield from (word for word in words.split() if word.endswith(".h"))
 
 
@@ -197,7 +199,7 @@ def read_cmake_lists(folder: Path) -> CMakeLists:
     if not file.is_file():
         return CMakeLists()
     reader = _Reader(folder)
-    reader.run(file.read_text(encoding="utf-8", errors="replace"))
+    reader.run(text_limited(file, CMAKE_BYTES, "replace"))
     return reader.found
 
 
