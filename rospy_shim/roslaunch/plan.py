@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import shlex
+import zlib
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -29,6 +30,7 @@ from rospy_shim.roslaunch.reader import read
 
 _TOOLS = Path(__file__).parent / "tools"
 LONGEST_NAME = 16  # an application's file has ".so" behind it, and names of files have 19 characters in OSAL
+_LONGEST_FILE = 200  # characters of a file's name, which may have 255 bytes
 ROS_ENVIRONMENT = {"ROS_DISTRO": "noetic", "ROS_PYTHON_VERSION": "3", "ROS_VERSION": "1"}  # as ROS's setup.sh has it
 _NOT_OURS = ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "ROS_NAMESPACE")  # of the network that is not there
 
@@ -168,6 +170,12 @@ def _candidates(folders: list[Path], name: str) -> Iterator[Path]:
 def _rank(file: Path) -> tuple[bool, int]:
     """Executable files first, as only they count for ROS; then those nearer to the top."""
     return not os.access(file, os.X_OK), len(file.parts)
+
+
+def _results_file(name: str) -> str:
+    """The name of a file for the results of a test, whose own name may have any characters."""
+    plain = re.sub(r"[^\w.+-]", "_", name)[:_LONGEST_FILE]
+    return f"{plain}.xml" if plain == name else f"{plain}-{zlib.crc32(name.encode('utf-8', 'replace')):08x}.xml"
 
 
 @dataclass(frozen=True, slots=True)
@@ -417,7 +425,7 @@ class Planner:
     def _test(self, test: LaunchTest, remarks: list[LaunchRemark]) -> PlannedTest:
         """A test; it is told where to write, and its end is the end of its run."""
         node, name, limit = test.node, test.test_name, round(test.time_limit * NS_PER_S)
-        results = self._results / f"{node.package}-{name}.xml"
+        results = self._results / _results_file(f"{node.package}-{name}")
         try:
             config = self.config(replace(node, required=True), (f"--gtest_output=xml:{results}",))
         except ScriptError as error:

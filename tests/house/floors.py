@@ -25,7 +25,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
             "suggestions",
         ),
         *("faces", "cached", "markup", "garbage", "syntax_trees", "own_code", "host_system", "child_pipes", "compiled"),
-        *("input_files",),
+        *("input_files", "plain_xml"),
     ),
     ("rtos",),
     ("osal",),
