@@ -1,16 +1,10 @@
 """How large an input may become: a limit for each kind, so that no file of somebody else's fills memory or never ends.
 
 The limits are far above what missions, bags and launch files have. What exceeds one is refused with an error that names
-the file, the limit, and what to do. docs/security.md lists them.
+the file, the limit, and what to do. `cfepy.input_files` opens and reads the files. docs/security.md lists the limits.
 """
 
 from __future__ import annotations
-
-import os
-import stat
-from pathlib import Path
-
-from cfepy.status import UsageError
 
 # YAML, of whatever file
 YAML_BYTES = 32 << 20
@@ -75,36 +69,24 @@ JSON_VALUES = 2_000_000
 # texts that are read line by line: startup scripts, scripts of commands
 LINE_FILE_BYTES = 16 << 20
 
-_GIVEN = ("/dev/fd/", "/dev/stdin", "/proc/self/fd/")  # what a shell hands over in place of a file
+# programs: they are read, not executed
+PYTHON_BYTES = 4 << 20  # of a Python source
+PYTHON_WORDS = 200_000  # words and signs of a Python source
+PYTHON_DEPTH = 1_000  # expressions and blocks inside each other, as the syntax tree counts them
+CPP_BYTES = 4 << 20  # of a C or C++ source or header
+CPP_FILES = 5_000  # sources and headers of a node
+CPP_FILES_BYTES = 64 << 20  # of all of them
+OBJECT_BYTES = 256 << 20  # of a shared object
+TABLE_BYTES = 64 << 20  # of a table file, and of other files that cFE writes
+JSON_DEPTH = 100
 
+# CMakeLists.txt, those of subfolders counted with that of the package
+CMAKE_BYTES = 1 << 20  # of a file
+CMAKE_COMMANDS = 100_000  # that are carried out, loops included
+CMAKE_CHARACTERS = 20_000_000  # of words that are read and made
+CMAKE_DEPTH = 40  # blocks, calls, subfolders and brackets inside each other
+CMAKE_FILES = 50_000  # files and folders that patterns look at
 
-def read_limited(path: str | Path, most: int) -> bytes:
-    """The content of a file, if it is not too large.
-
-    Args:
-        path: the file.
-        most: bytes that it may have.
-
-    Raises:
-        UsageError: it has more, or it is a device or a pipe, which may never end.
-        OSError: it cannot be read.
-    """
-    if not str(path).startswith(_GIVEN):
-        mode = os.stat(path).st_mode
-        if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
-            raise UsageError("is a device or a pipe, which may never end; name a file", file=path)
-    with open(path, "rb") as file:
-        data = file.read(most + 1)
-    if len(data) > most:
-        raise UsageError(f"has more than {most:,} bytes, which is the limit for it; make it smaller", file=path)
-    return data
-
-
-def text_limited(path: str | Path, most: int, errors: str = "strict") -> str:
-    """The text of a file in UTF-8, its lines ended by "\\n". Arguments and errors as `read_limited`.
-
-    Raises:
-        UnicodeDecodeError: it is not UTF-8, and `errors` (as of `bytes.decode`) does not say what to do then.
-    """
-    text = read_limited(path, most).decode("utf-8", errors)
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+# a compiler that a check or a build starts, for one source
+COMPILER_SECONDS = 120  # of the processor
+COMPILER_BYTES = 4 << 30  # of memory

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from cfepy.input_limits import YAML_BYTES, text_limited
+from cfepy.input_files import text_limited
+from cfepy.input_limits import YAML_BYTES
 from cfepy.plain_yaml import YamlError, constructed, opened
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS
@@ -182,14 +183,18 @@ class Mistakes:
                 self.add(item.unknown(allowed))
 
 
-def load(path: Path) -> Marked:
+def load(path: Path, *, handed: bool = False) -> Marked:
     """Read a YAML file.
+
+    Args:
+        path: the file.
+        handed: whether the command line names it; see `cfepy.input_files.open_input`.
 
     Raises:
         UsageError: it cannot be read, or is not good YAML.
     """
     try:
-        text = text_limited(path, YAML_BYTES)
+        text = text_limited(path, YAML_BYTES, handed=handed)
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
     except UnicodeDecodeError:

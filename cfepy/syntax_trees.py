@@ -12,14 +12,22 @@ own, blocks of classes are looked into by nobody.
 from __future__ import annotations
 
 import ast
+import re
 from collections import Counter
 from collections.abc import Iterable
 from typing import Literal, overload
 
 from cfepy.garbage import no_collection
+from cfepy.input_limits import PYTHON_DEPTH, PYTHON_WORDS
 
 MODULE, FUNCTION, CLASS, COMPREHENSION = "module", "function", "class", "comprehension"
+_WORD = re.compile(rb"\w+|[^\w\s]")
+_TOO_DEEP = "is nested too deeply"
 _AGAIN = 2  # what is bound in a loop is bound more than once
+
+
+class TooDeepError(SyntaxError):
+    """A source has expressions or blocks inside each other, more than can be followed."""
 
 
 @overload
@@ -35,11 +43,57 @@ def parsed(source: str | bytes, file: str = "<unknown>", *, mode: Literal["exec"
         mode: as of `ast.parse`.
 
     Raises:
-        SyntaxError: it is not Python.
+        SyntaxError: it is not Python; `TooDeepError` if it is nested more deeply than Python's own parser goes.
         ValueError: it has a NUL byte.
     """
-    with no_collection:
-        return ast.parse(source, file, mode)
+    try:
+        with no_collection:
+            return ast.parse(source, file, mode)
+    except (RecursionError, MemoryError):  # the latter is what the parser makes of thousands of brackets
+        raise TooDeepError(f"{_TOO_DEEP} for Python; take it apart", (file, 1, 1, None)) from None
+
+
+@overload
+def parsed_input(source: str | bytes, file: str = ...) -> ast.Module: ...
+@overload
+def parsed_input(source: str | bytes, file: str = ..., *, mode: Literal["eval"]) -> ast.Expression: ...
+def parsed_input(source: str | bytes, file: str = "<unknown>", *, mode: Literal["exec", "eval"] = "exec") -> ast.AST:
+    """Parse a source that is looked into and not executed, within the limits of all inputs.
+
+    A tree takes a thousand times the memory of its text, and what walks through it goes as deep as it is nested.
+
+    Args:
+        source: its text.
+        file: its name, for errors.
+        mode: as of `ast.parse`.
+
+    Returns:
+        The tree.
+
+    Raises:
+        SyntaxError: it is not Python, or is too much.
+        ValueError: it has a NUL byte.
+    """
+    if len(source) > PYTHON_WORDS:
+        words = (
+            _WORD.finditer(source) if isinstance(source, bytes) else _WORD.finditer(source.encode("utf-8", "replace"))
+        )
+        if sum(1 for _ in words) > PYTHON_WORDS:
+            text = f"has more than {PYTHON_WORDS:,} words and signs, which is the limit for a source; split it"
+            raise SyntaxError(text, (file, 1, 1, None))
+    tree = parsed(source, file, mode=mode) if mode == "eval" else parsed(source, file)
+    _check_depth(tree, file)
+    return tree
+
+
+def _check_depth(tree: ast.AST, file: str) -> None:
+    level: list[ast.AST] = [tree]
+    for _ in range(PYTHON_DEPTH):
+        level = [inner for node in level for inner in ast.iter_child_nodes(node)]
+        if not level:
+            return
+    line = next((node.lineno for node in level if isinstance(node, ast.expr | ast.stmt)), 1)
+    raise TooDeepError(f"{_TOO_DEEP}: more than {PYTHON_DEPTH} levels; take it apart", (file, line, 1, None))
 
 
 class NameScope:

@@ -23,7 +23,7 @@ from cfepy.input_limits import (
     EXPRESSION_STEPS,
     EXPRESSION_WORK,
 )
-from cfepy.syntax_trees import parsed
+from cfepy.syntax_trees import TooDeepError, parsed
 
 _SHOWN = 60  # characters of an expression in an error
 _TOO_MUCH = "compute less, or pass the value as an argument"
@@ -113,7 +113,7 @@ def value_of(text: str, names: Mapping[str, Any]) -> Any:
         raise ExpressionError(f"has {len(text):,} characters, the limit is {EXPRESSION_CHARACTERS:,}; {_TOO_MUCH}")
     try:
         return _Interpreter(names).value(parsed(text, mode="eval").body)
-    except (RecursionError, MemoryError):
+    except (RecursionError, MemoryError, TooDeepError):
         raise _too_deep() from None
 
 

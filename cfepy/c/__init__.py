@@ -22,11 +22,21 @@ if TYPE_CHECKING:
     from cfepy.c.linking import wanted_names
     from cfepy.c.loading import CompiledLoader
     from cfepy.c.runtime import CRuntime
-    from cfepy.c.toolchain import Built, CMakeScript, CompilerError, Options, build, cpp_compiler, headers_folder
+    from cfepy.c.toolchain import (
+        Built,
+        CMakeBudget,
+        CMakeScript,
+        CompilerError,
+        Options,
+        build,
+        cpp_compiler,
+        headers_folder,
+    )
 
 __all__ = [
     "AbiProfile",
     "Built",
+    "CMakeBudget",
     "CMakeScript",
     "CRuntime",
     "CompiledLoader",
@@ -57,6 +67,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".runtime": ("CRuntime",),
             ".toolchain": (
                 "Built",
+                "CMakeBudget",
                 "CMakeScript",
                 "CompilerError",
                 "Options",

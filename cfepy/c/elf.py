@@ -10,6 +10,7 @@ from io import BytesIO
 from pathlib import Path, PurePath
 from typing import Any
 
+from cfepy.input_files import beginning_of
 from cfepy.status import UsageError
 
 MAGIC = b"\x7fELF"
@@ -29,11 +30,7 @@ RELATIVE = {"x86_64": 8, "aarch64": 1027}
 
 def is_elf(file: Path) -> bool:
     """Whether there is a file, and it is an ELF file."""
-    try:
-        with file.open("rb") as stream:
-            return stream.read(len(MAGIC)) == MAGIC
-    except OSError:
-        return False
+    return beginning_of(file, len(MAGIC)) == MAGIC
 
 
 class ElfError(Exception):

@@ -19,6 +19,8 @@ from cfepy.c.elf import ElfError, SharedObject, read_shared_object
 from cfepy.c.image import Image
 from cfepy.c.lives import ThreadLocals
 from cfepy.c.memory import CMemory
+from cfepy.input_files import read_limited
+from cfepy.input_limits import OBJECT_BYTES
 
 LIBRARIES = ("libgcc_s.so.1", "libstdc++.so.6")
 """In the order in which they are loaded."""
@@ -58,7 +60,7 @@ def host_library(name: str) -> SharedObject:
     file = find_library(name)
     if file is None:
         raise ElfError(f"{name} is not on this computer; an object that is linked with {STATIC} does not need it")
-    return read_shared_object(file.read_bytes(), file.name)
+    return read_shared_object(read_limited(file, OBJECT_BYTES), file.name)
 
 
 def wanted_names(source: SharedObject) -> list[str]:

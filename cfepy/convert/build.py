@@ -19,6 +19,7 @@ from functools import cache
 from pathlib import Path
 
 from cfepy.c import CompilerError, cache_folder, cpp_compiler, headers_folder, writing_cache
+from cfepy.contained_files import write_contained
 from cfepy.convert.capacities import Capacities
 from cfepy.convert.configurations import CONFIGURATION_TYPES, configuration_headers
 from cfepy.convert.entry import NodeEntry, main_header
@@ -291,8 +292,7 @@ def configurations_folder(headers: Mapping[str, str]) -> Path:
             made = scratch / "configurations"
             made.mkdir()
             for name, text in headers.items():
-                (made / name).parent.mkdir(exist_ok=True)
-                (made / name).write_text(text, encoding="utf-8")
+                write_contained(made, f"/{name}", text.encode())
             _put(made, kept)
     return kept
 

@@ -69,10 +69,11 @@ def configuration_headers(headers: Iterable[str], program: Program) -> dict[str,
 def configuration_script(header: str, program: Program) -> Path | None:
     """The script that a header of a configuration is made of; None when it is another header, or has no script."""
     package, slash, name = header.partition("/")
-    if package != program.package.name or not slash or not name.endswith(SUFFIX):
+    stem = name.removesuffix(SUFFIX)
+    if package != program.package.name or not slash or not name.endswith(SUFFIX) or not stem.isidentifier():
         return None
-    script = program.package.folder / "cfg" / f"{name.removesuffix(SUFFIX)}.cfg"
-    return script if script.is_file() else None
+    script = program.package.folder / "cfg" / f"{stem}.cfg"
+    return script if os.path.isfile(script) else None
 
 
 def _description(script: Path, name: str) -> dict[str, Any]:

@@ -106,9 +106,9 @@ def task_of(words: Sequence[str], environ: Mapping[str, str]) -> ConversionTask:
         UsageError: there is none, or it has no node in C++.
     """
     folder = Path(words[0])
-    if len(words) == 1 and (folder / MANIFEST).is_file():
+    if len(words) == 1 and os.path.isfile(folder / MANIFEST):
         task = _of_package(folder.resolve(), environ)
-    elif len(words) == 1 and not folder.is_file() and (found := _folder_of(words[0], environ)) is not None:
+    elif len(words) == 1 and not os.path.isfile(folder) and (found := _folder_of(words[0], environ)) is not None:
         task = _of_package(found, environ)
     else:
         task = _of_launch(*launch_file(words), environ)
@@ -120,7 +120,7 @@ def task_of(words: Sequence[str], environ: Mapping[str, str]) -> ConversionTask:
 
 def _folder_of(package: str, environ: Mapping[str, str]) -> Path | None:
     folders = packages_near(Path.cwd() / package, environ, package).folders(package)
-    return next((each for each in folders if (each / MANIFEST).is_file()), None)
+    return next((each for each in folders if os.path.isfile(each / MANIFEST)), None)
 
 
 def _of_package(folder: Path, environ: Mapping[str, str]) -> ConversionTask:

@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator
 from enum import StrEnum
 from pathlib import Path
 
+from cfepy.contained_files import place_contained, write_contained
 from cfepy.convert.capacities import Capacities
 from cfepy.status import UsageError
 from rospy_shim.msgs import Library
@@ -76,10 +77,9 @@ def write_headers(
     maker = _Maker(library, profile, capacities or Capacities())
     written = []
     for name, text in sorted(maker.headers(types).items()):
-        path = folder / f"{name}.h"
+        path = place_contained(folder, f"/{name}.h")
         if not path.is_file() or path.read_bytes() != text.encode():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(text.encode())
+            write_contained(folder, f"/{name}.h", text.encode())
         written.append(path)
     return written
 

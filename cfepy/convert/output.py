@@ -7,12 +7,16 @@ from __future__ import annotations
 
 import hashlib
 import json
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from cfepy.contained_files import is_contained, place_contained, write_contained
+from cfepy.input_files import read_limited
 from cfepy.status import UsageError
 
 MANIFEST = ".cfepy-convert.json"
+MANIFEST_BYTES = 8 << 20
 SHOWN = 6
 
 
@@ -28,33 +32,35 @@ def write_files(folder: Path, files: Mapping[str, bytes], force: bool = False) -
         Paths of the files that are other than before, sorted.
 
     Raises:
-        UsageError: the user has changed a file, or it is not one of ours; nothing has been written.
+        UsageError: the user has changed a file, or it is not one of ours, or a name leads out of the folder; nothing
+            has been written.
         OSError: the folder cannot be written.
     """
     known = _known(folder)
-    changed = [
-        name for name in sorted({*files, *known}) if _is_changed(folder / name, known.get(name), files.get(name))
-    ]
+    place_contained(folder, f"/{MANIFEST}")
+    places = {name: place_contained(folder, f"/{name}") for name in sorted({*files, *known})}
+    changed = [name for name in places if _is_changed(places[name], known.get(name), files.get(name))]
     if changed and not force:
         more = f" and {len(changed) - SHOWN} more" if len(changed) > SHOWN else ""
         text = f"{', '.join(changed[:SHOWN])}{more} changed by hand since; move it away, or say --force"
         raise UsageError(text, file=folder)
     for name in known:
         if name not in files:
-            (folder / name).unlink(missing_ok=True)
-    written = [name for name in sorted(files) if _write(folder / name, files[name])]
+            places[name].unlink(missing_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
+    written = [name for name in sorted(files) if _write(folder, name, files[name])]
     hashes = {name: _hash(files[name]) for name in sorted(files)}
-    _write(folder / MANIFEST, (json.dumps(hashes, indent=1) + "\n").encode())
+    _write(folder, MANIFEST, (json.dumps(hashes, indent=1) + "\n").encode())
     return written
 
 
 def _known(folder: Path) -> dict[str, str]:
     """What was written the last time: hashes by path."""
     try:
-        found = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        found = json.loads(read_limited(folder / MANIFEST, MANIFEST_BYTES))
+    except (OSError, ValueError, RecursionError):
         return {}
-    inside = isinstance(found, dict) and all(".." not in Path(name).parts and name[:1] != "/" for name in found)
+    inside = isinstance(found, dict) and all(is_contained(f"/{name}") for name in found)
     return {str(name): str(value) for name, value in found.items()} if inside else {}
 
 
@@ -62,15 +68,15 @@ def _is_changed(file: Path, known: str | None, content: bytes | None) -> bool:
     """Whether a file has something else than what was written to it, and than what would be."""
     if not file.is_file():
         return False
-    present = file.read_bytes()
+    present = read_limited(file, sys.maxsize)
     return present != content and _hash(present) != known
 
 
-def _write(file: Path, content: bytes) -> bool:
-    if file.is_file() and file.read_bytes() == content:
+def _write(folder: Path, name: str, content: bytes) -> bool:
+    place = place_contained(folder, f"/{name}")
+    if place.is_file() and read_limited(place, sys.maxsize) == content:
         return False
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_bytes(content)
+    write_contained(folder, f"/{name}", content)
     return True
 
 

@@ -6,18 +6,24 @@ target is linked with is a library of the package, one of another package near b
 
 from __future__ import annotations
 
+import os
 import re
-import xml.etree.ElementTree as ElementTree
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from cfepy.c import CMakeScript
+from cfepy.c import CMakeBudget, CMakeScript
+from cfepy.input_files import read_limited, text_limited
+from cfepy.input_limits import CMAKE_BYTES, CPP_FILES, XML_BYTES
+from cfepy.plain_xml import XmlError, plain_xml
 from cfepy.status import UsageError
-from rospy_shim.msgs import Packages
+from rospy_shim.msgs import Packages, check_package_name
 
-T = TypeVar("T")
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+T = TypeVar("T", bound=Hashable)
 
 FILE = "CMakeLists.txt"
 MANIFEST = "package.xml"
@@ -145,12 +151,16 @@ def read_package(folder: Path, name: str, testing: bool = False) -> CppPackage:
 
     Returns:
         What it has; nothing of C++ when it has no CMakeLists.txt.
+
+    Raises:
+        UsageError: its manifest gives it a name that no package has, or its CMakeLists.txt is too much.
     """
+    check_package_name(folder)
     package = CppPackage(name, folder)
     manifest = _manifest(folder)
     package.depends = _depends(manifest)
     file = folder / FILE
-    if file.is_file():
+    if os.path.isfile(file):
         _CatkinReader(package, folder, _TESTING if testing else None).read(file)
     for plugin in _plugins(manifest, folder):
         package.plugins[plugin.name] = plugin
@@ -197,38 +207,55 @@ class _Collector:
         self._taken: set[tuple[str, str]] = set()
 
     def take(self, package: CppPackage, target: CppTarget) -> None:
-        """A target, with all that it is linked with."""
+        """A target, with all that it is linked with.
+
+        Raises:
+            UsageError: a source of it is not there, or they are too many.
+        """
+        open_at = [self._taking(package, target)]
+        while open_at:
+            inner = next(open_at[-1], None)
+            if inner is None:
+                open_at.pop()
+            else:
+                open_at.append(self._taking(*inner))
+
+    def _taking(self, package: CppPackage, target: CppTarget) -> Iterator[tuple[CppPackage, CppTarget]]:
+        """Take a target; gives what is to be taken before the next thing of it."""
         if (package.name, target.name) in self._taken:
             return
         self._taken.add((package.name, target.name))
         program = self._program
         _add(program.sources, _files(target))
+        if max(len(self._taken), len(program.sources)) > CPP_FILES:
+            raise UsageError(f"{program.type} is made of more than {CPP_FILES:,} files; split it", file=package.folder)
         _add(program.includes, [*target.includes, *package.includes])
         _add(program.definitions, target.definitions)
         for name in target.links:
             inner = package.targets.get(name)
             if inner is not None:
-                self.take(package, inner)
+                yield package, inner
             elif name not in _SYSTEM_LIBRARIES and not name.startswith(("-", "/")):
                 _add(program.outside, [name])
         for name in package.depends:
-            self._depend(name)
+            yield from self._dependency(name)
 
-    def _depend(self, name: str) -> None:
+    def _dependency(self, name: str) -> Iterator[tuple[CppPackage, CppTarget]]:
         """A package near by that this one depends on: its headers, and the libraries that it offers."""
         if name in self._ours or name in self._read:
             return
-        folder = next((each for each in self._packages.folders(name) if (each / FILE).is_file()), None)
+        folder = next((each for each in self._packages.folders(name) if os.path.isfile(each / FILE)), None)
         other = CppPackage(name, Path()) if folder is None else read_package(folder, name)
         self._read[name] = other
         _add(self._program.includes, other.includes)
         for library in other.exported:
             if library in other.targets:
-                self.take(other, other.targets[library])
+                yield other, other.targets[library]
 
 
 def _add(found: list[T], more: Iterable[T]) -> None:
-    found += [each for each in dict.fromkeys(more) if each not in found]
+    known = set(found)
+    found += [each for each in dict.fromkeys(more) if each not in known]
 
 
 def _files(target: CppTarget) -> list[Path]:
@@ -237,7 +264,7 @@ def _files(target: CppTarget) -> list[Path]:
         file = target.folder / name
         if file.suffix not in SUFFIXES:
             continue
-        if not file.is_file():
+        if not os.path.isfile(file):
             raise UsageError(f"{target.name} is made of {name}, which is not there", file=target.folder / FILE)
         found.append(Path(*file.parts))
     return found
@@ -246,27 +273,27 @@ def _files(target: CppTarget) -> list[Path]:
 # -- package.xml -------------------------------------------------------------------------------------------------------
 
 
-def _manifest(folder: Path) -> ElementTree.Element | None:
+def _manifest(folder: Path) -> Element | None:
     """The manifest of a package; None when it has none that can be read."""
     try:
-        return ElementTree.fromstring((folder / MANIFEST).read_bytes())
-    except (OSError, ElementTree.ParseError):
+        return plain_xml(read_limited(folder / MANIFEST, XML_BYTES))
+    except (OSError, ValueError):
         return None
 
 
-def _depends(manifest: ElementTree.Element | None) -> list[str]:
+def _depends(manifest: Element | None) -> list[str]:
     tags = ("depend", "build_depend", "build_export_depend", "run_depend", "exec_depend")
     found = () if manifest is None else (each for each in manifest if each.tag in tags)
     return list(dict.fromkeys((each.text or "").strip() for each in found))
 
 
-def _plugins(manifest: ElementTree.Element | None, folder: Path) -> Iterator[PluginClass]:
+def _plugins(manifest: Element | None, folder: Path) -> Iterator[PluginClass]:
     exported = () if manifest is None else manifest.iterfind("export/*")
     for each in exported:
         name = each.get("plugin", "").replace("${prefix}/", "")
         try:
-            root = _plugin_file((folder / name).read_bytes()) if name else None
-        except (OSError, ElementTree.ParseError):
+            root = _plugin_file(read_limited(folder / name, XML_BYTES)) if name else None
+        except (OSError, ValueError):
             continue
         for library in () if root is None else root.iter("library"):
             target = Path(library.get("path", "")).name.removeprefix("lib").removesuffix(".so")
@@ -275,12 +302,12 @@ def _plugins(manifest: ElementTree.Element | None, folder: Path) -> Iterator[Plu
                 yield PluginClass(one.get("name") or type_name, type_name, one.get("base_class_type", ""), target)
 
 
-def _plugin_file(text: bytes) -> ElementTree.Element:
+def _plugin_file(text: bytes) -> Element:
     """What a file of plugins has; pluginlib takes several libraries, one behind the other, which is no XML."""
     try:
-        return ElementTree.fromstring(text)
-    except ElementTree.ParseError:
-        return ElementTree.fromstring(b"<class_libraries>%b</class_libraries>" % _DECLARATION.sub(b"", text, count=1))
+        return plain_xml(text)
+    except XmlError:
+        return plain_xml(b"<class_libraries>%b</class_libraries>" % _DECLARATION.sub(b"", text, count=1))
 
 
 _DECLARATION = re.compile(rb"^\s*<\?xml.*?\?>", re.DOTALL)
@@ -296,6 +323,7 @@ _TESTING = {
     "GMOCK_LIBRARIES": ["gmock"],
     "GMOCK_MAIN_LIBRARIES": ["gmock_main"],
 }
+_EACH = 20  # characters that a folder or a definition of a target counts for
 _TESTS = (
     "catkin_add_gtest",
     "catkin_add_gmock",
@@ -312,16 +340,23 @@ class _CatkinReader(CMakeScript):
         package: gets what is found.
         folder: of the file.
         variables: those that are set before.
+        budget: what is left of that of the file around; None for the package's own.
     """
 
-    def __init__(self, package: CppPackage, folder: Path, variables: Mapping[str, Sequence[str]] | None = None) -> None:
+    def __init__(
+        self,
+        package: CppPackage,
+        folder: Path,
+        variables: Mapping[str, Sequence[str]] | None = None,
+        budget: CMakeBudget | None = None,
+    ) -> None:
         here, root = [str(folder)], [str(package.folder)]
         known = {"PROJECT_NAME": [package.name], "CMAKE_PROJECT_NAME": [package.name], "UNIX": ["1"]}
         known |= {"CMAKE_SYSTEM_NAME": ["Linux"], "CMAKE_COMPILER_IS_GNUCXX": ["1"], "CMAKE_CXX_COMPILER_ID": ["GNU"]}
         known |= {"PROJECT_SOURCE_DIR": root, "CMAKE_SOURCE_DIR": root, "CMAKE_VERSION": ["3.25.1"]}
         known |= {name: list(values) for name, values in (variables or {}).items()}
         known |= {"CMAKE_CURRENT_SOURCE_DIR": here, "CMAKE_CURRENT_LIST_DIR": here}
-        super().__init__(folder, known)
+        super().__init__(folder, known, budget)
         self._package = package
         self._tests = "CATKIN_ENABLE_TESTING" in known
         self._includes: list[Path] = []
@@ -330,10 +365,11 @@ class _CatkinReader(CMakeScript):
 
     def read(self, file: Path) -> None:
         """Carry out the file, and give its targets what holds for its whole folder."""
-        self.run(file.read_text(encoding="utf-8", errors="replace"))
+        self.run(text_limited(file, CMAKE_BYTES, "replace"))
         flags = " ".join(self.variables.get("CMAKE_CXX_FLAGS", [])).split()
         self._definitions += [each[2:] for each in flags if each.startswith("-D")]
         for target in self._made:
+            self.budget.spend(_EACH * (len(self._includes) + len(self._definitions)))
             _add(target.includes, self._includes)
             _add(target.definitions, self._definitions)
 
@@ -354,8 +390,8 @@ class _CatkinReader(CMakeScript):
                 self._add(target, sources, is_library=False)
             case _, [target, _, *sources] if name in _ROSTESTS and self._tests:
                 self._add(target, sources, is_library=False)
-            case "add_subdirectory", [inner, *_] if (self.folder / inner / FILE).is_file():
-                reader = _CatkinReader(self._package, self.folder / inner, self.variables)
+            case "add_subdirectory", [inner, *_] if os.path.isfile(self.folder / inner / FILE):
+                reader = _CatkinReader(self._package, self.folder / inner, self.variables, self.budget)
                 reader.read(self.folder / inner / FILE)
             case "include_directories", folders:
                 _add(self._includes, self._folders(folders))
@@ -399,15 +435,13 @@ class _CatkinReader(CMakeScript):
 
     def _folders(self, words: Sequence[str]) -> list[Path]:
         named = [self.folder / each for each in words if each not in _KEYWORDS and "$" not in each]
-        return [each for each in named if each.is_dir()]
+        return [each for each in named if os.path.isdir(each)]
 
     def _find(self, name: str, rest: list[str], is_package: bool) -> None:
         """Something to be found on the computer: its libraries go by its name, its headers are where they are."""
         if is_package and name == "catkin":
             marks = ("REQUIRED", "COMPONENTS", "QUIET", "EXACT")
-            self._package.depends += [
-                each for each in rest if each not in marks and each not in self._package.depends and each[0].isalpha()
-            ]
+            _add(self._package.depends, (each for each in rest if each not in marks and each[:1].isalpha()))
         if "REQUIRED" not in rest and name not in _FOUND_ANYWAY:
             return
         names = [name] if is_package else [each for each in rest if each not in ("REQUIRED", "QUIET")]

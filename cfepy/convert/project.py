@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -34,6 +35,7 @@ from cfepy.convert.entry import main_header
 from cfepy.convert.messages import Profile, write_headers
 from cfepy.convert.sources import collect, message_types
 from cfepy.mission import COMPILED_STACK_BYTES, LOCK_FILE, STARTUP_SCRIPT, CppNodesConfig
+from cfepy.status import UsageError
 from cfepy.tbl import TableImage
 from cfepy.tbl import build as table_file
 from rospy_shim.parameters.table import pack
@@ -166,9 +168,9 @@ endfunction()
 def _application(node: ConvertedNode) -> dict[str, bytes]:
     files = {f"packages/{_place(node, each)}": node.sources.contents[each] for each in node.sources.contents}
     program = node.program
-    sources = "".join(f"\n    ../packages/{_place(node, each)}" for each in program.sources)
+    sources = "".join(f"\n    {cmake_word(f'../packages/{_place(node, each)}', each)}" for each in program.sources)
     includes = _include_folders(node)
-    text = f"""# The ROS node {node.node.full_name}, {origin(node)}; {MADE}.
+    text = f"""# The ROS node {_line(node.node.full_name)}, {_line(origin(node))}; {MADE}.
 include(${{CMAKE_CURRENT_LIST_DIR}}/../roscfe/roscfe.cmake)
 
 roscfe_node({node.file} {MAIN_HEADERS[node.entry.takes_arguments]} fsw/src/{node.file}_entry.cpp{sources}
@@ -177,7 +179,8 @@ roscfe_node({node.file} {MAIN_HEADERS[node.entry.takes_arguments]} fsw/src/{node
     if includes:
         text += f"target_include_directories({node.file} BEFORE PRIVATE\n    {chr(10).join(includes)}\n)\n"
     if program.definitions:
-        text += f"target_compile_definitions({node.file} PRIVATE {' '.join(program.definitions)})\n"
+        definitions = " ".join(cmake_word(each, program.package.folder) for each in program.definitions)
+        text += f"target_compile_definitions({node.file} PRIVATE {definitions})\n"
     files[f"{node.file}/CMakeLists.txt"] = text.encode()
     files[f"{node.file}/fsw/src/{node.file}_entry.cpp"] = node.entry.text().encode()
     rows = b"".join(pack(row) for row in node.entry.rows)
@@ -206,16 +209,49 @@ def _include_folders(node: ConvertedNode) -> list[str]:
         if inside is not None:
             depth = len(inside.relative_to(folder).parts)
             found["/".join(Path(_place(node, inside)).parts[:-depth])] = None
-    return [f"${{CMAKE_CURRENT_LIST_DIR}}/../packages/{each}" for each in found]
+    where = node.program.package.folder
+    return [cmake_word(each, where, "${CMAKE_CURRENT_LIST_DIR}/../packages/") for each in found]
 
 
 # -- what is beside it -------------------------------------------------------------------------------------------------
 
 
+def cmake_word(text: str, of: Path, before: str = "") -> str:
+    """A text as one argument of a command of CMake.
+
+    Args:
+        text: such as the path of a source, or a definition.
+        of: what it belongs to, for errors.
+        before: what stands before it in the argument, as CMake has it.
+
+    Returns:
+        The text itself where it needs no quotes, else in quotes, in which nothing has a meaning of its own.
+
+    Raises:
+        UsageError: CMake would take it apart all the same: lists are divided at semicolons, and paths are lists.
+    """
+    if _PLAIN_WORD.fullmatch(text):
+        return before + text
+    if not text.isprintable() or text.endswith("\\") or any(each in text for each in _DIVIDING):
+        raise UsageError(f"{text!r} has a character that CMake does not take in a word; give it another name", file=of)
+    return f'"{before}' + re.sub(r'([\\"$])', r"\\\1", text) + '"'
+
+
+_PLAIN_WORD = re.compile(r'[\w./+@~=,:%-]+("[\w./+@~=,:%-]*")?')
+_DIVIDING = (";", "[", "]", "$<")
+
+
+def _line(text: str) -> str:
+    """A text in a comment, which ends with its line."""
+    return "".join(each if each.isprintable() else "?" for each in text)
+
+
 def _targets(made: Conversion, folder: Path) -> str:
     names = " ".join(node.file for node in made.nodes)
-    places = "".join(f"set({node.file}_SEARCH_PATH apps/{folder.name})\n" for node in made.nodes)
-    return f"""# What a mission's targets.cmake needs, with this folder as apps/{folder.name} of the mission; {MADE}.
+    where = cmake_word(f"apps/{folder.name}", folder)
+    places = "".join(f"set({node.file}_SEARCH_PATH {where})\n" for node in made.nodes)
+    name = _line(folder.name)
+    return f"""# What a mission's targets.cmake needs, with this folder as apps/{name} of the mission; {MADE}.
 list(APPEND MISSION_GLOBAL_APPLIST {names})
 {places}"""
 
@@ -229,7 +265,7 @@ def _mission(made: Conversion, config: CppNodesConfig, folder: Path) -> dict[str
     said: dict[str, Any] = {"file": os.path.relpath(file, folder / "mission")}
     if args:
         said["args"] = dict(args)
-    text = f"# {made.task.title} as a mission of cfepy; {MADE}.\nlaunch:\n  - {json.dumps(said)}\n"
+    text = f"# {_line(made.task.title)} as a mission of cfepy; {MADE}.\nlaunch:\n  - {json.dumps(said)}\n"
     text += "".join(_cpp_nodes(config))
     pins = dict(made.ids.topics)
     if pins:
@@ -271,7 +307,7 @@ Or fly it on cfepy, which builds it by itself:
 
     cfepy run mission
 """
-    return f"""# {made.task.title} on cFE
+    return f"""# {_line(made.task.title)} on cFE
 
 ROS nodes in C++, unmodified, as applications of cFE 7.0.0; {MADE}. `report.md` says what became of what.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -52,11 +53,11 @@ def collect(sources: Iterable[Path], includes: Sequence[Path]) -> SourceSet:
         text = found.texts[file] = without_comments(found.contents[file].decode("utf-8", "replace"))
         for name in includes_of(text):
             beside = file.parent / name
-            if beside.is_file():
+            if os.path.isfile(beside):
                 waiting.append(beside)
                 continue
             if name not in where:
-                where[name] = next((each / name for each in includes if (each / name).is_file()), None)
+                where[name] = next((each / name for each in includes if os.path.isfile(each / name)), None)
             header = where[name]
             if header is None:
                 missing[name] = None

@@ -18,9 +18,11 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from hashlib import blake2b
-from pathlib import Path, PurePath
+from pathlib import PurePath
 from typing import Any, NamedTuple
 
+from cfepy.input_files import read_limited
+from cfepy.input_limits import PYTHON_BYTES
 from cfepy.nodes import lines_to_reach
 
 OUTCOMES, LINES, ANSWERS, USES = "outcomes", "lines", "answers", "uses"
@@ -242,7 +244,7 @@ class Coverage:
 def _lines_of(file: str, is_main: bool) -> list[int]:
     """The lines of functions of a file; none where it cannot be read any more."""
     try:
-        return lines_to_reach(Path(file).read_bytes(), file, is_main)
+        return lines_to_reach(read_limited(file, PYTHON_BYTES), file, is_main)
     except (OSError, SyntaxError, ValueError):
         return []
 

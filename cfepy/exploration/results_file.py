@@ -19,6 +19,7 @@ from typing import Any, BinaryIO
 
 from cfepy.exploration.verdict import Verdict
 from cfepy.host_system import lock_file
+from cfepy.input_files import open_input
 from cfepy.rtos import Schedule
 from cfepy.status import UsageError
 
@@ -278,7 +279,7 @@ def _numbered(record: Mapping[str, Any], path: Path, line: int) -> tuple[int, di
 
 def _opened(path: Path) -> BinaryIO:
     try:
-        return path.open("rb")
+        return open_input(path, handed=True)
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
 

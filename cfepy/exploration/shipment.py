@@ -19,6 +19,7 @@ from typing import Any
 from cfepy.attachment import Attachment
 from cfepy.contained_files import make_folder, write_contained
 from cfepy.exploration.verdict import Failure, Verdict
+from cfepy.input_files import open_input
 from cfepy.journal import (
     Carrier,
     HiddenRoot,
@@ -81,7 +82,7 @@ def identity_of(plan: RunPlan, files: Sequence[str], search: Mapping[str, Any]) 
 
 
 def _hash_of(path: str) -> str:
-    with open(path, "rb") as file:
+    with open_input(path) as file:
         return file_digest(file, "sha256").hexdigest()[:_DIGITS]
 
 

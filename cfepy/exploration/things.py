@@ -9,12 +9,14 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path, PurePath
+from pathlib import PurePath
 from types import CodeType, FrameType
 from typing import Any, NamedTuple
 
+from cfepy.input_files import read_limited
+from cfepy.input_limits import PYTHON_BYTES
 from cfepy.own_code import is_own_code, is_shown, is_standard
-from cfepy.syntax_trees import parsed
+from cfepy.syntax_trees import parsed_input
 
 _MAKING = "__init__"
 _SELF = "self"
@@ -119,7 +121,7 @@ def is_made_of(file: str, read: str, written: str, variable: str) -> bool:
     """
     read_at, written_at = (int(place.rpartition(":")[2]) for place in (read, written))
     try:
-        tree = parsed(Path(file).read_bytes())
+        tree = parsed_input(read_limited(file, PYTHON_BYTES))
     except (OSError, SyntaxError, ValueError):
         return False
     sources: dict[str, list[ast.AST]] = {}
@@ -161,7 +163,7 @@ def _variables(frame: FrameType | None) -> Iterator[tuple[str, Any]]:
 def _variable_of(frame: FrameType) -> str:
     """What the call that a frame makes is assigned to; `lock` where it is not assigned to a variable."""
     try:
-        tree = parsed(Path(frame.f_code.co_filename).read_bytes())
+        tree = parsed_input(read_limited(frame.f_code.co_filename, PYTHON_BYTES))
     except (OSError, SyntaxError, ValueError):
         return "lock"
     place = _position(frame.f_code, frame.f_lasti)

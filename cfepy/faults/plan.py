@@ -104,7 +104,7 @@ def read_plan(path: str | Path) -> FaultPlan:
     Raises:
         UsageError: it cannot be read, or something in it is wrong: with file, line and field.
     """
-    return read_marked(load(Path(path)))
+    return read_marked(load(Path(path), handed=True))
 
 
 def _marked(value: Any, place: str) -> Marked:

@@ -13,6 +13,7 @@ from pathlib import Path
 from types import ModuleType, TracebackType
 from typing import TYPE_CHECKING, Self
 
+from cfepy.input_files import beginning_of, open_input
 from cfepy.mission import TopicMessage, TopicWatch, described, matches
 from cfepy.status import UsageError
 
@@ -122,7 +123,7 @@ class BagReader:
 
     def __init__(self, file: str) -> None:
         try:
-            self._file = Path(file).open("rb")  # noqa: SIM115  # closed by `__exit__`
+            self._file = open_input(file, handed=True)  # closed by `__exit__`
         except OSError as error:
             raise UsageError(f"could not be read: {error.strerror}", file=file) from None
         try:
@@ -195,11 +196,7 @@ def _hint(error: Exception, file: str) -> str:
 
 def is_bag(file: str) -> bool:
     """Whether a file is a bag or an MCAP file, by its first bytes."""
-    try:
-        with Path(file).open("rb") as found:
-            return found.read(8).startswith((b"#ROSBAG", b"\x89MCAP0\r\n"))
-    except OSError:
-        return False
+    return beginning_of(file, 8).startswith((b"#ROSBAG", b"\x89MCAP0\r\n"))
 
 
 def _broken() -> tuple[type[Exception], ...]:

@@ -19,6 +19,7 @@ from cfepy.fs import HEADER_SIZE, TABLE_HEADER_SIZE
 from cfepy.ground.names import CORE_PACKETS
 from cfepy.ground.topics import Topic
 from cfepy.ground.values import int_of, line_of, texts_of
+from cfepy.input_files import open_input
 from cfepy.mission import NODE_SYMBOL, MissionSpec, described, read_mission, sources
 from cfepy.mission.python_code import ModuleNames, execute, find_declarations
 from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Command, Layout, Telemetry
@@ -217,7 +218,7 @@ def _default_image(spec: MissionSpec, kind: TableType, problems: list[str]) -> b
     if file is None:
         return None
     try:
-        with open(file, "rb") as opened:
+        with open_input(file) as opened:
             image = tbl.read(opened.read(HEADER_SIZE + TABLE_HEADER_SIZE + kind.size))
     except (CfeError, OSError) as error:
         problems.append(f"{file} is no table file: {error}")

@@ -15,11 +15,13 @@ from typing import Any
 
 from cfepy.es import packets as es
 from cfepy.evs import packets as evs
+from cfepy.input_files import read_limited
+from cfepy.input_limits import PYTHON_BYTES
 from cfepy.mission import NODE_SYMBOL, Mission, MissionSpec
 from cfepy.mission.python_code import find_declarations
 from cfepy.msg import is_valid_msg_id, topics
 from cfepy.sb import packets as sb
-from cfepy.syntax_trees import parsed
+from cfepy.syntax_trees import parsed_input
 from cfepy.tbl import packets as tbl
 from cfepy.time import packets as time
 
@@ -93,7 +95,7 @@ def constants_in(code: Path | str | None) -> Iterator[tuple[str, int]]:
         return
     for file in sorted(code.parent.glob("*.py")) if code.name == "__init__.py" else [code]:
         try:
-            tree = parsed(file.read_bytes())
+            tree = parsed_input(read_limited(file, PYTHON_BYTES))
         except (SyntaxError, ValueError, OSError):
             continue  # `cfepy check` has more to say about it
         yield from _assigned(tree)

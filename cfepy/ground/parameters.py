@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from cfepy.input_files import read_limited
+from cfepy.input_limits import TABLE_BYTES
 from cfepy.marked_yaml import load
 from cfepy.mission import STARTUP_SCRIPT, Mission, MissionSpec, read_mission
 from cfepy.mission.parameter_files import read_tree
@@ -114,7 +116,7 @@ def table_files(source: Path, mission: str | None) -> dict[str, bytes]:
     Raises:
         UsageError: the file is wrong, or its parameters do not fit.
     """
-    tree = read_tree(load(source))
+    tree = read_tree(load(source, handed=True))
     spec = None if mission is None else read_mission(mission)
     board = load_profile("linux" if spec is None else spec.board)
     config = spec.limits.config(board, True) if spec is not None else board.config()
@@ -126,8 +128,8 @@ def _contents(path: Path) -> dict[str, bytes]:
     """The parameter tables that a path means, by file name."""
     try:
         if not os.path.isdir(path):
-            return {str(path): path.read_bytes()}
-        contents = {str(each): each.read_bytes() for each in sorted(path.rglob(f"*{TABLE_SUFFIX}"))}
+            return {str(path): read_limited(path, TABLE_BYTES, handed=True)}
+        contents = {str(each): read_limited(each, TABLE_BYTES) for each in sorted(path.rglob(f"*{TABLE_SUFFIX}"))}
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
     found = {name: data for name, data in contents.items() if files.is_parameters(data)}

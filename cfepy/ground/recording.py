@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 from cfepy.ground.bag import CHUNK_BYTES, storage
 from cfepy.ground.json_packets import PACKETS
 from cfepy.ground.mcap_writer import COMPRESSIONS, McapWriter
+from cfepy.input_files import open_input
 from cfepy.mission import described
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -161,7 +162,7 @@ class _Count:
 def _opened(file: str) -> Iterator[tuple[RecordingSummary, Salvage]]:
     """A recording, with nothing in it believed yet."""
     try:
-        with Path(file).open("rb") as stream:
+        with open_input(file) as stream:
             size = os.fstat(stream.fileno()).st_size
             data = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) if size else None
     except (OSError, ValueError) as error:

@@ -17,6 +17,7 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from cfepy.input_files import open_input
 from cfepy.input_limits import JOURNAL_FRAME_BYTES
 from cfepy.journal.frame_check import FORMAT, check_values, problem_of
 from cfepy.journal.looks import PathLook
@@ -252,7 +253,7 @@ def is_journal(path: str | Path) -> bool:
     Raises:
         OSError: it cannot be read.
     """
-    with open(path, "rb") as file:
+    with open_input(path, handed=True) as file:
         return file.read(len(MARK)) == MARK
 
 
@@ -302,7 +303,7 @@ def read_frames(path: str | Path) -> Iterator[tuple[str, dict[str, Any]]]:
     """
     import msgpack
 
-    with open(path, "rb") as file:
+    with open_input(path, handed=True) as file:
         if file.read(len(MARK)) != MARK:
             raise JournalError("is no journal; give a file that `cfepy run --record FILE` wrote", file=path)
         while len(head := file.read(_head.size)) == _head.size:

@@ -22,6 +22,7 @@ from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import Any
 
+from cfepy.input_files import open_input, read_limited
 from cfepy.journal.facts import own_places
 from cfepy.mission import MissionSpec
 from cfepy.nodes import ASKED, LISTED, MADE, NEEDED
@@ -82,7 +83,7 @@ class MissionFile:
             return not self.sha256
 
     def _digest_on_disk(self) -> str:
-        with open(self.path, "rb") as file:
+        with open_input(self.path) as file:
             return file_digest(file, "sha256").hexdigest()
 
 
@@ -99,8 +100,8 @@ class Carrier:
     def take(self, path: str) -> MissionFile:
         """A file as it is now."""
         try:
-            content = Path(path).read_bytes()
-        except OSError:
+            content = read_limited(path, sys.maxsize)
+        except (OSError, UsageError):
             return MissionFile(path, 0, "")
         packed = None
         if len(content) <= self._left:

@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cfepy.es import StartupEntry
+from cfepy.input_files import beginning_of, read_limited
+from cfepy.input_limits import OBJECT_BYTES
 from cfepy.mission.loader import NODE_SYMBOL, Code, Finder
 from cfepy.osal import FileSystem
 from cfepy.status import OsalError
@@ -32,11 +34,7 @@ def find_compiled(file: str, folder: Path) -> Path | None:
     if not file.startswith(FILES) or ".." in file:
         return None
     found = folder / file.removeprefix(FILES)
-    try:
-        with found.open("rb") as stream:
-            return found if stream.read(len(ELF)) == ELF else None
-    except OSError:
-        return None
+    return found if beginning_of(found, len(ELF)) == ELF else None
 
 
 class CompiledFiles(Finder):
@@ -97,7 +95,7 @@ class CompiledFiles(Finder):
         except OsalError:  # a path that no file can have, such as one that is too long
             return None
         if node is None and file in self._built:
-            return self._built[file].read_bytes()
+            return read_limited(self._built[file], OBJECT_BYTES)
         if node is None or bytes(node.data[: len(ELF)]) != ELF:
             return None
         return bytes(node.data)

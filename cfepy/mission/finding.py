@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from cfepy.input_files import beginning_of, read_limited
+from cfepy.input_limits import LINE_FILE_BYTES, XML_BYTES
 from cfepy.marked_yaml import Mistakes, load
 from cfepy.mission.cpp_nodes import PROFILES, CppNodesConfig
 from cfepy.mission.launch import (
@@ -85,8 +87,7 @@ def is_node(mission: str) -> bool:
     path = Path(mission)
     if not os.path.isfile(path):
         return False
-    with path.open("rb") as stream:
-        first = stream.readline(_LONGEST_FIRST_LINE)
+    first = beginning_of(path, _LONGEST_FIRST_LINE).partition(b"\n")[0]
     return path.suffix == ".py" or (first.startswith(b"#!") and b"python" in first)
 
 
@@ -96,7 +97,7 @@ def _check_kind(path: Path) -> None:
     Raises:
         UsageError: it is something else.
     """
-    data = path.read_bytes()
+    data = read_limited(path, max(LINE_FILE_BYTES, XML_BYTES))
     if path.suffix == ".py" or data.startswith(b"#!"):
         raise UsageError("is a program and no mission; `cfepy node` runs a ROS node by itself", file=path)
     is_text = b"\0" not in data and any(mark in data for mark in (b"!", b"CFE_"))

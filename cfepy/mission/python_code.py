@@ -22,6 +22,8 @@ from typing import Any
 
 from cfepy.console import Console
 from cfepy.es import SymbolError
+from cfepy.input_files import read_limited
+from cfepy.input_limits import PYTHON_BYTES
 from cfepy.mission.compiled_code import find_compiled
 from cfepy.mission.loader import NO_SYMBOL, NODE_SYMBOL, Code, Finder, MainCode, RemovedCodeError
 from cfepy.mission.tracebacks import app_traceback, described
@@ -330,7 +332,7 @@ def _is_changed(found: Path, folder: Path, files: FileSystem) -> bool:
         node = files.find(f"/cf/{found.relative_to(folder).as_posix()}")
     except OsalError:
         return False  # a ROS node; OSAL takes no name of this length, so the mission cannot have changed it
-    return node is None or bytes(node.data) != found.read_bytes()
+    return node is None or bytes(node.data) != read_limited(found, PYTHON_BYTES)
 
 
 class SourceAlone(SourceFileLoader):

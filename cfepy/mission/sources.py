@@ -10,7 +10,10 @@ import importlib.util
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from cfepy.syntax_trees import parsed
+from cfepy.input_files import read_limited
+from cfepy.input_limits import PYTHON_BYTES
+from cfepy.status import UsageError
+from cfepy.syntax_trees import parsed_input
 
 PACKAGE_FILE = "__init__.py"
 
@@ -32,9 +35,11 @@ def files_of(source: Path) -> list[Path]:
 def syntax_error(source: Path) -> tuple[int, str] | None:
     """(line, what is wrong) of a file that is not Python; None when it is."""
     try:
-        parsed(source.read_bytes(), str(source))
+        parsed_input(read_limited(source, PYTHON_BYTES), str(source))
     except SyntaxError as error:
         return error.lineno or 1, error.msg
+    except UsageError as error:
+        return 0, error.text
     except (ValueError, OSError) as error:
         return 1, str(error)
     return None
@@ -52,33 +57,43 @@ def functions_and_classes_of(source: Path) -> list[str]:
 
 def defines(source: Path, name: str) -> bool:
     """Whether a module that can be parsed has a name at its top level, or may have it."""
-    return any(_binds(statement, source, name) for statement in _statements(tree_of(source).body))
+    return _defines(source, name, set())
+
+
+def _defines(source: Path, name: str, seen: set[Path]) -> bool:
+    """As `defines`; modules that were seen before, which import each other in a circle, bring nothing new."""
+    seen.add(source)
+    return any(_binds(statement, source, name, seen) for statement in _statements(tree_of(source).body))
 
 
 def tree_of(source: Path) -> ast.Module:
     """The syntax of a file; an empty module when it is not Python, which `syntax_error` tells."""
     try:
-        return parsed(source.read_bytes())
+        return parsed_input(read_limited(source, PYTHON_BYTES))
     except (SyntaxError, ValueError, OSError):
         return ast.Module(body=[], type_ignores=[])
 
 
 def _statements(body: Iterable[ast.stmt]) -> Iterator[ast.stmt]:
     """The statements that run when a module is imported, those within `if`, `try`, `with` and loops too."""
-    for statement in body:
+    waiting = list(body)[::-1]
+    while waiting:
+        statement = waiting.pop()
         yield statement
+        inner: list[ast.stmt] = []
         for block in ("body", "orelse", "finalbody"):
             if not isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-                yield from _statements(getattr(statement, block, ()))
+                inner += getattr(statement, block, ())
         for handler in getattr(statement, "handlers", ()):
-            yield from _statements(handler.body)
+            inner += handler.body
+        waiting += inner[::-1]
 
 
-def _binds(statement: ast.stmt, source: Path, name: str) -> bool:
+def _binds(statement: ast.stmt, source: Path, name: str, seen: set[Path]) -> bool:
     if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
         return statement.name in (name, "__getattr__")
     if isinstance(statement, ast.ImportFrom):
-        return any(_imports(statement, alias, source, name) for alias in statement.names)
+        return any(_imports(statement, alias, source, name, seen) for alias in statement.names)
     if isinstance(statement, ast.Import):
         return any((alias.asname or alias.name.partition(".")[0]) == name for alias in statement.names)
     targets = getattr(statement, "targets", [getattr(statement, "target", None)])
@@ -87,11 +102,11 @@ def _binds(statement: ast.stmt, source: Path, name: str) -> bool:
     )
 
 
-def _imports(statement: ast.ImportFrom, alias: ast.alias, source: Path, name: str) -> bool:
+def _imports(statement: ast.ImportFrom, alias: ast.alias, source: Path, name: str, seen: set[Path]) -> bool:
     """Whether `from x import alias` gives `name`; a module of the same package is looked into."""
     if alias.name != "*" and (alias.asname or alias.name) != name:
         return False
     sibling = source.parent / f"{statement.module}.py" if statement.level == 1 and statement.module else None
-    if sibling is None or not sibling.is_file() or sibling == source:
+    if sibling is None or not sibling.is_file() or sibling in seen:
         return True
-    return defines(sibling, name if alias.name == "*" else alias.name)
+    return _defines(sibling, name if alias.name == "*" else alias.name, seen)

@@ -13,6 +13,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from cfepy.input_files import read_limited
+from cfepy.input_limits import PYTHON_BYTES
 from cfepy.marked_yaml import Marked, Mistakes
 from cfepy.mission import sources
 from cfepy.monitors.predicate import LATEST, Predicate
@@ -205,7 +207,7 @@ def code_of(invariant: Invariant) -> Any:
     assert invariant.file is not None
     space: dict[str, Any] = {"__name__": invariant.file.stem, "__file__": str(invariant.file)}
     try:
-        exec(compile(invariant.file.read_bytes(), str(invariant.file), "exec"), space)
+        exec(compile(read_limited(invariant.file, PYTHON_BYTES), str(invariant.file), "exec"), space)
         found = space[invariant.function]
         return found() if isinstance(found, type) else found
     except Exception as error:

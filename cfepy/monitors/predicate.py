@@ -16,7 +16,7 @@ from typing import Any
 
 from cfepy.marked_yaml import Marked
 from cfepy.suggestions import did_you_mean
-from cfepy.syntax_trees import parsed
+from cfepy.syntax_trees import parsed_input
 
 LATEST = "latest"
 MOST_SHOWN = 120  # characters of a value in a text
@@ -52,7 +52,7 @@ class Predicate:
         """
         source = _one_line(entry)
         try:
-            tree = parsed(source, mode="eval")
+            tree = parsed_input(source, mode="eval")
         except (SyntaxError, ValueError) as error:
             what = error.msg if isinstance(error, SyntaxError) else str(error)
             raise entry.fail(f"{source!r} is no Python expression: {what}") from None

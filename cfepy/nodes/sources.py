@@ -15,6 +15,9 @@ import warnings
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
+from cfepy.input_files import read_limited
+from cfepy.input_limits import PYTHON_BYTES
+
 if TYPE_CHECKING:
     from cfepy.nodes.instrument import Kinds
 
@@ -54,8 +57,7 @@ def code_of_file(path: str, ordered: bool, name: str, kinds: Kinds | None = None
     if code is not None:
         sys.audit(AGAIN, path)
         return code
-    with open(path, "rb") as file:
-        source = file.read()
+    source = read_limited(path, PYTHON_BYTES)
     with warnings.catch_warnings(record=True) as seen:  # they are for who reads the node's output
         warnings.simplefilter("default")
         _compiled[key] = code = _compile(source, name, ordered, kinds)

@@ -6,9 +6,11 @@ file is read once and kept, so that a run does not see later changes. Paths are 
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from cfepy.input_files import read_limited
 from cfepy.osal.limits import OS_FILESTAT_MODE_READ, OS_FILESTAT_MODE_WRITE
 
 
@@ -46,7 +48,7 @@ class Volume:
         """The file at a path; None when there is none."""
         found = self._nodes.get(path)
         if found is None and (real := self._on_host(path)) is not None and real.is_file():
-            found = self._nodes[path] = FileNode(bytearray(real.read_bytes()))
+            found = self._nodes[path] = FileNode(bytearray(read_limited(real, sys.maxsize)))
         return found
 
     def create(self, path: str) -> FileNode:

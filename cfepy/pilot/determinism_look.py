@@ -17,9 +17,11 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, NamedTuple
 
+from cfepy.input_files import text_limited
+from cfepy.input_limits import PYTHON_BYTES
 from cfepy.nodes.sources import own_files
 from cfepy.own_code import is_library, is_shown, is_standard
-from cfepy.syntax_trees import parsed
+from cfepy.syntax_trees import parsed_input
 from cfepy.trace import TimedRecords, Trace
 
 _SET_MAKERS = frozenset({"set", "frozenset"})
@@ -202,8 +204,8 @@ class Suspect(NamedTuple):
 def suspects(file: str) -> list[Suspect]:
     """The suspicious lines of a Python file, in order; none when it cannot be read."""
     try:
-        text = Path(file).read_text(encoding="utf-8")
-        tree = parsed(text)
+        text = text_limited(file, PYTHON_BYTES)
+        tree = parsed_input(text)
     except (OSError, SyntaxError, ValueError):
         return []
     lines = text.splitlines()

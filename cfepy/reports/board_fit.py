@@ -15,6 +15,8 @@ from cfepy.app import Cfe
 from cfepy.attachment import Attachment
 from cfepy.c import ElfError, read_shared_object
 from cfepy.es import CFE_APP
+from cfepy.input_files import read_limited
+from cfepy.input_limits import OBJECT_BYTES
 from cfepy.mission import Mission, MissionSpec, Processor, StackUse
 from cfepy.pilot import Results, RunPlan, fly
 from cfepy.psp import BoardProfile, load_profile
@@ -250,7 +252,7 @@ def _code(spec: MissionSpec) -> dict[str, int]:
         path = built.file if built is not None else spec.folder / entry.path.removeprefix("/cf/")
         if path.suffix in (".so", ".obj") and os.path.isfile(path):
             try:
-                source = read_shared_object(path.read_bytes(), path.name)
+                source = read_shared_object(read_limited(path, OBJECT_BYTES), path.name)
             except ElfError:
                 continue
             found[entry.name] = sum(segment.file_size for segment in source.segments)

@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.ground import EVENT_TYPES, Dictionary, Topic, int_of, number_of, packet_of, topic_id, unknown_field
+from cfepy.input_files import text_limited
+from cfepy.input_limits import LINE_FILE_BYTES
 from cfepy.mission import MissionSpec
 from cfepy.msg import Telemetry
 from cfepy.script.conditions import (
@@ -197,7 +199,7 @@ def read_script(path: str | Path, spec: MissionSpec, dictionary: Dictionary) -> 
         UsageError: it cannot be read, or has a mistake.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = text_limited(path, LINE_FILE_BYTES, handed=True)
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
     except UnicodeError:

@@ -18,7 +18,7 @@ from rospy_shim.msgs.checking import DefinitionFault, check_definitions
 from rospy_shim.msgs.classes import MessageClass, ServiceClass
 from rospy_shim.msgs.library import Library, from_full_text, library_of, shipped
 from rospy_shim.msgs.modules import generate_dynamic, make_module
-from rospy_shim.msgs.packages import Packages
+from rospy_shim.msgs.packages import Packages, check_package_name
 from rospy_shim.msgs.sources import OnDisk, Shipped, Source
 
 __all__ = [
@@ -31,6 +31,7 @@ __all__ = [
     "Shipped",
     "Source",
     "check_definitions",
+    "check_package_name",
     "from_full_text",
     "generate_dynamic",
     "library_of",

@@ -11,7 +11,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.input_limits import DEFINITION_BYTES, text_limited
+from cfepy.input_files import text_limited
+from cfepy.input_limits import DEFINITION_BYTES
 from cfepy.marked_yaml import Mistakes
 from cfepy.status import UsageError
 from cfepy.suggestions import like

@@ -13,12 +13,17 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from cfepy.cached import CachedProperty
+from cfepy.input_files import text_limited
+from cfepy.input_limits import PYTHON_BYTES, XML_BYTES
+from cfepy.status import UsageError
 
 _MANIFESTS = ("package.xml", "manifest.xml")
 _FENCES = ("CATKIN_IGNORE", "AMENT_IGNORE", "rospack_nosubdirs")
 _DEFINITIONS = ("msg", "srv", "action")
 _PACKAGE_DIR = re.compile(r"""package_dir['"]?\s*[=:]\s*\{\s*['"]{2}\s*:\s*['"]([^'"]+)['"]""")
-_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
+_NAME = re.compile(r"<name>([^<]*)</name>")
+_LEGAL = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,254}")
+_SHOWN = 100  # characters of a name that is wrong
 
 
 class Packages:
@@ -87,8 +92,8 @@ class Packages:
 def _code_roots(package: Path) -> list[str]:
     """Where a package has the code that it installs: `src`, or what its setup.py says of all its Python packages."""
     try:
-        match = _PACKAGE_DIR.search((package / "setup.py").read_text(encoding="utf-8", errors="replace"))
-    except OSError:
+        match = _PACKAGE_DIR.search(text_limited(package / "setup.py", PYTHON_BYTES, "replace"))
+    except (OSError, UsageError):
         match = None
     return list(dict.fromkeys(["src", *([match[1]] if match else [])]))
 
@@ -120,12 +125,39 @@ def crawl(root: Path) -> Iterator[Path]:
 
 
 def name_of(folder: Path) -> str:
-    """What a package's manifest calls it; without one, or with rosbuild's, the folder's name."""
+    """What a package's manifest calls it; without one, with rosbuild's, or with no legal name, the folder's name."""
+    name = _name_in(folder / _MANIFESTS[0])
+    return name if name is not None and is_package_name(name) else folder.name
+
+
+def is_package_name(name: str) -> bool:
+    """Whether a package may have a name, as catkin has it (REP 144 asks for small letters besides)."""
+    return _LEGAL.fullmatch(name) is not None
+
+
+def check_package_name(folder: Path) -> None:
+    """Check what a package's manifest calls it.
+
+    Args:
+        folder: of the package.
+
+    Raises:
+        UsageError: no package may have the name.
+    """
+    file = folder / _MANIFESTS[0]
+    name = _name_in(file)
+    if name is not None and not is_package_name(name):
+        text = f"is {name[:_SHOWN]!r}, which is not the name of a package; write letters, digits, '_' and '-'"
+        raise UsageError(text, file=file, field="<name>")
+
+
+def _name_in(manifest: Path) -> str | None:
+    """The name in a manifest; None when it cannot be read, or has none."""
     try:
-        match = _NAME.search((folder / _MANIFESTS[0]).read_text(encoding="utf-8", errors="replace"))
-    except OSError:
-        match = None
-    return match[1] if match else folder.name
+        match = _NAME.search(text_limited(manifest, XML_BYTES, "replace"))
+    except (OSError, UsageError):
+        return None
+    return match[1].strip() if match else None
 
 
 def has_manifest(folder: Path) -> bool:

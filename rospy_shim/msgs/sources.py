@@ -13,7 +13,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Literal, NamedTuple, Protocol
 
-from cfepy.input_limits import DEFINITION_BYTES, text_limited
+from cfepy.input_files import text_limited
+from cfepy.input_limits import DEFINITION_BYTES
 from cfepy.marked_yaml import Mistakes
 from cfepy.status import UsageError
 from rospy_shim.msgs.packages import Packages, has_definitions
@@ -128,7 +129,7 @@ class Shipped:
 
     def _read(self, name: str, kind: str) -> dict[str, Definition]:
         path = self._folder / f"{name}.{kind}s"
-        return dict(_sections(path.read_text(encoding="utf-8"), str(path))) if os.path.isfile(path) else {}
+        return dict(_sections(text_limited(path, DEFINITION_BYTES), str(path))) if os.path.isfile(path) else {}
 
 
 class OnDisk:

@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from cfepy.input_limits import LAUNCH_NUMBER, XML_BYTES, XML_DEPTH, XML_ENTITY, XML_TAGS, read_limited
+from cfepy.input_files import read_limited
+from cfepy.input_limits import LAUNCH_NUMBER, XML_BYTES
+from cfepy.plain_xml import XmlError, parse_xml
 from cfepy.status import UsageError
 from cfepy.suggestions import did_you_mean
 from rospy_shim.roslaunch.model import LaunchRemark
@@ -87,27 +89,16 @@ def read_launch_tag(file: Path) -> Tag:
 
 
 def _parse(file: Path) -> Tag:
-    from xml.parsers import expat
-
     try:
         data = read_limited(file, XML_BYTES)
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=file) from None
-    parser = expat.ParserCreate()
-    parser.buffer_text = True
     top = Tag("", {}, file, 1)
     open_tags = [top]
     texts: dict[int, tuple[Tag, list[str]]] = {}
-    count = 0
 
-    def start(name: str, attributes: dict[str, str]) -> None:
-        tag = Tag(name, attributes, file, parser.CurrentLineNumber)
-        nonlocal count
-        count += 1
-        if len(open_tags) > XML_DEPTH:
-            raise tag.fail(f"is inside {XML_DEPTH} other tags, which is too deep; is an end tag missing?")
-        if count > XML_TAGS:
-            raise tag.fail(f"is the {XML_TAGS + 1:,}th tag, which is too many for a file; split it")
+    def start(name: str, attributes: dict[str, str], line: int) -> None:
+        tag = Tag(name, attributes, file, line)
         open_tags[-1].children.append(tag)
         open_tags.append(tag)
 
@@ -117,26 +108,14 @@ def _parse(file: Path) -> Tag:
     def text(data: str) -> None:
         texts.setdefault(id(open_tags[-1]), (open_tags[-1], []))[1].append(data)
 
-    def entity(name: str, *declared: object) -> None:
-        value = declared[1]
-        if isinstance(value, str) and len(value) <= XML_ENTITY and not set(value) & {"&", "%", "<"}:
-            return
-        what = f"declares the entity {name!r}, which is not a short text; write the text where it is used"
-        raise UsageError(what, file=file, line=parser.CurrentLineNumber)
-
-    parser.EntityDeclHandler = entity
-    parser.StartElementHandler, parser.EndElementHandler, parser.CharacterDataHandler = start, end, text
     try:
-        parser.Parse(data, True)
-    except expat.ExpatError as error:
-        what = f"is not XML: {expat.ErrorString(error.code)}, column {error.offset + 1}"
-        if len(open_tags) > 1:
+        parse_xml(data, start, end, text)
+    except XmlError as error:
+        what = error.text
+        if error.is_malformed and len(open_tags) > 1:
             what += f"; the <{open_tags[-1].name}> of line {open_tags[-1].line} is open there"
-        raise UsageError(what, file=file, line=error.lineno) from None
-    except (LookupError, ValueError) as error:  # of the encoding that the file names
-        if isinstance(error, UsageError):
-            raise
-        raise UsageError(f"is not XML: {error}", file=file, line=1) from None
+        field = None if error.tag is None else f"<{error.tag}>"
+        raise UsageError(what, file=file, line=error.line, field=field) from None
     for tag, parts in texts.values():
         tag.text = "".join(parts)
     return top.children[0]

@@ -12,7 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from cfepy.input_limits import LAUNCH_FILE_BYTES, LAUNCH_NAME, read_limited, text_limited
+from cfepy.input_files import read_limited, text_limited
+from cfepy.input_limits import LAUNCH_FILE_BYTES, LAUNCH_NAME
 from rospy_shim.client.names import PRIV_NAME, SEP, canonicalize_name
 from rospy_shim.parameters.values import marshalled
 from rospy_shim.roslaunch.document import Attributes, Tag

@@ -9,12 +9,15 @@ from __future__ import annotations
 import os
 import re
 import shlex
+import zlib
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from cfepy.input_files import beginning_of, text_limited
+from cfepy.input_limits import CMAKE_BYTES, XML_BYTES
 from cfepy.marked_yaml import Mistakes
 from cfepy.nodes import ROSCORE_PARAMS, CppNode, NodeConfig
 from cfepy.status import UsageError
@@ -27,6 +30,7 @@ from rospy_shim.roslaunch.reader import read
 
 _TOOLS = Path(__file__).parent / "tools"
 LONGEST_NAME = 16  # an application's file has ".so" behind it, and names of files have 19 characters in OSAL
+_LONGEST_FILE = 200  # characters of a file's name, which may have 255 bytes
 ROS_ENVIRONMENT = {"ROS_DISTRO": "noetic", "ROS_PYTHON_VERSION": "3", "ROS_VERSION": "1"}  # as ROS's setup.sh has it
 _NOT_OURS = ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "ROS_NAMESPACE")  # of the network that is not there
 
@@ -104,7 +108,7 @@ def _is_built(folder: Path, package: str, node_type: str) -> bool:
     word = re.compile(rf"(?<![\w.-]){re.escape(node_type)}(?![\w.-])")
     for file in folder.rglob("CMakeLists.txt") if not node_type.endswith(".py") else ():
         try:
-            text = file.read_text(encoding="utf-8", errors="replace")
+            text = text_limited(file, CMAKE_BYTES, "replace")
         except OSError:
             continue
         if word.search(text.replace("${PROJECT_NAME}", package)):
@@ -116,9 +120,9 @@ def _offers(folder: Path, nodelet: str) -> bool:
     """Whether a file of plugins that a package exports has a nodelet."""
     word = re.compile(rf'\b(?:name|type)\s*=\s*"{re.escape(nodelet)}"')
     try:
-        files = _EXPORTED.findall((folder / "package.xml").read_text(encoding="utf-8", errors="replace"))
-        texts = [(folder / each).read_text(encoding="utf-8", errors="replace") for each in files]
-    except OSError:
+        files = _EXPORTED.findall(text_limited(folder / "package.xml", XML_BYTES, "replace"))
+        texts = [text_limited(folder / each, XML_BYTES, "replace") for each in files]
+    except (OSError, UsageError):
         return False
     return any(word.search(text) for text in texts)
 
@@ -141,8 +145,7 @@ def is_python(file: Path) -> bool:
     """Whether a file is a Python script: by its name, or by its first line."""
     if file.suffix == ".py":
         return True
-    with file.open("rb") as stream:
-        first = stream.readline(200)
+    first = beginning_of(file, 200).partition(b"\n")[0]
     return first.startswith(b"#!") and b"python" in first
 
 
@@ -167,6 +170,12 @@ def _candidates(folders: list[Path], name: str) -> Iterator[Path]:
 def _rank(file: Path) -> tuple[bool, int]:
     """Executable files first, as only they count for ROS; then those nearer to the top."""
     return not os.access(file, os.X_OK), len(file.parts)
+
+
+def _results_file(name: str) -> str:
+    """The name of a file for the results of a test, whose own name may have any characters."""
+    plain = re.sub(r"[^\w.+-]", "_", name)[:_LONGEST_FILE]
+    return f"{plain}.xml" if plain == name else f"{plain}-{zlib.crc32(name.encode('utf-8', 'replace')):08x}.xml"
 
 
 @dataclass(frozen=True, slots=True)
@@ -416,7 +425,7 @@ class Planner:
     def _test(self, test: LaunchTest, remarks: list[LaunchRemark]) -> PlannedTest:
         """A test; it is told where to write, and its end is the end of its run."""
         node, name, limit = test.node, test.test_name, round(test.time_limit * NS_PER_S)
-        results = self._results / f"{node.package}-{name}.xml"
+        results = self._results / _results_file(f"{node.package}-{name}")
         try:
             config = self.config(replace(node, required=True), (f"--gtest_output=xml:{results}",))
         except ScriptError as error:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
 
+from cfepy.input_files import open_input
 from cfepy.input_limits import LAUNCH_INCLUDES_DEEP, LAUNCH_NAME, LAUNCH_WORK
 from cfepy.marked_yaml import Mistakes
 from cfepy.status import UsageError
@@ -403,9 +404,12 @@ class _Reader:
     def _read_included(self, attributes: Attributes, file: Path, inner: Scope) -> bool:
         """Read an included file; whether it is one that can be read."""
         try:
-            file.open("rb").close()
+            open_input(file).close()
         except OSError as error:
             attributes.wrong(f"{file} cannot be read: {error.strerror}", "file")
+            return False
+        except UsageError as error:
+            attributes.wrong(f"{file} {error.text}", "file")
             return False
         self._depth += 1
         is_read = self._read_file(file, inner)

@@ -11,7 +11,7 @@ from tests.security.tricks import CANARY, HARMLESS, TRICKS, Trick
 
 QUICKER = {
     "rospy_shim.libraries.rosbag_storage.compression.LARGEST": 10 << 20,
-    "rospy_shim.roslaunch.document.XML_TAGS": 10_000,
+    "cfepy.plain_xml.XML_TAGS": 10_000,
     "rospy_shim.roslaunch.reader.LAUNCH_WORK": 100_000,
 }
 """Limits that are made smaller, so that they are reached in less time."""

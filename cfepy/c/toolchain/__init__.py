@@ -13,18 +13,18 @@ from cfepy.faces import face
 
 if TYPE_CHECKING:
     from cfepy.c.toolchain.application import Built, Options, build
-    from cfepy.c.toolchain.cmake_script import CMakeScript
+    from cfepy.c.toolchain.cmake_script import CMakeBudget, CMakeScript
     from cfepy.c.toolchain.compiler import CompilerError, cpp_compiler
     from cfepy.c.toolchain.headers import headers_folder
 
-__all__ = ["Built", "CMakeScript", "CompilerError", "Options", "build", "cpp_compiler", "headers_folder"]
+__all__ = ["Built", "CMakeBudget", "CMakeScript", "CompilerError", "Options", "build", "cpp_compiler", "headers_folder"]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
             ".application": ("Built", "Options", "build"),
-            ".cmake_script": ("CMakeScript",),
+            ".cmake_script": ("CMakeBudget", "CMakeScript"),
             ".compiler": ("CompilerError", "cpp_compiler"),
             ".headers": ("headers_folder",),
         },

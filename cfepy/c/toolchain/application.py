@@ -18,6 +18,9 @@ from cfepy.c.elf import MACHINES, elf_file
 from cfepy.c.toolchain.compiler import CompilerError, compile_file, is_cpp, link
 from cfepy.c.toolchain.headers import CfsTree, headers_folder, read_tree
 from cfepy.c.toolchain.sources import Sources, find_sources
+from cfepy.contained_files import write_contained
+from cfepy.input_files import read_limited
+from cfepy.input_limits import OBJECT_BYTES
 from cfepy.status import UsageError
 from cfepy.tbl import TableImage
 from cfepy.tbl import build as table_file
@@ -116,7 +119,7 @@ class _Builder:
         chosen = scratch / "include"
         chosen.mkdir()
         for name, file in (tree.chosen | sources.chosen).items():
-            (chosen / name).write_text("" if file is None else f'#include "{file}"\n', encoding="utf-8")
+            write_contained(chosen, f"/{name}", b"" if file is None else f'#include "{file}"\n'.encode())
         headers = [headers_folder()] if options.cfs is None else tree.includes
         self._flags = [f"-I{each}" for each in (*sources.includes, chosen, *headers)]
         self._flags.append(f"-ffile-prefix-map={scratch}=.")  # so that two builds give the same bytes
@@ -147,7 +150,8 @@ class _Builder:
 
     def _object(self, source: Path, where: Path) -> Path:
         """The object file of a source, in folders like its own: two of one name may be in different ones."""
-        inner = source.relative_to(self._sources.folder) if ".." not in source.parts else Path(source.name)
+        is_inside = ".." not in source.parts and source.is_relative_to(self._sources.folder)
+        inner = source.relative_to(self._sources.folder) if is_inside else Path(source.name)
         made = where / inner.with_name(f"{source.name}.o")
         made.parent.mkdir(parents=True, exist_ok=True)
         return made
@@ -158,7 +162,7 @@ class _Builder:
             made = self._scratch / f"table-{source.name}.o"
             names = [f'-DCFE_APP_NAME="{self._sources.name}"', f"-DCFE_TABLE_NAME={source.stem}", "-DCFE_CPU_NAME=cpu1"]
             self._compile(source, made, [*self._flags, *names, *self._options.flags])
-            table = read_table(made.read_bytes(), source)
+            table = read_table(read_limited(made, OBJECT_BYTES), source)
             if table.addresses:
                 text = f"{table.addresses} words of the table are addresses, for which its file has 0"
                 self._built.warnings.append(f"{source}: warning: {text}")
@@ -207,9 +211,8 @@ class TableObject(NamedTuple):
         Raises:
             UsageError: the table's name is none.
         """
-        made = folder / self.file
-        made.write_bytes(table_file(self.table))
-        return made
+        write_contained(folder, f"/{self.file}", table_file(self.table))
+        return folder / self.file
 
 
 def read_table(data: bytes, source: Path) -> TableObject:

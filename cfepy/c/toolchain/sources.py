@@ -13,6 +13,7 @@ of the mission.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -20,6 +21,8 @@ from pathlib import Path
 
 from cfepy.c.toolchain.cmake_script import FILE, CMakeScript
 from cfepy.c.toolchain.compiler import SOURCE_SUFFIXES
+from cfepy.input_files import text_limited
+from cfepy.input_limits import CMAKE_BYTES
 from cfepy.status import UsageError
 
 INCLUDES = ("fsw/inc", "fsw/public_inc", "fsw/mission_inc", "fsw/platform_inc", "inc", "include")
@@ -32,6 +35,8 @@ SCOPES = ("PUBLIC", "PRIVATE", "INTERFACE", "BEFORE", "AFTER", "SYSTEM")
 _MISSION_DIR = re.compile(r"\$\{(\w+)_MISSION_DIR\}")
 """The folder of another application, in files that are older than `add_cfe_app_dependency`."""
 _FILE_LIST = re.compile(r"set\(\w+_FILE_LIST([^)]*)\)")
+_LEGAL = re.compile(r"\w[\w.+-]*")
+_SHOWN = 100  # characters of a name that is wrong
 _EDS = re.compile(r"_eds_\w+$")
 """Sources that replace others where messages are described by electronic data sheets."""
 
@@ -71,15 +76,18 @@ def find_sources(folder: Path, definitions: Path | None = None) -> Sources:
     Raises:
         UsageError: there is no such folder, or nothing in it to compile.
     """
-    if not folder.is_dir():
+    if not os.path.isdir(folder):
         raise UsageError("there is no such folder; give the one that has the application's fsw/src", file=folder)
-    if definitions is not None and not definitions.is_dir():
+    if definitions is not None and not os.path.isdir(definitions):
         raise UsageError("there is no such folder of a mission's headers", file=definitions)
     said = read_cmake_lists(folder)
     code = _files(folder, said.sources) or _code_in(folder)
     if not code:
         raise UsageError("has no C sources: none in fsw/src, and no CMakeLists.txt that names some", file=folder)
     tables = _files(folder, said.tables) or _all_in(folder, TABLES)
+    if said.name and not _LEGAL.fullmatch(said.name):
+        text = f"{FILE} names the application {said.name[:_SHOWN]!r}; write letters, digits, '_', '-' and '.'"
+        raise UsageError(text, file=folder / FILE)
     found = Sources(said.name or folder.resolve().name, folder, code, tables, definitions=list(said.definitions))
     headers = [] if definitions is None else _folders(definitions, DEFINITIONS)
     found.includes += headers + _folders(folder, said.includes) + _folders(folder, INCLUDES)
@@ -106,16 +114,16 @@ def chosen_headers(folders: Iterable[Path], overriding: Sequence[Path] = ()) -> 
     for folder in folders:
         for file in sorted(folder.glob(f"{DEFAULT}*.h")):
             name = file.name.removeprefix(DEFAULT)
-            found[name] = next((each / name for each in overriding if (each / name).is_file()), file)
+            found[name] = next((each / name for each in overriding if os.path.isfile(each / name)), file)
     return found
 
 
 def _choose(found: Sources, folder: Path, overriding: Sequence[Path]) -> None:
     for name, file in chosen_headers([folder / "config"], overriding).items():
-        if not any((each / name).is_file() for each in found.includes if each.is_relative_to(folder)):
+        if not any(os.path.isfile(each / name) for each in found.includes if each.is_relative_to(folder)):
             found.chosen.setdefault(name, file.resolve())
     for name in _declared(folder):
-        if name not in found.chosen and not any((each / name).is_file() for each in (*overriding, *found.includes)):
+        if name not in found.chosen and not any(os.path.isfile(each / name) for each in (*overriding, *found.includes)):
             found.chosen[name] = None
 
 
@@ -123,17 +131,17 @@ def _declared(folder: Path) -> Iterator[str]:
     """Headers that a mission makes for an application, those without a default among them: such a one is empty."""
     for name in ("mission_build.cmake", "arch_build.cmake"):
         file = folder / name
-        if file.is_file():
-            for words in _FILE_LIST.findall(file.read_text(encoding="utf-8", errors="replace")):
-                yield from (word for word in words.split() if word.endswith(".h"))
+        if os.path.isfile(file):
+            for words in _FILE_LIST.findall(text_limited(file, CMAKE_BYTES, "replace")):
+                yield from (word for word in words.split() if word.endswith(".h") and _LEGAL.fullmatch(word))
 
 
 def _files(folder: Path, names: Iterable[str]) -> list[Path]:
-    files = [folder / name for name in names if Path(name).suffix in SOURCE_SUFFIXES]
-    for file in files:
-        if not file.is_file():
-            raise UsageError(f"{FILE} names {file.relative_to(folder)}, which is not there", file=folder / FILE)
-    return files
+    named = {name: folder / name for name in names if Path(name).suffix in SOURCE_SUFFIXES}
+    for name, file in named.items():
+        if not os.path.isfile(file):
+            raise UsageError(f"{FILE} names {name}, which is not there", file=folder / FILE)
+    return list(named.values())
 
 
 def _code_in(folder: Path) -> list[Path]:
@@ -150,14 +158,14 @@ def _all_in(folder: Path, names: Iterable[str]) -> list[Path]:
 
 
 def _folders(folder: Path, names: Iterable[str]) -> list[Path]:
-    return [folder / name for name in names if name[:1] != "/" and (folder / name).is_dir()]
+    return [folder / name for name in names if name[:1] != "/" and os.path.isdir(folder / name)]
 
 
 def _neighbour(folder: Path, name: str) -> Path | None:
     """The folder of another application or library: beside this one, or in the `libs` or `apps` beside its parent."""
     above = folder.resolve().parent
     places = [above / name, *(above.parent / each / name for each in NEIGHBOURS)]
-    return next((each for each in places if each.is_dir() and each != folder.resolve()), None)
+    return next((each for each in places if os.path.isdir(each) and each != folder.resolve()), None)
 
 
 # -- what the CMakeLists.txt says --------------------------------------------------------------------------------------
@@ -194,10 +202,10 @@ def read_cmake_lists(folder: Path) -> CMakeLists:
         What it says; nothing when there is no such file.
     """
     file = folder / FILE
-    if not file.is_file():
+    if not os.path.isfile(file):
         return CMakeLists()
     reader = _Reader(folder)
-    reader.run(file.read_text(encoding="utf-8", errors="replace"))
+    reader.run(text_limited(file, CMAKE_BYTES, "replace"))
     return reader.found
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import sys
-from pathlib import Path
 from typing import Any
 
 from cfepy.cli.failures import tell, writing
@@ -14,6 +13,8 @@ from cfepy.cli.main import BAD_USAGE, ENDED_WELL
 from cfepy.cli.table import Table, show_tables
 from cfepy.ground.files.dump_files import DumpFile, read_dump, timings, value_at
 from cfepy.ground.files.table_file import is_zero
+from cfepy.input_files import read_limited
+from cfepy.input_limits import TABLE_BYTES
 from cfepy.status import UsageError
 from cfepy.time import print_ as time_text
 
@@ -72,7 +73,7 @@ def _draw(arguments: argparse.Namespace) -> int:
 
 def _bytes(name: str) -> bytes:
     try:
-        return Path(name).read_bytes()
+        return read_limited(name, TABLE_BYTES, handed=True)
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=name) from None
 

@@ -24,6 +24,8 @@ from cfepy.ground.files.table_file import (
     is_zero,
     take_apart,
 )
+from cfepy.input_files import read_limited
+from cfepy.input_limits import TABLE_BYTES
 from cfepy.marked_yaml import load
 from cfepy.status import UsageError
 from cfepy.tbl import TableType
@@ -58,7 +60,7 @@ def _find(arguments: argparse.Namespace) -> Find:
 
 
 def _own_type(path: Path) -> TableType:
-    root = load(path)
+    root = load(path, handed=True)
     said = root.mapping()
     own = table_yaml.own_type(said) if "table" in said else None
     if own is None:
@@ -84,7 +86,7 @@ def _show(arguments: argparse.Namespace, find: Find) -> int:
     if arguments.yaml is not None:
         values = document(file)
         if file.kind is not None and arguments.layout is not None:
-            said: dict[str, Any] = load(Path(arguments.layout)).plain()
+            said: dict[str, Any] = load(Path(arguments.layout), handed=True).plain()
             own: dict[str, Any] = {name: said[name] for name in ("layout", "count") if name in said}
             values = {"table": values.pop("table"), **own, **values}
         write_text(arguments.yaml, table_yaml.write(values), "--yaml", arguments)
@@ -135,7 +137,7 @@ def _read(name: str, find: Find) -> TableContents:
 
 def _bytes(path: Path) -> bytes:
     try:
-        return path.read_bytes()
+        return read_limited(path, TABLE_BYTES, handed=True)
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
 

@@ -16,6 +16,7 @@ from cfepy.cli.failures import check_writable, writing
 from cfepy.cli.json_output import STDOUT, write_text
 from cfepy.cli.looked_at import look_at_series
 from cfepy.cli.main import ENDED_WELL
+from cfepy.contained_files import write_contained
 from cfepy.ground import Series, dictionary_of, surveyed_topics
 from cfepy.mission import read_mission
 from cfepy.msg import Telemetry
@@ -70,7 +71,7 @@ def _ros(arguments: argparse.Namespace) -> int:
         path = Path(arguments.output) / name
         with writing(str(path), "--output"):
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
+            write_contained(Path(arguments.output), f"/{name}", text.encode())
     print(f"{arguments.output}: {len(files) - 2} message types of {len(declared)} packets")
     return ENDED_WELL
 

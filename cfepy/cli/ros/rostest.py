@@ -20,10 +20,13 @@ from cfepy.cli.options import plan_of as run_plan_of
 from cfepy.cli.ros.view import NodesDisplay
 from cfepy.cli.run.outputs import SavedRunFiles
 from cfepy.convert import TEST_RESULTS
+from cfepy.input_files import read_limited
+from cfepy.input_limits import XML_BYTES
 from cfepy.markup import printable
 from cfepy.mission import BuiltProgram, CppNodesConfig, NodeBuilder, built_programs, launch_file, spec_of
 from cfepy.nodes import CppNode, NodeConfig
 from cfepy.pilot import LAUNCH, Flown, builder, fly
+from cfepy.plain_xml import XmlError, plain_xml
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 from rospy_shim.roslaunch.plan import LaunchPlan, PlannedTest, plan_of
@@ -112,9 +115,9 @@ def read_results(file: Path, suite: str) -> TestResults:
         ValueError: it is no XML, or has no suite.
     """
     try:
-        root = ElementTree.parse(file).getroot()
-    except ElementTree.ParseError as error:
-        raise ValueError(f"is not XML: {error}") from None
+        root = plain_xml(read_limited(file, XML_BYTES))
+    except XmlError as error:
+        raise ValueError(error.text) from None
     results = TestResults()
     suites = [tag for tag in root.iter("testsuite") if tag.find("testcase") is not None or tag is root]
     if not suites and root.tag != "testsuites":

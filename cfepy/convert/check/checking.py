@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
 
+from cfepy.contained_files import write_contained
 from cfepy.convert.build import library_includes
 from cfepy.convert.capacities import Capacities, capacities_of
 from cfepy.convert.check.compiler import Compiler, tell
@@ -76,8 +77,7 @@ def _compile(
             rule = "capacity-missing" if "capacity" in error.text else "message-definition"
             write_refusal(messages / f"{kind}.h", error.text, rule)
     for name, text in sources.generated.items():
-        (messages / name).parent.mkdir(parents=True, exist_ok=True)
-        (messages / name).write_text(text, encoding="utf-8")
+        write_contained(messages, f"/{name}", text.encode())
     folders = [*program.includes, messages, *library_includes(real_boost), refusals]
     compiler = Compiler(report.profile, folders, program.definitions)
     accepted = True

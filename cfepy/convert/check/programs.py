@@ -29,7 +29,7 @@ def programs_of(words: Sequence[str], environ: Mapping[str, str]) -> list[Progra
     path = Path(os.path.abspath(words[0]))
     if len(words) == 1 and path.suffix in SUFFIXES:
         return [_of_file(path, environ)]
-    if len(words) == 1 and (path / MANIFEST).is_file():
+    if len(words) == 1 and os.path.isfile(path / MANIFEST):
         return _of_package(path, environ)
     task = task_of(words, environ)
     folders = dict.fromkeys((node.folders[0], node.package, node.type) for node in task.nodes)
@@ -51,7 +51,7 @@ def _of_file(path: Path, environ: Mapping[str, str]) -> Program:
         return Program(CppPackage("", path.parent), path.stem, [path])
     package = read_package(folder, name)
     include = folder / "include"
-    includes = [*package.includes, *([include] if include.is_dir() else [])]
+    includes = [*package.includes, *([include] if os.path.isdir(include) else [])]
     nodelets = {each.library: name for name, each in package.nodelets().items()}
     for target in package.targets.values():
         if any(os.path.abspath(target.folder / each) == str(path) for each in target.sources):

@@ -91,7 +91,7 @@ def read(path: Path, find: Find) -> TableContents:
     Raises:
         UsageError: something is wrong in it; file, line and field are given.
     """
-    root = load(path)
+    root = load(path, handed=True)
     said = root.mapping(KEYS)
     if "table" not in said:
         raise root.fail("names no table; write `table: APP.Table`")

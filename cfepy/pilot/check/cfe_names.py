@@ -14,6 +14,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
+from itertools import islice
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple, get_type_hints
@@ -26,6 +27,8 @@ from cfepy.suggestions import did_you_mean
 from cfepy.syntax_trees import parsed
 
 HANDLE = "cfe"
+_MOST = 500  # problems of a file that are told
+_LONGEST_CHAIN = 20
 GUARDS = ("AttributeError", "TypeError")
 _NEW_WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 _ASKING = ("hasattr", "getattr", "setattr")
@@ -55,7 +58,7 @@ def wrong_names(source: Path, entry_point: str) -> Iterator[MissionProblem]:
         shared = {name for other, each in trees.items() if other != file for name in _imported(each)}
         yield from _wrong_imports(file, tree)
         with suppress(RecursionError):  # generated code that is nested so deeply is not looked at
-            yield from _Reader(file, tree, entry_point, shared).problems()
+            yield from islice(_Reader(file, tree, entry_point, shared).problems(), _MOST)
 
 
 def _imported(tree: ast.Module) -> set[str]:
@@ -295,9 +298,11 @@ class _Reader:
                     yield MissionProblem(self._file, node.lineno, fault)
 
     def _kind(self, node: ast.expr | None) -> _Kind | None:
-        """What an expression is, when that is certain."""
+        """What an expression is, when that is certain; that of a long chain of attributes is not."""
         if isinstance(node, ast.NamedExpr):
             return self._kind(node.value)
+        if _chain(node) > _LONGEST_CHAIN:
+            return None
         if isinstance(node, ast.Name):
             return self._kind_of_name(node.id, self._bindings.place_of[node])
         base = self._kind(node.value) if isinstance(node, ast.Attribute) else None
@@ -366,6 +371,14 @@ class _Reader:
         """Whether an annotation is the class of the handle, taken from cfepy."""
         text = annotation.value if isinstance(annotation, ast.Constant) else ast.unparse(annotation)
         return self._has_cfe and text == "Cfe"
+
+
+def _chain(node: ast.expr | None) -> int:
+    """How many attributes of attributes an expression asks for; of long chains one more than the most."""
+    count = 0
+    while isinstance(node, ast.Attribute) and count <= _LONGEST_CHAIN:
+        node, count = node.value, count + 1
+    return count
 
 
 def _the_same(kinds: Iterable[_Kind | None]) -> _Kind | None:

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from cfepy.es import CFE_APP, CFE_LIB, StartupEntry, startup_script
+from cfepy.input_files import read_limited
+from cfepy.input_limits import OBJECT_BYTES
 from cfepy.marked_yaml import Mistakes
 from cfepy.mission import CORE_APPS, NODE_SYMBOL, MissionSections, find_code, find_compiled, find_node, sources
 from cfepy.osal import OS_MAX_FILE_NAME
@@ -110,7 +112,7 @@ def _check_compiled(
     from cfepy.c import ElfError, read_shared_object, wanted_names
 
     try:
-        source = read_shared_object(file.read_bytes(), file.name)
+        source = read_shared_object(read_limited(file, OBJECT_BYTES), file.name)
         wanted = wanted_names(source)
     except ElfError as error:
         yield MissionProblem(file, 0, str(error))
@@ -153,7 +155,7 @@ def _exported(folder: Path, entry: StartupEntry) -> set[str]:
     if file is None:
         return set()
     try:
-        source = read_shared_object(file.read_bytes(), file.name)
+        source = read_shared_object(read_limited(file, OBJECT_BYTES), file.name)
     except ElfError:
         return set()
     return {each.name for each in source.symbols if each.is_defined}
@@ -179,7 +181,7 @@ def check_profiles(script: Path, entries: list[StartupEntry], said: MissionSecti
     unknown = []
     for file in files:
         try:
-            profile = abi_profile(read_shared_object(file.read_bytes(), file.name))
+            profile = abi_profile(read_shared_object(read_limited(file, OBJECT_BYTES), file.name))
         except ElfError:
             continue  # told with the line that names the file
         if profile.contradicts(omits):

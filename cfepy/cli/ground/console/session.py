@@ -10,13 +10,14 @@ from __future__ import annotations
 from argparse import ArgumentTypeError
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import NamedTuple, Protocol, TypeVar
 
 from cfepy.cli.ground.console.pages import PacketBoard
 from cfepy.cli.ground.console.saved import SavedScript, when_of
 from cfepy.cli.options import LONGEST_S, count_of, factor_of, seconds_of
 from cfepy.ground import EVENT_IDS, EVENT_TYPES, DecodedEvent
+from cfepy.input_files import text_limited
+from cfepy.input_limits import LINE_FILE_BYTES
 from cfepy.mission import Seen, receivers
 from cfepy.msg import MsgType, get_type
 from cfepy.rtos import ENDLESS, Stopwatch
@@ -394,7 +395,7 @@ class ConsoleSession:
             UsageError: it cannot be read, or has a mistake; then nothing of it is done.
         """
         try:
-            text = Path(file).read_text(encoding="utf-8")
+            text = text_limited(file, LINE_FILE_BYTES, handed=True)
         except OSError as error:
             raise UsageError(f"cannot be read: {error.strerror}", file=file) from None
         except UnicodeError:
