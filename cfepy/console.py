@@ -1,6 +1,7 @@
 """The console of a mission: where OS_printf, the system log and the event port write their lines.
 
-It keeps every line for tests and tools, and shows it on a stream or hands it to a live display.
+It keeps every line as it is, for tests and tools, and shows it on a stream, where control characters are escapes, or
+hands it to a display.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ import sys
 from collections.abc import Callable
 from typing import TextIO
 
+from cfepy.escapes import console_line, raw
 from cfepy.texts import without_addresses
 
 
@@ -52,4 +54,5 @@ class Console:
         if self.sink is not None:
             self.sink(line)
         elif not self.quiet:
-            (self.stream or sys.stdout).write(line + "\n")
+            stream = self.stream or sys.stdout
+            raw(stream).write(console_line(line, colours=stream.isatty()) + "\n")

@@ -7,6 +7,8 @@ service keeps its own.
 
 from __future__ import annotations
 
+from cfepy.escapes import visible, visible_line
+
 
 def _signed(status: int) -> int:
     return status - (1 << 32) if status & 0x80000000 else status
@@ -323,6 +325,8 @@ class UsageError(ValueError):
         file: path of the file it is in.
         line: line number in that file, counted from 1.
         field: the field that is wrong, e.g. "limits.sb_max_pipes".
+
+    As a string it is for people: control characters in it are escapes.
     """
 
     def __init__(
@@ -335,8 +339,9 @@ class UsageError(ValueError):
         self.field = field
 
     def __str__(self) -> str:
-        place = ":".join(str(part) for part in (self.file, self.line) if part is not None)
-        return ": ".join(part for part in (place, self.field, self.text) if part)
+        place = ":".join(visible_line(part) for part in (self.file, self.line) if part is not None)
+        field = "" if self.field is None else visible_line(self.field)
+        return ": ".join(part for part in (place, field, visible(self.text)) if part)
 
 
 class StallError(RuntimeError):
@@ -370,4 +375,4 @@ class StallError(RuntimeError):
         self.at_ns = at_ns
 
     def __str__(self) -> str:
-        return "\n".join([self.summary, *(f"  {line}" for line in self.lines)])
+        return visible("\n".join([self.summary, *(f"  {line}" for line in self.lines)]))

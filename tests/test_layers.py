@@ -155,3 +155,57 @@ def test_numpy_and_test_libraries_are_imported_lazily(tree: Tree) -> None:
 def is_imported_late(path: Path) -> bool:
     """The display and the screen are themselves imported only when needed; so are the tools for tests, by tests."""
     return (path.name in {"display.py", "screen.py", "tables.py"} and "cli" in path.parts) or "testing" in path.parts
+
+
+# -- what is printed ---------------------------------------------------------------------------------------------------
+
+PRINT_PAST = {
+    "cfepy.escapes": "it is the place",
+    "cfepy.console": "lines of nodes have colours",
+    "cfepy.cli.display": "lines of nodes have colours",
+    "cfepy.cli.ros.node": "the node's lines have colours",
+    "cfepy.cli.parser": "help and usage are cfepy's own, and Python colours them",
+    "cfepy.cli.json_output": "data for another program",
+    "cfepy.cli.host": "a process that cannot be ended: the text is made visible there",
+    "cfepy.cli.ground.console.screen": "a process that cannot be ended: a text of cfepy's own",
+    "cfepy.rtos.stall_signals": "the file for Python's faulthandler, which writes escapes of its own",
+}
+"""Modules that write to a stream of the process without `SafeStream`, and why."""
+_PAST_NAMES = {"raw", "for_data", "__stdout__", "__stderr__"}
+
+
+def ways_past(tree: ast.AST) -> Iterator[str]:
+    """What in a module writes past the safe streams, or makes a stream that is not safe."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module == "cfepy.escapes":
+            yield from (each.name for each in node.names if each.name in _PAST_NAMES)
+        elif isinstance(node, ast.ImportFrom) and node.module == "rich.console":
+            yield from (each.name for each in node.names if each.name == "Console")
+        elif isinstance(node, ast.Attribute) and node.attr in _PAST_NAMES and _is(node.value, "sys"):
+            yield node.attr
+        elif isinstance(node, ast.Attribute) and node.attr == "buffer" and isinstance(node.value, ast.Attribute):
+            if _is(node.value.value, "sys"):
+                yield "buffer"
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            if node.func.attr == "write" and _is(node.func.value, "os") and _is_standard(node.args[0]):
+                yield "os.write"
+            elif node.func.attr in ("StreamHandler", "basicConfig"):
+                yield node.func.attr
+
+
+def _is(node: ast.expr, name: str) -> bool:
+    return isinstance(node, ast.Name) and node.id == name
+
+
+def _is_standard(node: ast.expr) -> bool:
+    return (isinstance(node, ast.Constant) and node.value in (1, 2)) or _is(node, "STDERR") or _is(node, "STDOUT")
+
+
+def test_nothing_prints_past_the_safe_streams(tree: Tree) -> None:
+    found = {
+        name: sorted(set(ways))
+        for name, module in tree.modules.items()
+        if name.startswith("cfepy") and (ways := list(ways_past(module.tree)))
+    }
+    assert {name: ways for name, ways in found.items() if name not in PRINT_PAST} == {}
+    assert set(PRINT_PAST) == set(found), "a module of the table does not need its place any more"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Protocol, TextIO
 
 from cfepy.cli.failures import tell
 from cfepy.cli.options import LONGEST_S
+from cfepy.escapes import console_line, raw, rich_console
 from cfepy.rtos import Stopwatch
 from cfepy.units import NS_PER_S
 
@@ -48,13 +49,14 @@ class PlainDisplay:
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
+        self._colours = stream.isatty()
         self._broken: OSError | None = None
 
     def line(self, text: str) -> None:
         """See `Display.line`. A reader that went away must not look like an error of the app that wrote."""
         if self._broken is None:
             try:
-                self._stream.write(text + "\n")
+                raw(self._stream).write(console_line(text, self._colours) + "\n")
             except OSError as error:
                 self._broken = error
             except ValueError as error:  # an app closed it
@@ -105,10 +107,9 @@ class LiveDisplay:
     """
 
     def __init__(self, stream: TextIO, seconds: float) -> None:
-        from rich.console import Console
         from rich.live import Live
 
-        self._console = Console(file=stream, soft_wrap=True)
+        self._console = rich_console(stream, soft_wrap=True)
         self._live = Live(
             console=self._console, auto_refresh=False, transient=True, redirect_stdout=False, redirect_stderr=False
         )
@@ -147,7 +148,9 @@ class LiveDisplay:
     def _show_lines(self) -> None:
         if self._lines:
             lines, self._lines = self._lines, []
-            self._console.print("\n".join(lines), markup=False, highlight=False, emoji=False)
+            text = "\n".join(console_line(line, colours=True) for line in lines)
+            shown = _coloured(text) if "\x1b" in text else text
+            self._console.print(shown, markup=False, highlight=False, emoji=False)
 
 
 def make_display(quiet: bool, seconds: float) -> Display:
@@ -164,6 +167,13 @@ def make_display(quiet: bool, seconds: float) -> Display:
 
 def _messages(mission: Mission) -> int:
     return sum(route.sequence + route.relayed for route in mission.cfe.sb.routes.values())
+
+
+def _coloured(text: str) -> Text:
+    """A text with colours of nodes, as rich has it."""
+    from rich.text import Text
+
+    return Text.from_ansi(text)
 
 
 def _status(text: str) -> Text:

@@ -17,6 +17,7 @@ from cfepy.cli.failures import note
 from cfepy.cli.main import FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import LONGEST_S
 from cfepy.console import Console
+from cfepy.escapes import visible
 from cfepy.garbage import no_collection
 from cfepy.mission import PieceLength
 from cfepy.pilot import Host, LiveRun
@@ -136,7 +137,7 @@ class WatchedHost(Host):
         """See `Host.give_up`; there is no report, since the thread that would write it does not come back."""
         with contextlib.suppress(Exception):
             sys.stdout.flush()
-        os.write(STDERR, f"cfepy: {why}\ncfepy: it cannot be ended; gave up\n".encode(errors="replace"))
+        os.write(STDERR, f"cfepy: {visible(str(why))}\ncfepy: it cannot be ended; gave up\n".encode(errors="replace"))
         os._exit(INTERRUPTED if self.asked else FOUND_PROBLEMS)
 
     def end(self) -> None:

@@ -10,10 +10,11 @@ import argparse
 import contextlib
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, Literal, TextIO
 
 from cfepy.cli.failures import check_writable, writing
+from cfepy.escapes import for_data
 
 STDOUT = "-"
 _MAY_BE_STDOUT = ("json", "csv", "sarif", "yaml", "output", "dot", "svg")
@@ -24,9 +25,10 @@ def standard_output(arguments: argparse.Namespace) -> Iterator[None]:
     """Around a command: standard output is for the option that takes it with `-`, and only for it.
 
     Args:
-        arguments: of the command line; gets `stdout`, the standard output.
+        arguments: of the command line; gets `stdout`, the standard output. What is written there is as it is in a
+            file, but a terminal gets no control characters.
     """
-    arguments.stdout = sys.stdout
+    arguments.stdout = for_data(sys.stdout)
     if not any(getattr(arguments, name, None) == STDOUT for name in _MAY_BE_STDOUT):
         yield
         return
@@ -57,9 +59,20 @@ def write_json(arguments: argparse.Namespace, value: Any, indent: int | None = 2
     """
     if arguments.json is None:
         return
+    write_text(arguments.json, json_text(value, indent) + "\n", "--json", arguments)
+
+
+def json_text(value: Any, indent: int | None = None, default: Callable[[Any], Any] | None = None) -> str:
+    """Plain data as JSON without a control character: DEL, which JSON lets pass, is an escape as all others are.
+
+    Args:
+        value: the data.
+        indent: see `write_json`.
+        default: makes plain data of what is not.
+    """
     import json
 
-    write_text(arguments.json, json.dumps(value, indent=indent) + "\n", "--json", arguments)
+    return json.dumps(value, indent=indent, default=default).replace("\x7f", "\\u007f")
 
 
 def write_text(file: str, text: str, option: str, arguments: argparse.Namespace) -> None:

@@ -21,6 +21,7 @@ from cfepy.cli.failures import NO_ROOM
 from cfepy.cli.json_output import standard_output
 from cfepy.cli.options import MISSION_HELP
 from cfepy.cli.parser import CommandParser, RootParser
+from cfepy.escapes import safe_output
 from cfepy.garbage import freeze, no_collection
 from cfepy.status import StallError, UsageError
 
@@ -74,7 +75,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         The exit status.
     """
     _prepare_streams()
-    words = sys.argv[1:] if argv is None else argv
+    with safe_output():
+        return _obey(sys.argv[1:] if argv is None else argv)
+
+
+def _obey(words: Sequence[str]) -> int:
+    """Do what the words say; the exit status."""
     if "_ARGCOMPLETE" in os.environ:
         _command("shell.completion").complete(parser_for)
     try:

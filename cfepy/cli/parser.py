@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import argparse
 import re
+import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from cfepy.escapes import raw
 from cfepy.suggestions import did_you_mean
 
 LAUNCH_FILES = (".launch", ".test", ".xml")
@@ -123,6 +125,14 @@ class CommandParser(argparse.ArgumentParser):
             hint = did_you_mean(str(value), [str(choice) for choice in action.choices or ()], before="; ")
             text = f"invalid choice: {value!r}{hint}" if hint else error.message
             raise argparse.ArgumentError(action, text) from None
+
+    def print_help(self, file: Any = None) -> None:
+        """Print the help, which is all of cfepy: Python may give it colours."""
+        super().print_help(raw(sys.stdout if file is None else file))
+
+    def print_usage(self, file: Any = None) -> None:
+        """Print the usage, as the help."""
+        super().print_usage(raw(sys.stdout if file is None else file))
 
     def format_usage(self) -> str:
         """The words of the command; its options are in its help."""

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TextIO
+
+from cfepy.escapes import rich_console, visible, visible_line
 
 USUAL_WIDTH = 80
 NARROW_TEXT = 14  # columns of text are folded into lines of so many characters before one is left out
@@ -27,16 +29,16 @@ class Table:
     def __init__(
         self, title: str, columns: Sequence[str], right: Sequence[int] = (), least: Sequence[int] = ()
     ) -> None:
-        self.title = title
-        self.columns = tuple(columns)
+        self.title = visible_line(title)
+        self.columns = tuple(map(visible_line, columns))
         self.right = frozenset(right)
         self.least = tuple(least)
         self.rows: list[tuple[str, ...]] = []
         self.note = ""
 
     def add(self, *cells: object) -> None:
-        """Add a row; numbers of thousands get their comma."""
-        self.rows.append(tuple(f"{cell:,}" if isinstance(cell, int) else str(cell) for cell in cells))
+        """Add a row; numbers of thousands get their comma, and a text is one line."""
+        self.rows.append(tuple(f"{cell:,}" if isinstance(cell, int) else visible_line(cell) for cell in cells))
 
 
 def show_tables(tables: Sequence[Table], stream: TextIO) -> None:
@@ -57,11 +59,18 @@ def _write(table: Table, stream: TextIO) -> None:
         )
         stream.write(("  " + "  ".join(cells)).rstrip() + "\n")
     if table.note:
-        stream.write(f"  {table.note}\n")
+        stream.write(f"  {visible_line(table.note)}\n")
+
+
+def print_lines(names: Iterable[str]) -> None:
+    """Print names on standard output, a line each."""
+    for name in names:
+        print(visible_line(name))
 
 
 def show_paragraph(text: str, stream: TextIO) -> None:
     """Print a text that is no table, on a terminal with lines that end between words."""
+    text = visible(text)
     if stream.isatty():
         import textwrap
 
@@ -96,25 +105,24 @@ def fitting(table: Table, width: int) -> list[int]:
 
 def _draw(table: Table, stream: TextIO) -> None:
     from rich import box
-    from rich.console import Console
     from rich.table import Table as RichTable
     from rich.text import Text
 
     width = _width(stream)
     drawn = RichTable(
-        title=table.title,
+        title=Text(table.title, style="table.title"),
         title_justify="left",
         box=box.SIMPLE_HEAD,
         pad_edge=False,
-        caption=table.note or None,
+        caption=Text(visible_line(table.note), style="table.caption") if table.note else None,
         caption_justify="left",
     )
     shown = fitting(table, width)
     for at in shown:
         is_number = at in table.right
         drawn.add_column(
-            table.columns[at], justify="right" if is_number else "left", no_wrap=is_number, overflow="fold"
+            Text(table.columns[at]), justify="right" if is_number else "left", no_wrap=is_number, overflow="fold"
         )
     for row in table.rows:
         drawn.add_row(*(Text(row[at]) for at in shown))
-    Console(file=stream, width=width).print(drawn)
+    rich_console(stream, width=width).print(drawn)

@@ -17,6 +17,7 @@ from cfepy.debugger.app_debugger import AppDebugger, leave_thread, look_at_end, 
 from cfepy.debugger.breakpoints import Breakpoint, VariableCondition, breakpoints, finders
 from cfepy.debugger.journey import NOTHING_BEFORE, Journey, LineWay, RunMoment
 from cfepy.debugger.keepers import Keepers
+from cfepy.escapes import safe
 from cfepy.ground import LiveNames
 from cfepy.mission import Mission, MissionSpec
 from cfepy.monitors import Observer, Sent, app_of
@@ -104,7 +105,7 @@ class Debugger(Observer):
         self._debuggers: dict[Task, AppDebugger] = {}
         self._on_quit = on_quit
         self._commands = sys.stdin if commands is None else commands
-        self._stream = sys.stdout if stream is None else stream
+        self._stream = safe(sys.stdout if stream is None else stream)
         self._has_begun = self._is_over = False
         self._names: LiveNames
         self._mission: Mission

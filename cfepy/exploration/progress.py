@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Protocol, TextIO
 
+from cfepy.escapes import keep_output_safe, rich_console
 from cfepy.rtos import Stopwatch
 from cfepy.units import NS_PER_S
 
@@ -133,15 +134,15 @@ class BarProgress:
     """
 
     def __init__(self, meter: CampaignMeter, stream: TextIO) -> None:
-        from rich.console import Console
         from rich.progress import BarColumn, TextColumn
         from rich.progress import Progress as RichProgress
 
         self._meter = meter
         columns: tuple[Any, ...] = (BarColumn(), TextColumn("{task.description}"))
-        self._bar = RichProgress(*columns, console=Console(file=stream), transient=True)
+        self._bar = RichProgress(*columns, console=rich_console(stream), transient=True)
         self._task = self._bar.add_task(meter.text(), total=1.0)
         self._bar.start()
+        keep_output_safe()
 
     def arrived(self, failed: bool) -> None:
         """See `Progress.arrived`."""

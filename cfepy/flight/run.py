@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cfepy.es import STATE_NAMES
+from cfepy.escapes import visible
 from cfepy.exploration import TracebackReader
 from cfepy.flight.log import FlightLog, Packet
 from cfepy.flight.message_library import library_near
@@ -30,8 +31,12 @@ LAST_LINES = 10  # of the console, in the text of a failure
 class ExpectationError(AssertionError):
     """Something that a test waited for did not come, or something came that must not.
 
-    The text says what was expected and until when, what there was instead, and the command that does it again.
+    The text says what was expected and until when, what there was instead, and the command that does it again. Control
+    characters of messages and events in it are escapes.
     """
+
+    def __str__(self) -> str:
+        return visible(super().__str__())
 
 
 @dataclass(frozen=True, slots=True)

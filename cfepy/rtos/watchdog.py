@@ -22,6 +22,7 @@ from dataclasses import dataclass, field
 from types import CodeType, FrameType
 from typing import NamedTuple
 
+from cfepy.escapes import visible
 from cfepy.rtos.context import frame_of_thread, insist, raise_in_thread
 from cfepy.rtos.kernel import Kernel
 from cfepy.rtos.stall_signals import LastResort, Waker
@@ -47,7 +48,7 @@ THREADS = "/proc/self/task"
 
 def to_stderr(text: str) -> None:
     """Where a report goes by default."""
-    sys.stderr.write(text + "\n")
+    sys.stderr.write(visible(text) + "\n")
     sys.stderr.flush()
 
 

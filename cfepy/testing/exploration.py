@@ -13,6 +13,7 @@ from typing import Literal, cast
 import pytest
 from _pytest.runner import runtestprotocol
 
+from cfepy.escapes import visible
 from cfepy.exploration import (
     Failure,
     MadeMove,
@@ -238,7 +239,7 @@ class ExploredTest:
             lines.append(f"the same again: {self._missions.command(self._item, schedule)}")
         reports = list(self._last.reports)
         failed = next((each for each in reports if each.outcome != "passed"), reports[-1])
-        failed.sections.append((f"{SECTION} explore", "\n".join(lines)))
+        failed.sections.append((f"{SECTION} explore", visible("\n".join(lines))))
         return reports
 
     def _shrunk(self, schedule: Schedule, group: str) -> Shrunk[ExploredTest] | None:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from cfepy.attachment import Attachment
+from cfepy.escapes import visible
 from cfepy.flight import SEED, ExpectationError, Faults, Flight, fault_attachments, fault_text, schedule_of
 from cfepy.host_system import command_line
 from cfepy.own_code import source_file
@@ -276,7 +277,8 @@ class Missions:
         result = yield
         races = [race for flight in self.flown if flight.plan.races for race in flight.mission.record.data_races]
         if races:
-            pytest.fail("\n".join(f"data race: {race.text}\n{race.detail}" for race in races), pytrace=False)
+            text = "\n".join(f"data race: {race.text}\n{race.detail}" for race in races)
+            pytest.fail(visible(text), pytrace=False)
         return result
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -292,7 +294,7 @@ class Missions:
                 self._journals.keep(item)
             lines = self._lines(item, call.excinfo.value)
             if lines:
-                report.sections.append((SECTION, "\n".join(lines)))
+                report.sections.append((SECTION, visible("\n".join(lines))))
         return report
 
     @pytest.hookimpl(wrapper=True)

@@ -14,6 +14,7 @@ from cfepy.cli.ground.console.plain import text_of_row
 from cfepy.cli.ground.console.saved import SavedScript, time_text, without_when
 from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.es.packets import HK_TLM
+from cfepy.evs.packets import LONG_EVENT_MSG
 from cfepy.ground import dictionary_of, packet_of
 from cfepy.mission import FIRST_PIECE_NS, Seen
 from cfepy.pilot import RunPlan, takeoff
@@ -84,6 +85,12 @@ def test_files_are_completed(completer: Completer, tmp_path: Path) -> None:
     assert completer.complete(f"load {tmp_path}/none/").choices == []
 
 
+def test_files_with_control_characters_are_not_completed(completer: Completer, tmp_path: Path) -> None:
+    (tmp_path / "x\x1b[31m").touch()
+    (tmp_path / "y").touch()
+    assert [each.text for each in completer.complete(f"load {tmp_path}/").choices] == [f"{tmp_path}/y"]
+
+
 def packet(**values: Any) -> bytes:
     return HK_TLM.packet(values)
 
@@ -108,6 +115,18 @@ def test_a_page_shows_what_changed_and_fits_its_width() -> None:
     assert text_of_row(board.rows(60)[0]).startswith("CFE_ES_HK_TLM  2  2.000  CommandCounter=77 ")
     board.choose(["CFE_SB_*"])
     assert text_of_row(board.rows(60)[0]) == "no packet of CFE_SB_* yet"
+
+
+def test_a_page_shows_control_characters_of_packets_as_escapes() -> None:
+    board = PacketBoard(DICTIONARY)
+    values = {"PacketID": {"AppName": "\x1b[2J\n"}, "Message": "\x1b]0;title\a"}
+    board.note(Seen(10**9, LONG_EVENT_MSG.packet(values), "CFE_EVS"))
+    for page in ("all", "CFE_EVS_LONG_EVENT_MSG"):
+        board.choose([page])
+        text = "\n".join(text_of_row(row) for row in board.rows(400))
+        assert "\x1b" not in text
+        assert r"\x1b[2J\n" in text
+        assert r"\x1b]0;title\x07" in text
     with pytest.raises(UsageError, match="no telemetry packet is called NOPE"):
         board.choose(["NOPE"])
 

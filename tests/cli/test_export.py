@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import sys
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from cfepy.cli.csv_cells import write_rows
 from cfepy.cli.main import main
 from tests.cli.conftest import Write
 
@@ -155,3 +157,39 @@ def test_parquet_without_pyarrow(monkeypatch: pytest.MonkeyPatch, capsys: pytest
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     assert main(["export", "parquet", "capture", "/phase"]) == 2
     assert "pip install 'cfepy[parquet]'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("cell", "quoted"),
+    [
+        ("=cmd|' /C calc'!A0", "'=cmd|' /C calc'!A0"),
+        ("+1+1", "'+1+1"),
+        ("-2+3", "'-2+3"),
+        ("@SUM(A1)", "'@SUM(A1)"),
+        ("\t=1", "'\t=1"),
+        ("-1.5e3", "-1.5e3"),
+        (-1.5, "-1.5"),
+        ("a=b", "a=b"),
+        ("", ""),
+    ],
+)
+def test_quote_formulas_marks_texts_that_a_spreadsheet_would_compute(cell: object, quoted: str) -> None:
+    plain, marked = io.StringIO(), io.StringIO()
+    write_rows(plain, [["head", cell]], quotes=False)
+    write_rows(marked, [["head", cell]], quotes=True)
+    assert next(csv.reader([plain.getvalue()])) == ["head", str(cell)]
+    assert next(csv.reader([marked.getvalue()])) == ["head", quoted]
+
+
+def test_csv_with_quote_formulas(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = tmp_path / "n.py"
+    node.write_text(
+        "import rospy\nfrom std_msgs.msg import String\nrospy.init_node('n')\n"
+        "out = rospy.Publisher('/t', String, queue_size=1)\n"
+        "while not rospy.is_shutdown():\n    out.publish('=1+1')\n    rospy.sleep(0.1)\n"
+    )
+    for options, text in ((["--quote-formulas"], "'=1+1"), ([], "=1+1")):
+        assert main(["export", "csv", str(node), "/t.data", "--for", "1", *options]) == 0
+        assert rows_of(capsys.readouterr().out)[0]["data"] == text

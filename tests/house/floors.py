@@ -14,18 +14,9 @@ from tests.house.tree import Tree
 FLOORS: tuple[tuple[str, ...], ...] = (
     (
         *("status", "ids", "units", "texts", "trace", "console", "config", "config_api", "ports", "core_app"),
-        *(
-            "versions",
-            "resources",
-            "input_limits",
-            "input_files",
-            "contained_files",
-            "plain_yaml",
-            "marked_yaml",
-            "suggestions",
-        ),
-        *("faces", "cached", "markup", "garbage", "syntax_trees", "own_code", "host_system", "child_pipes", "compiled"),
-        *("input_files", "plain_xml"),
+        *("versions", "resources", "input_limits", "input_files", "contained_files", "plain_yaml", "marked_yaml"),
+        *("plain_xml", "suggestions", "faces", "cached", "markup", "escapes", "garbage", "syntax_trees", "own_code"),
+        *("host_system", "child_pipes", "compiled"),
     ),
     ("rtos",),
     ("osal",),

@@ -56,6 +56,14 @@ def test_a_failure_says_what_there_was_instead(suite: Suite) -> None:
     )
 
 
+def test_a_failure_has_no_control_characters_of_messages(suite: Suite) -> None:
+    act = "flight.publish('/jump', data=76)\n    flight.mission.console.write('[talker] \\x1b]0;title\\x07')"
+    result = suite(WAITS.format(act=act))
+    result.assert_outcomes(failed=1)
+    assert r"\x1b]0;title\x07" in result.stdout.str()
+    assert "\x1b]" not in result.stdout.str()
+
+
 turns = 0
 """Of the task below, which the host's clocks go by here: nothing else is too slow for them on a busy computer."""
 

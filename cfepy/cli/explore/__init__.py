@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 
+from cfepy.cli.csv_cells import add_quote_formulas
 from cfepy.cli.options import (
     POINTS_HELP,
     RUN_OPTIONS,
@@ -277,6 +278,7 @@ def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     add_run_options(sweep, without=["board", "seed", "settings"])
     _add_crew(sweep, "run")
     sweep.add_argument("--csv", metavar="FILE|-", help="write a row for each topic of each run")
+    add_quote_formulas(sweep)
     sweep.add_argument("--picture", metavar="FILE", help="draw a picture: .png, .svg or .pdf")
     add_json(sweep, "what was found")
     sweep.add_argument("--quiet", action="store_true", help="show no progress")

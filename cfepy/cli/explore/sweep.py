@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import io
 import os
 import sys
@@ -11,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from cfepy.cli.csv_cells import write_rows
 from cfepy.cli.failures import check_writable, writing
 from cfepy.cli.json_output import STDOUT, check_json, write_json, write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
@@ -57,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     rows, is_over = _flown(arguments, plan)
     heads, cells = sweep_table(rows)
     if arguments.csv is not None:
-        write_text(arguments.csv, _csv_text(heads, cells), "--csv", arguments)
+        write_text(arguments.csv, _csv_text([heads, *cells], arguments.quote_formulas), "--csv", arguments)
     found = knees(rows)
     said = [dict(zip(heads, each, strict=True)) for each in cells]
     write_json(arguments, {"rows": said, "knees": [{**each._asdict(), "varied": dict(each.varied)} for each in found]})
@@ -113,10 +113,9 @@ def _board(word: str) -> str:
     return os.path.abspath(word) if is_file else word
 
 
-def _csv_text(heads: list[str], cells: list[list[object]]) -> str:
+def _csv_text(rows: Sequence[Sequence[object]], quotes: bool) -> str:
     text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerows([heads, *cells])
+    write_rows(text, rows, quotes)
     return text.getvalue()
 
 

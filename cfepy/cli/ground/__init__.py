@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 
+from cfepy.cli.csv_cells import add_quote_formulas
 from cfepy.cli.flight_options import add_pace, add_recording, add_viewers
 from cfepy.cli.options import (
     LOOK_STATUS,
@@ -210,3 +211,5 @@ def _add_values(formats: argparse._SubParsersAction[argparse.ArgumentParser], na
     values.add_argument("names", metavar="NAME", nargs="+", help=VALUES_HELP)
     add_from(values)
     add_output(values, f"{usual}; into a folder a file for each topic or packet", usual)
+    if name == "csv":
+        add_quote_formulas(values)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import os
 import re
 import sys
@@ -12,6 +11,7 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
 
+from cfepy.cli.csv_cells import write_rows
 from cfepy.cli.failures import check_writable, writing
 from cfepy.cli.json_output import STDOUT, write_text
 from cfepy.cli.looked_at import look_at_series
@@ -152,18 +152,17 @@ def _joined(tables: Sequence[ValueTable]) -> ValueTable:
 
 def _write_csv(file: str, table: ValueTable, arguments: argparse.Namespace) -> None:
     if file == STDOUT:
-        _put_csv(arguments.stdout, table)
+        _put_csv(arguments.stdout, table, arguments.quote_formulas)
         return
     with writing(file, "--output"), open(file, "w", encoding="utf-8", errors="backslashreplace", newline="") as stream:
-        _put_csv(stream, table)
+        _put_csv(stream, table, arguments.quote_formulas)
 
 
-def _put_csv(stream: TextIO, table: ValueTable) -> None:
-    rows = csv.writer(stream, lineterminator="\n")
-    rows.writerow([TIME, STAMP, *table.columns])
+def _put_csv(stream: TextIO, table: ValueTable, quotes: bool) -> None:
     times = map(_exact, table.times_ns.tolist())
     stamps = (_exact(stamp) if stamp else "" for stamp in table.stamps_ns.tolist())
-    rows.writerows(zip(times, stamps, *map(_cells, table.columns.values()), strict=True))
+    rows = zip(times, stamps, *map(_cells, table.columns.values()), strict=True)
+    write_rows(stream, chain([(TIME, STAMP, *table.columns)], rows), quotes)
 
 
 def _exact(time_ns: int) -> str:

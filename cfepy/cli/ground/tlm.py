@@ -6,7 +6,6 @@ It is shown a line each, as JSON lines, or on a terminal as a table of the newes
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -14,10 +13,11 @@ from typing import Any, Protocol, TextIO
 
 from cfepy.cli.failures import tell
 from cfepy.cli.ground.target import RemoteHost, dictionary_for, host_of
-from cfepy.cli.json_output import json_lines
+from cfepy.cli.json_output import json_lines, json_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import plan_of, refuse_run_options
 from cfepy.cli.table import show_paragraph
+from cfepy.escapes import keep_output_safe, rich_console, visible_line
 from cfepy.ground import CI_PORT, TO_PORT, Decoded, Dictionary, dictionary_of, packet_of, topic_id, topics_of
 from cfepy.io import udp
 from cfepy.mission import MissionSpec, PacketWatch, Seen, find_script, is_node
@@ -103,7 +103,8 @@ class TextLines:
     def show(self, packet: bytes, at_ns: int) -> None:
         """See `Output.show`."""
         decoded = self._dictionary.decode(packet)
-        show_paragraph(f"{at_ns / NS_PER_S:.3f} {decoded.name} {content(decoded, packet)}", self._stream)
+        text = f"{at_ns / NS_PER_S:.3f} {decoded.name} {content(decoded, packet)}"
+        show_paragraph(visible_line(text), self._stream)
 
     def refresh(self) -> None:
         """See `Output.refresh`."""
@@ -129,21 +130,21 @@ class JsonLines(TextLines):
         }
         if decoded.problem:
             record |= {"problem": decoded.problem, "packet": packet.hex()}
-        self._stream.write(json.dumps(record, default=bytes.hex) + "\n")
+        self._stream.write(json_text(record, default=bytes.hex) + "\n")
 
 
 class LiveTable:
     """A row for each kind of packet: how many came, when the newest came, what is in it."""
 
     def __init__(self, dictionary: Dictionary, stream: TextIO) -> None:
-        from rich.console import Console
         from rich.live import Live
 
         self._dictionary = dictionary
         self._rows: dict[int, tuple[int, int, bytes]] = {}
         self._is_new = True
-        self._live = Live(console=Console(file=stream), auto_refresh=False)
+        self._live = Live(console=rich_console(stream), auto_refresh=False)
         self._live.start()
+        keep_output_safe()
 
     def show(self, packet: bytes, at_ns: int) -> None:
         """See `Output.show`."""
@@ -175,7 +176,7 @@ class LiveTable:
         for _, (count, at_ns, packet) in sorted(self._rows.items()):
             decoded = self._dictionary.decode(packet)
             cells = (decoded.name, f"{count:,}", f"{at_ns / NS_PER_S:.1f}", content(decoded, packet))
-            table.add_row(*(Text(cell) for cell in cells))
+            table.add_row(*(Text(visible_line(cell)) for cell in cells))
         return table
 
 

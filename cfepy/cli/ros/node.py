@@ -13,6 +13,7 @@ from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of
 from cfepy.cli.run.outputs import Outputs
 from cfepy.cli.run.run import View, fly_and_tell
+from cfepy.escapes import node_text, raw
 from cfepy.mission import Mission
 from cfepy.pilot import BOOT_S, ENDED, NODE, Flown
 
@@ -21,7 +22,7 @@ _OWN_LINE = re.compile(r"\[[\w/]+\] (.*)", re.DOTALL)  # as the console has what
 
 
 class NodeDisplay:
-    """Shows what the node prints, at once and as it is, and nothing of the flight computer's console.
+    """Shows what the node prints, at once, with its colours, and nothing of the flight computer's console.
 
     Args:
         stream: where to.
@@ -29,12 +30,14 @@ class NodeDisplay:
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
+        self._colours = stream.isatty()
 
     def line(self, text: str) -> None:
         """A line of the console."""
         own = _OWN_LINE.fullmatch(text)
         if own is not None:
-            print(own[1], file=self._stream, flush=True)
+            stream = raw(self._stream)
+            print(node_text(own[1], self._colours), file=stream, flush=True)
         elif text.startswith(FAULT):
             print(text, file=sys.stderr, flush=True)
 

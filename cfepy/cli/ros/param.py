@@ -12,6 +12,7 @@ from cfepy.cli.failures import tell, writing
 from cfepy.cli.json_output import write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import plan_of, refuse_run_options
+from cfepy.cli.table import print_lines
 from cfepy.ground.parameters import Parameters, at_start, changed, is_source_of_files, of_files, present, table_files
 from cfepy.pilot import never_happened, takeoff
 from cfepy.plain_yaml import YamlError, plain_yaml
@@ -60,8 +61,7 @@ def _parameters(arguments: argparse.Namespace) -> Parameters:
 def _list(arguments: argparse.Namespace) -> int:
     parameters = _parameters(arguments)
     names = parameters.names(_full(arguments.name))
-    for name in names:
-        print(name)
+    print_lines(names)
     return ENDED_WELL if names or arguments.name is None else _missing(arguments.name, parameters)
 
 

@@ -11,6 +11,7 @@ from cfepy.cli.json_output import write_json
 from cfepy.cli.looked_at import flight_plan
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.ros.source import FlightSource
+from cfepy.cli.table import print_lines
 from cfepy.console import Console
 from cfepy.flight import library_near
 from cfepy.ground import GroundConsole, is_bag, with_ground_node
@@ -65,7 +66,7 @@ def _list(services: dict[str, dict[str, Any]], arguments: argparse.Namespace) ->
     start = arguments.namespace.rstrip("/") + "/" if arguments.namespace else ""
     chosen = [each for name, each in services.items() if name.startswith(start)]
     write_json(arguments, chosen)
-    sys.stdout.writelines(f"{each['service']}\n" for each in chosen)
+    print_lines(each["service"] for each in chosen)
     if not chosen:
         sys.stdout.flush()
         print(f"cfepy: no service in {start or '/'} in {arguments.source}", file=sys.stderr)

@@ -14,7 +14,9 @@ from cfepy.cli.looked_at import flight_plan
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.ros.source import FlightSource, SeenTopic, source_of
 from cfepy.cli.ros.topic_output import Bandwidth, Delay, Echo, Hz, Meter
+from cfepy.cli.table import print_lines
 from cfepy.console import Console
+from cfepy.escapes import visible_line
 from cfepy.ground import GroundConsole, candidates, with_ground_node
 from cfepy.mission import described
 from cfepy.status import UsageError
@@ -66,7 +68,7 @@ def _list(arguments: argparse.Namespace) -> int:
     if arguments.verbose:
         print(_verbose(rows))
     else:
-        sys.stdout.writelines(f"{name}\n" for name in dict.fromkeys(row.name for row in rows))
+        print_lines(dict.fromkeys(row.name for row in rows))
     return ENDED_WELL if rows else _no_topic(f"in {start or '/'}", arguments)
 
 
@@ -85,7 +87,8 @@ def _verbose(rows: list[SeenTopic]) -> str:
 
 
 def _counted(row: SeenTopic, names: tuple[str, ...], what: str) -> str:
-    return f" * {row.name} [{row.type or 'unknown type'}] {len(names)} {what}{'s' if len(names) > 1 else ''}"
+    kind = row.type or "unknown type"
+    return visible_line(f" * {row.name} [{kind}] {len(names)} {what}{'s' if len(names) > 1 else ''}")
 
 
 def _known(arguments: argparse.Namespace) -> tuple[SeenTopic, dict[str, str]]:
@@ -116,7 +119,7 @@ def _named(title: str, names: tuple[str, ...], addresses: dict[str, str]) -> str
     if not names:
         return f"{title}: None\n"
     texts = (f" * {name} ({addresses[name]})" if name in addresses else f" * {name}" for name in names)
-    return "\n".join([f"{title}: ", *texts, ""])
+    return "\n".join([f"{title}: ", *map(visible_line, texts), ""])
 
 
 def _type(arguments: argparse.Namespace) -> int:
@@ -129,7 +132,7 @@ def _type(arguments: argparse.Namespace) -> int:
 def _find(arguments: argparse.Namespace) -> int:
     names = [row.name for row in _rows(arguments) if row.type == arguments.type]
     write_json(arguments, names, indent=None)
-    sys.stdout.writelines(f"{name}\n" for name in names)
+    print_lines(names)
     return ENDED_WELL if names else _no_topic(f"of type {arguments.type}", arguments)
 
 

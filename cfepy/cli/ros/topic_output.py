@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import importlib
-import json
 import math
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 from typing import Any, TextIO
 
+from cfepy.cli.json_output import json_text
 from cfepy.ground import MessageDecoder, plain, steps_of, value_at
 from cfepy.mission import TopicMessage
 from cfepy.status import UsageError
@@ -60,7 +60,7 @@ class Echo:
 
     def _json(self, message: TopicMessage, value: Any) -> None:
         record = {"topic": message.topic, "at": message.at_ns / NS_PER_S, "time": _seconds(message.stamp_ns)}
-        self._stream.write(json.dumps({**record, "message": plain(value)}, default=list) + "\n")
+        self._stream.write(json_text({**record, "message": plain(value)}, default=list) + "\n")
 
     def _csv(self, message: TopicMessage, value: Any) -> None:
         cells = list(flat(value, "field"))

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.escapes import visible_line
 from cfepy.mission import read_mission
 from cfepy.pilot.check import MissionProblem, check_mission, problem_of
 from cfepy.status import UsageError
@@ -65,9 +66,9 @@ def _check_faults(arguments: argparse.Namespace, flies: bool) -> list[MissionPro
 
 
 def _line(finding: MissionProblem) -> str:
-    place = _shown(finding.file)
+    place = visible_line(_shown(finding.file))
     text = ("warning: " if finding.is_warning else "") + finding.text.replace(f"{Path.cwd()}{os.sep}", "")
-    return f"{place}:{finding.line}: {text}" if finding.line else f"{place}: {text}"
+    return f"{place}:{finding.line}: {visible_line(text)}" if finding.line else f"{place}: {visible_line(text)}"
 
 
 def _shown(path: Path) -> str:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from cfepy.cli.ground.console.pages import ALL, HK
 from cfepy.cli.ground.console.session import MAXIMUM, TIMES, VERBS, ConsoleSession
+from cfepy.escapes import visible_line
 from cfepy.ground import EVENT_TYPES, Dictionary
 from cfepy.msg import Command, Layout, Telemetry
 from cfepy.script import APP_STATES, OPERATORS, RESET_TYPES
@@ -61,7 +62,8 @@ class Completer:
         words = line.split(" ")
         last = words.pop()
         before = [word for word in words if word]
-        choices = list(_fitting(self._choices(before, last), last))
+        fitting = _fitting(self._choices(before, last), last)
+        choices = [each for each in fitting if visible_line(each.text) == each.text]  # others cannot be typed
         return Completion(len(line) - len(last), choices)
 
     def _choices(self, before: list[str], last: str) -> Iterable[Candidate]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
+from cfepy.escapes import visible_line
 from cfepy.ground import Decoded, Dictionary
 from cfepy.mission import Seen
 from cfepy.units import NS_PER_S
@@ -125,16 +126,16 @@ class PacketBoard:
         if kind.looked == kind.count:
             return
         decoded = self._dictionary.decode(kind.newest.packet)
-        texts = _texts(decoded, kind.newest.packet)
+        texts = {path: visible_line(text) for path, text in _texts(decoded, kind.newest.packet).items()}
         kind.changed = {path for path, text in texts.items() if kind.texts.get(path, text) != text}
-        kind.name, kind.texts, kind.looked = decoded.name, texts, kind.count
+        kind.name, kind.texts, kind.looked = visible_line(decoded.name), texts, kind.count
 
     def _overview(self, width: int) -> Iterator[Row]:
         """A row for each kind of packet."""
         for kind in sorted(self._kinds.values(), key=lambda each: each.newest.msg_id):
             decoded = self._dictionary.decode(kind.newest.packet)
-            head = f"{decoded.name}  {kind.count:,}  {kind.newest.at_ns / NS_PER_S:.3f}  "
-            content = decoded.problem or decoded.line()
+            head = f"{visible_line(decoded.name)}  {kind.count:,}  {kind.newest.at_ns / NS_PER_S:.3f}  "
+            content = visible_line(decoded.problem or decoded.line())
             yield [Piece(cut(head, width), TITLE), Piece(cut(content, max(0, width - len(head))))]
 
 

@@ -27,6 +27,7 @@ from cfepy.cli.ground.console.completion import Completer, Completion
 from cfepy.cli.ground.console.session import BAD, CONSOLE, EVENT, GOOD, REPLY, TYPED_LINE, ConsoleSession, Entry
 from cfepy.cli.host import PATIENCE_NS, STDERR
 from cfepy.cli.main import INTERRUPTED
+from cfepy.escapes import visible, visible_line
 from cfepy.ground import EVENT_TYPES
 from cfepy.rtos import Stopwatch
 from cfepy.units import NS_PER_S
@@ -326,7 +327,7 @@ class ConsoleScreen(App[None]):
         """See `App.begin_capture_print`: what this process itself prints, such as a report of a task that is stuck."""
         text = message.text.rstrip("\n")
         if text:
-            self.query_one("#log", RichLog).write(Text(text, style=ENTRY_STYLES[BAD]))
+            self.query_one("#log", RichLog).write(Text(visible(text), style=ENTRY_STYLES[BAD]))
 
     def action_run_or_pause(self) -> None:
         """Let time go on, or stand still."""
@@ -350,8 +351,9 @@ def hint_of(completion: Completion) -> str:
     if not candidates:
         return NOTHING_FITS
     if len(candidates) == 1:
-        return f"{candidates[0].text}  {candidates[0].hint}".rstrip()
-    return "  ".join(f"{each.text}{each.hint}" if each.text.endswith("=") else each.text for each in candidates)
+        return visible_line(f"{candidates[0].text}  {candidates[0].hint}".rstrip())
+    texts = (f"{each.text}{each.hint}" if each.text.endswith("=") else each.text for each in candidates)
+    return visible_line("  ".join(texts))
 
 
 def _row_text(row: pages.Row) -> Text:

@@ -15,6 +15,7 @@ from typing import NamedTuple, Protocol, TypeVar
 from cfepy.cli.ground.console.pages import PacketBoard
 from cfepy.cli.ground.console.saved import SavedScript, when_of
 from cfepy.cli.options import LONGEST_S, count_of, factor_of, seconds_of
+from cfepy.escapes import visible, visible_line
 from cfepy.ground import EVENT_IDS, EVENT_TYPES, DecodedEvent
 from cfepy.input_files import text_limited
 from cfepy.input_limits import LINE_FILE_BYTES
@@ -38,7 +39,7 @@ SPEED_NS = NS_PER_S // 2  # wall time over which the speed is measured
 
 
 class Entry(NamedTuple):
-    """Something to be told: what kind of thing, its text, and the event that it is, if it is one."""
+    """Something to be told: what kind of thing, its text as a screen may show it, and the event, if it is one."""
 
     kind: str
     text: str
@@ -164,7 +165,7 @@ class ConsoleSession:
 
     def say(self, kind: str, text: str) -> None:
         """Tell something."""
-        self._entries.append(Entry(kind, text))
+        self._entries.append(Entry(kind, visible(text)))
 
     @property
     def moves(self) -> bool:
@@ -188,7 +189,8 @@ class ConsoleSession:
         state = f"{self.speed:.1f} x real time" if self.moves else "over" if self.is_landed else "stands"
         accepted, refused = self.board.counters()
         time = f"{self.craft.script.scene.now_ns / NS_PER_S:.3f} s"
-        return f"{self.craft.name}  {time}  {state}  sent {self.sent}, accepted {accepted}, refused {refused}"
+        name = visible_line(self.craft.name)
+        return f"{name}  {time}  {state}  sent {self.sent}, accepted {accepted}, refused {refused}"
 
     # -- time --------------------------------------------------------------------------------------------------------
 
@@ -226,7 +228,7 @@ class ConsoleSession:
             elif each.msg_id in EVENT_IDS:
                 event = DecodedEvent.of(each)
                 text = f"{event.at_ns / NS_PER_S:.3f} {event.app} {event.event_id} {event.type_name}: {event.text}"
-                self._entries.append(Entry(EVENT, text, event))
+                self._entries.append(Entry(EVENT, visible_line(text), event))
                 self._prints_event = False
             elif get_type(each.packet) == MsgType.TLM:
                 self.board.note(each)
