@@ -18,6 +18,11 @@ and so on), what tests use beyond this in `cfepy.testing`. Names are loaded when
 
 from __future__ import annotations
 
+from cfepy.early_end import is_command, leave_on_interrupt
+
+if is_command():
+    leave_on_interrupt()  # before any other import, in which Python would answer Ctrl-C with a traceback
+
 from typing import TYPE_CHECKING
 
 from cfepy.faces import face

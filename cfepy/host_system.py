@@ -5,6 +5,7 @@ Modules that only POSIX has (`fcntl`, `termios`, `resource`) are imported where 
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import sys
@@ -19,6 +20,43 @@ def in_forked_process(call: Callable[[], object]) -> None:
     """Call something in each child that this process forks; where no process is forked, never."""
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(after_in_child=call)
+
+
+def ending_signals() -> list[signal.Signals]:
+    """The signals by which a user ends a program: Ctrl-C, SIGTERM, and SIGHUP where it is not ignored (`nohup`)."""
+    hangup = signal_number("SIGHUP")
+    listens = hangup and signal.getsignal(hangup) != signal.SIG_IGN
+    return [signal.SIGINT, signal.SIGTERM, *([signal.Signals(hangup)] if listens else [])]
+
+
+def interrupt_once(number: int, _: object) -> None:
+    """An answer to SIGHUP, which a terminal that is closed sends twice: a KeyboardInterrupt, and no other.
+
+    Raises:
+        KeyboardInterrupt: always.
+    """
+    signal.signal(number, signal.SIG_IGN)
+    leave_dead_terminal()
+    raise KeyboardInterrupt
+
+
+def leave_dead_terminal() -> bool:
+    """Let what goes to a terminal that was closed go nowhere, so that writing to it does not fail.
+
+    Returns:
+        Whether standard output or standard error was such a terminal.
+    """
+    was_dead = False
+    for descriptor in (1, 2):
+        try:
+            os.get_terminal_size(descriptor)
+        except OSError as error:
+            if error.errno == errno.EIO:
+                was_dead = True
+                nowhere = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(nowhere, descriptor)
+                os.close(nowhere)
+    return was_dead
 
 
 def signal_number(name: str) -> int:

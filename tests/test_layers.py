@@ -164,6 +164,7 @@ PRINT_PAST = {
     "cfepy.console": "lines of nodes have colours",
     "cfepy.cli.display": "lines of nodes have colours",
     "cfepy.cli.ros.node": "the node's lines have colours",
+    "cfepy.cli.main": "settings of the stream itself",
     "cfepy.cli.parser": "help and usage are cfepy's own, and Python colours them",
     "cfepy.cli.json_output": "data for another program",
     "cfepy.cli.host": "a process that cannot be ended: the text is made visible there",

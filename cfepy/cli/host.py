@@ -19,6 +19,7 @@ from cfepy.cli.options import LONGEST_S
 from cfepy.console import Console
 from cfepy.escapes import visible
 from cfepy.garbage import no_collection
+from cfepy.host_system import ending_signals, leave_dead_terminal, signal_number
 from cfepy.mission import PieceLength
 from cfepy.pilot import Host, LiveRun
 from cfepy.rtos import Pacer, Stopwatch
@@ -56,6 +57,9 @@ class WatchedHost(Host):
 
     Attributes:
         console: for the mission; its lines go to the display.
+
+    When the display cannot be written to, the run ends as by Ctrl-C, and the error comes at the end of the context;
+    there is none if a terminal was closed.
     """
 
     owns_process = True
@@ -88,6 +92,7 @@ class WatchedHost(Host):
         self._go: Callable[[int], None] = self._free_piece
         self._bridge = contextlib.ExitStack()
         self._network: HostNetwork | None = None
+        self._unshown: OSError | None = None
 
     @property
     def asked(self) -> bool:
@@ -99,8 +104,13 @@ class WatchedHost(Host):
         return self
 
     def __exit__(self, *error: Any) -> None:
-        self._display.close()
+        try:
+            self._display.close()
+        except OSError as why:
+            self._stop_showing(why)
         no_collection.__exit__(*error)
+        if self._unshown is not None and error[0] is None:
+            raise self._unshown
 
     def begin(self, run: LiveRun) -> None:
         """See `Host.begin`; what the user should know is said before anything runs."""
@@ -117,7 +127,10 @@ class WatchedHost(Host):
         """See `Host.step`."""
         self._go(until_ns)
         self._pause()
-        self._display.update(self._mission)
+        try:
+            self._display.update(self._mission)
+        except OSError as error:
+            self._stop_showing(error)
 
     def stand(self) -> None:
         """Time stands still between two pieces; what viewers ask is answered all the same."""
@@ -145,6 +158,13 @@ class WatchedHost(Host):
         if self._viewers is not None:
             self._viewers.close()
         self._bridge.close()
+
+    def _stop_showing(self, error: OSError) -> None:
+        """Nothing can be shown any more: the run ends as by Ctrl-C, so that what it writes is whole."""
+        self._display = SilentDisplay()
+        self._interrupts.asked = True
+        if not leave_dead_terminal():
+            self._unshown = error
 
     @property
     def _guests(self) -> list[Guest]:
@@ -197,11 +217,12 @@ class WatchedHost(Host):
 
 
 class Interrupts:
-    """What Ctrl-C and SIGTERM do while a mission runs and ends; use as a context manager.
+    """What Ctrl-C, SIGTERM and SIGHUP do while a mission runs and ends; use as a context manager.
 
     The first one sets `asked`, for the run to end at the next occasion. The second one raises KeyboardInterrupt, for a
     task that gives no occasion. Any more are ignored for a while: they would disturb the ending of tasks. After that
-    the next one ends the process, for a task that nothing can end, such as one that waits in a C library.
+    the next one ends the process, for a task that nothing can end, such as one that waits in a C library. A terminal
+    that is closed sends SIGHUP two or three times, from its system and its shell, so that only the first one counts.
     """
 
     def __init__(self) -> None:
@@ -212,7 +233,7 @@ class Interrupts:
 
     def __enter__(self) -> Interrupts:
         try:
-            for each in (signal.SIGINT, signal.SIGTERM):
+            for each in ending_signals():
                 self._before[each] = signal.signal(each, self._on_signal)
         except ValueError:
             pass  # not the main thread: signals do not come here
@@ -222,7 +243,11 @@ class Interrupts:
         for each, handler in self._before.items():
             signal.signal(each, handler)
 
-    def _on_signal(self, *_: object) -> None:
+    def _on_signal(self, number: int, _: object) -> None:
+        if number == signal_number("SIGHUP"):
+            leave_dead_terminal()
+            if self.asked:
+                return
         self.asked = True
         self._count += 1
         if self._count == 2:

@@ -14,6 +14,7 @@ import os
 import signal
 import sys
 from collections.abc import Iterator, Sequence
+from types import TracebackType
 from typing import Any
 
 from cfepy import __version__
@@ -21,14 +22,17 @@ from cfepy.cli.failures import NO_ROOM
 from cfepy.cli.json_output import standard_output
 from cfepy.cli.options import MISSION_HELP
 from cfepy.cli.parser import CommandParser, RootParser
-from cfepy.escapes import safe_output
+from cfepy.early_end import INTERRUPTED as INTERRUPTED
+from cfepy.early_end import leave, leave_on_interrupt
+from cfepy.escapes import keep_output_safe, raw, safe_output
 from cfepy.garbage import freeze, no_collection
+from cfepy.host_system import ending_signals, interrupt_once, leave_dead_terminal, signal_number
 from cfepy.status import StallError, UsageError
 
 ENDED_WELL = 0
 FOUND_PROBLEMS = 1
 BAD_USAGE = 2
-INTERRUPTED = 130  # 128 + SIGINT, what shells expect
+AGAIN_S = 0.001  # wall time until an interrupt that was dropped comes again
 ROOMS = {
     "run": ("run", "check", "new", "boards", "board"),
     "ros": ("launch", "node", "rostest", "topic", "service", "param", "bag"),
@@ -58,11 +62,38 @@ TITLES = {
 
 
 def process() -> int:
-    """The whole process `cfepy`: `main`, and a quick end: to look for garbage once more takes a tenth of a boot."""
+    """The whole process `cfepy`: `main`, and a quick end: to look for garbage once more takes a tenth of a boot.
+
+    Ctrl-C ends it at once before a command begins, and when all is done; so does an error of cfepy's own, of which the
+    traceback is printed as all else is.
+    """
+    leave_on_interrupt()
+    _prepare_streams()
+    keep_output_safe()
+    sys.excepthook, sys.unraisablehook = _print_error, _pass_on_interrupt
     try:
-        return main()
-    finally:
-        freeze()
+        status = main()
+        leave_on_interrupt()
+    except KeyboardInterrupt:
+        status = INTERRUPTED
+    freeze()
+    return status
+
+
+def _print_error(kind: type[BaseException], error: BaseException, where: TracebackType | None) -> None:
+    """Print a traceback without the colours that Python gives it, which are escape sequences as any other."""
+    import traceback
+
+    sys.stderr.write("".join(traceback.format_exception(kind, error, where)))
+
+
+def _pass_on_interrupt(lost: sys.UnraisableHookArgs) -> None:
+    """A KeyboardInterrupt that came up in a callback or a finalizer, where Python drops it, comes again soon."""
+    if lost.exc_type is not KeyboardInterrupt or not hasattr(signal, "setitimer"):
+        sys.__unraisablehook__(lost)
+        return
+    signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+    signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -76,7 +107,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     _prepare_streams()
     with safe_output():
-        return _obey(sys.argv[1:] if argv is None else argv)
+        try:
+            return _obey(sys.argv[1:] if argv is None else argv)
+        except OSError:  # while it told of another error
+            if leave_dead_terminal():
+                return INTERRUPTED
+            raise
 
 
 def _obey(words: Sequence[str]) -> int:
@@ -85,8 +121,9 @@ def _obey(words: Sequence[str]) -> int:
         _command("shell.completion").complete(parser_for)
     try:
         chosen = parser_for(words).parse_args(words)
+        command = _command(chosen.module)
         with terminable(), standard_output(chosen):
-            status: int = _command(chosen.module).run(chosen)
+            status: int = command.run(chosen)
         sys.stdout.flush()
         return status
     except UsageError as error:
@@ -98,17 +135,23 @@ def _obey(words: Sequence[str]) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
-        # The reader of the output has closed it; the interpreter must not try to write the rest when it ends.
-        with contextlib.suppress(ValueError):  # an app closed it
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()  # its reader has closed it
         return ENDED_WELL
     except MemoryError:
         return _tell_out_of_memory(words)
     except OSError as error:
         if error.errno == errno.ENOMEM:
             return _tell_out_of_memory(words)
+        if leave_dead_terminal():
+            return INTERRUPTED
         print(f"cfepy: {_without_room(error) or error}", file=sys.stderr)
         return BAD_USAGE
+
+
+def _drop_output() -> None:
+    """Lead standard output nowhere, so that Python does not try to write the rest of it when the process ends."""
+    with contextlib.suppress(ValueError):  # an app closed it
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _without_room(error: OSError) -> str:
@@ -118,6 +161,7 @@ def _without_room(error: OSError) -> str:
     try:
         print(flush=True)  # standard output that had no room for a text has none for an empty line
     except OSError:
+        _drop_output()
         return f"standard output cannot be written: {error.strerror}"
     import tempfile
 
@@ -132,16 +176,20 @@ def _tell_out_of_memory(words: Sequence[str]) -> int:
 
 @contextlib.contextmanager
 def terminable() -> Iterator[None]:
-    """Around what ends with Ctrl-C: SIGTERM does the same, so findings are told and temporary folders taken away."""
+    """Around a command: Ctrl-C, SIGTERM and SIGHUP end it, so findings are told and temporary folders taken away."""
+    before: dict[int, Any] = {}
     try:
-        before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+        for each in ending_signals():
+            if each != signal.SIGINT or signal.getsignal(each) is leave:
+                is_hangup = each == signal_number("SIGHUP")
+                before[each] = signal.signal(each, interrupt_once if is_hangup else signal.default_int_handler)
     except ValueError:  # not the main thread: signals do not come here
-        yield
-        return
+        pass
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _command(module: str) -> Any:
@@ -193,5 +241,6 @@ def _prepare_streams() -> None:
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115  # as long as the process
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")
+    stdout = raw(sys.stdout)
+    if isinstance(stdout, io.TextIOWrapper):
+        stdout.reconfigure(errors="backslashreplace")

@@ -35,7 +35,7 @@ STATUS_HELP = """exit status:
        or a failure reset the processor; with --script, a step of the script failed and nothing else counts;
        with --check-determinism, two runs differed, and nothing else counts
   2    bad usage, or a mission that cannot boot
-  130  ended by Ctrl-C or SIGTERM (the report is still printed)"""
+  130  ended by Ctrl-C, SIGTERM or SIGHUP (the report is still printed)"""
 
 # -- what decides a run ------------------------------------------------------------------------------------------------
 

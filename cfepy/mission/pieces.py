@@ -14,6 +14,8 @@ from collections.abc import Callable
 from types import FrameType, TracebackType
 from typing import Any
 
+from cfepy.host_system import interrupt_once, signal_number
+
 FIRST_PIECE_NS = 10_000_000  # virtual time
 LEAST_PIECE_NS = 1_000_000
 SHORT_NS, LONG_NS = 80_000_000, 250_000_000  # wall time that a piece should take
@@ -21,13 +23,13 @@ _handler_of: Callable[[int], Any] = getattr(signal.getsignal, "__wrapped__", sig
 """The function in C, which makes no enum of what it finds: it is asked before each piece."""
 
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
-_DEFAULT = signal.default_int_handler
+_SIGNALS = tuple(filter(None, map(signal_number, ("SIGINT", "SIGTERM", "SIGHUP"))))
+_RAISING = (signal.default_int_handler, interrupt_once)
 
 
 def is_to_be_held_back() -> bool:
     """Whether Python would answer a signal with a KeyboardInterrupt, so that it takes `HeldBack`."""
-    return _handler_of(_SIGNALS[0]) is _DEFAULT or _handler_of(_SIGNALS[1]) is _DEFAULT
+    return any(_handler_of(each) in _RAISING for each in _SIGNALS)
 
 
 class PieceLength:
@@ -51,9 +53,9 @@ class PieceLength:
 class HeldBack:
     """Around what a signal must not break off: Ctrl-C, and others of which Python makes a KeyboardInterrupt.
 
-    The KeyboardInterrupt comes at the end, unless another error does. A second signal does not wait: what it is about
-    does not come to an end by itself. Signals that the program answers in its own way, and those of other threads than
-    the first, are left alone.
+    The KeyboardInterrupt comes at the end, unless another error does. A second signal does not wait, unless it is
+    SIGHUP: what it is about does not come to an end by itself. Signals that the program answers in its own way, and
+    those of other threads than the first, are left alone.
 
     Attributes:
         asked: whether there was one.
@@ -63,12 +65,12 @@ class HeldBack:
     def __init__(self) -> None:
         self.asked = False
         self.is_first = False
-        self._before: dict[signal.Signals, Any] = {}
+        self._before: dict[int, Any] = {}
 
     def __enter__(self) -> HeldBack:
         try:
             for each in _SIGNALS:
-                if _handler_of(each) is _DEFAULT:
+                if _handler_of(each) in _RAISING:
                     self._before[each] = signal.signal(each, self._on_signal)
         except ValueError:
             pass  # not the first thread: signals do not come here
@@ -84,6 +86,9 @@ class HeldBack:
             raise KeyboardInterrupt
 
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
-        if self.asked:
+        is_hangup = self._before[number] is not signal.default_int_handler
+        if self.asked and not is_hangup:
             signal.default_int_handler(number, frame)
+        if is_hangup:
+            self._before[number] = signal.SIG_IGN  # from the end on; see `interrupt_once`
         self.asked = True

@@ -16,7 +16,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
         *("status", "ids", "units", "texts", "trace", "console", "config", "config_api", "ports", "core_app"),
         *("versions", "resources", "input_limits", "input_files", "contained_files", "plain_yaml", "marked_yaml"),
         *("plain_xml", "suggestions", "faces", "cached", "markup", "escapes", "garbage", "syntax_trees", "own_code"),
-        *("host_system", "child_pipes", "compiled"),
+        *("host_system", "child_pipes", "compiled", "early_end"),
     ),
     ("rtos",),
     ("osal",),

@@ -107,7 +107,7 @@ def _add_console(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "commands by name, steps of a mission script, or words of the console; help lists them. Without a terminal, "
         "lines are read from standard input.",
         epilog="exit status: 0 well, 1 a step or a line failed, or an application died; 2 bad usage; 130 ended by "
-        "Ctrl-C or SIGTERM",
+        "Ctrl-C, SIGTERM or SIGHUP",
     )
     add_mission(console, nargs="?")
     console.add_argument("--udp", metavar="HOST[:PORT]", help="a flight computer: where CI_LAB listens (port: 1234)")

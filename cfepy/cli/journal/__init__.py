@@ -15,7 +15,7 @@ _REPLAY_STATUS = """exit status:
   0    the same run as far as it is known: every checkpoint, and at the end the digests of trace and numbers
   1    another run; it is said where the two part
   2    bad usage, a file that is no journal, or a mission that cannot boot
-  130  ended by Ctrl-C or SIGTERM"""
+  130  ended by Ctrl-C, SIGTERM or SIGHUP"""
 _DIFF_STATUS = "exit status: 0 the same run, 1 other runs, 2 bad usage"
 
 

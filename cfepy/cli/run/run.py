@@ -116,8 +116,8 @@ def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> in
                 trace=outputs.trace,
                 host=host,
             )
-        if journal is not None:
-            journal.end(flown)
+            if journal is not None:
+                journal.end(flown)
     return _tell(flown, outputs, view, view.longer)
 
 
