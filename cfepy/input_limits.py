@@ -58,7 +58,6 @@ PYTHON_DEPTH = 1_000  # expressions and blocks inside each other, as the syntax 
 CPP_BYTES = 4 << 20  # of a C or C++ source or header
 CPP_FILES = 5_000  # sources and headers of a node
 CPP_FILES_BYTES = 16 << 20  # of all of them
-CPP_DEPTH = 1_000  # blocks and expressions inside each other
 OBJECT_BYTES = 256 << 20  # of a shared object
 TABLE_BYTES = 64 << 20  # of a table file, and of other files that cFE writes
 JSON_DEPTH = 100

@@ -57,7 +57,7 @@ _MACRO = re.compile(r"^[ \t]*+#[ \t]*+define[ \t]++(\w++)[ \t]++" + _TEXT, re.MU
 _PARAM = re.compile(rf"\b(?:param|getParam|getParamCached|get)\s*+{_TYPE}\s*+\(\s*+{_STRING}\s*+(?:\)\s*+)?,\s*+(\w++)")
 _DEFAULT = re.compile(rf"\bparam\s*+{_TYPE}\s*+\(\s*+{_STRING}\s*+(?:\)\s*+)?,\s*+(\w++)\s*+,\s*+{_STRING}")
 _RETURNED = re.compile(rf"\b(\w++)\s*+=[^;=]*?\bparam\s*+{_TYPE}\s*+\(\s*+{_STRING}\s*+(?:\)\s*+)?,\s*+{_STRING}")
-_INCLUDE = re.compile(r"^[ \t]*+#[ \t]*+include[ \t]*+[<\"]([^>\"\n]{1,4096}+)[>\"]", re.MULTILINE)
+_INCLUDE = re.compile(r"^[ \t]*+#[ \t]*+include[ \t]*+[<\"]([^>\"\n]{1,8000}+)[>\"]", re.MULTILINE)
 _MOST_NAMES = 10_000
 _MOST_SPACES = 200
 _LONGEST_WORD = 200  # characters of what a call is given that is not a text

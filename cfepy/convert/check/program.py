@@ -23,7 +23,7 @@ from cfepy.convert.check.headers import (
     is_standard,
     refusal,
 )
-from cfepy.convert.check.source import NestedTooDeeplyError, read_source, type_of
+from cfepy.convert.check.source import read_source, type_of
 from cfepy.convert.check.source_file import Include, SourceFile
 from cfepy.convert.configurations import configuration_headers
 from cfepy.convert.entry import LONGEST_QUEUE
@@ -176,11 +176,7 @@ class ProgramSources:
         if self._size > _MOST_BYTES:
             self.unreadable[path] = f"{path.name} is one too many: all files have more than {_MOST_BYTES:,} bytes"
             return None
-        try:
-            return read_source(path, source)
-        except NestedTooDeeplyError as error:
-            self.unreadable[path] = f"{path.name} {error.text}"
-            return None
+        return read_source(path, source)
 
     def _own(self, includer: Path, name: str) -> Path | None:
         """The file that an include names, when it is the program's own."""

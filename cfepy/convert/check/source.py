@@ -8,13 +8,13 @@ Each file is read once, for all profiles; what a place means depends on the othe
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.convert.check.findings import GraphName, SourcePlace
 from cfepy.convert.check.source_file import Include, Main, Met, SourceFile
-from cfepy.input_limits import CPP_DEPTH
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -95,13 +95,8 @@ def read_source(path: Path, source: bytes) -> SourceFile:
 
     Raises:
         UsageError: tree-sitter is not installed.
-        NestedTooDeeplyError: the source is nested too deeply.
     """
     return _Reader(path).read(_parse(source).root_node)
-
-
-class NestedTooDeeplyError(UsageError):
-    """A source has blocks and expressions inside each other, more than can be followed."""
 
 
 class _Around(NamedTuple):
@@ -124,6 +119,8 @@ class _Reader:
     def __init__(self, path: Path) -> None:
         self._file = SourceFile(path)
         self._around: list[_Around] = []
+        self._kinds: Counter[str] = Counter()  # of what is around
+        self._given: set[int] = set()  # where the lambdas begin that are given to ROS on the spot
         self._lost: list[int] = []  # where what the parser does not understand ends, such as a class with a macro
         self._later: list[Node] = []
         self._skip = 0
@@ -149,7 +146,7 @@ class _Reader:
             if node.start_byte < self._skip:
                 continue
             while self._around and self._around[-1].end <= node.start_byte:
-                self._around.pop()
+                self._kinds[self._around.pop().kind] -= 1
             while self._lost and self._lost[-1] <= node.start_byte:
                 self._lost.pop()
             if node.type == "ERROR" or node.is_missing:
@@ -174,13 +171,14 @@ class _Reader:
         elif kind == "function_definition":
             self._go_into(node, _last(_function_name(node)))
         elif kind == "lambda_expression":
-            self._go_into(node, "lambda" if _is_callback(node) else "")
+            self._go_into(node, "lambda" if node.start_byte in self._given else "")
         elif kind in ("class_specifier", "struct_specifier", "compound_statement"):
             self._go_into(node)
 
     def _go_into(self, node: Node, function: str = "") -> None:
         outer = self._around[-1].function if self._around else ""
         self._around.append(_Around(node.end_byte, node.type, function or outer))
+        self._kinds[node.type] += 1
 
     # -- what rules are about ------------------------------------------------------------------------------------------
 
@@ -196,7 +194,7 @@ class _Reader:
         text = _text(path)
         if path is None or path.type not in ("string_literal", "system_lib_string") or len(text) < 3:
             return  # by a macro, which the compiler knows
-        conditional = any(each.kind in _CONDITIONS for each in self._around)
+        conditional = any(self._kinds[kind] for kind in _CONDITIONS)
         self._file.includes.append(Include(text[1:-1].strip(), self._place(node), conditional))
 
     def _macro(self, node: Node) -> None:
@@ -234,7 +232,7 @@ class _Reader:
             return
         first = _parameters(declarator)
         self._file.parameters.setdefault(_last(name), _text(first[0]) if first else "")
-        around = {each.kind for each in self._around}
+        around = {kind for kind, count in self._kinds.items() if count}
         is_static = any(each.type == "storage_class_specifier" and _text(each) == "static" for each in node.children)
         if not is_static and around.isdisjoint(("class_specifier", "struct_specifier")):
             self._file.owners.add(_last(name.rpartition("::")[0]))
@@ -269,7 +267,7 @@ class _Reader:
 
     def _keep(self, node: Node, name: str, words: set[str]) -> None:
         """A variable that outlives what it stands in."""
-        kinds = {each.kind for each in self._around} - set(_CONDITIONS)
+        kinds = {kind for kind, count in self._kinds.items() if count} - set(_CONDITIONS)
         if not kinds and not words & {"constexpr", "extern", "using", "typedef"} and not self._lost:
             self._file.has_objects = True
         if words & {"const", "constexpr", "extern", "using", "typedef"} or not name:
@@ -308,6 +306,7 @@ class _Reader:
             self._meet("heap-in-callback", node, f"{name}()")
         if name in _CALLBACK_TAKERS:
             for argument in _arguments(node):
+                self._given |= {argument.start_byte} if argument.type == "lambda_expression" else set()
                 self._file.callbacks.update(_functions_in(argument))
         if name in _HANDLE_CALLS:
             self._later.append(node)
@@ -381,7 +380,7 @@ def _constant_text(node: Node | None, constants: dict[str, str] | None = None) -
     return None
 
 
-_LONGEST_TEXT = 4_000  # bytes of a node whose text is looked at
+_LONGEST_TEXT = 8_000  # bytes of a node whose text is looked at
 _LONGEST_NUMBER = 19  # digits of the length of a queue
 _LONGEST_NAME = 500  # bytes of an expression that is looked into
 
@@ -417,14 +416,6 @@ def _lambda_type(argument: Node) -> str:
     declarator = argument.child_by_field_name("declarator") if argument.type == "lambda_expression" else None
     first = [] if declarator is None else _parameters(declarator)
     return f" {_text(first[0])}" if first else ""
-
-
-def _is_callback(node: Node) -> bool:
-    """Whether a lambda is given to ROS on the spot."""
-    call = node.parent.parent if node.parent is not None and node.parent.type == "argument_list" else None
-    function = None if call is None else call.child_by_field_name("function")
-    field_node = None if function is None else function.child_by_field_name("field")
-    return field_node is not None and _plain(_text(field_node)) in _CALLBACK_TAKERS
 
 
 def _declarator(node: Node) -> Node | None:
@@ -542,20 +533,13 @@ def _parse(source: bytes) -> Tree:
 def _nodes(root: Node) -> Iterator[Node]:
     """A node and all below it, in the order of the source; as deep as they go."""
     cursor = root.walk()
-    depth = 0
     while True:
         node = cursor.node
         if node is not None:
             yield node
         if cursor.goto_first_child():
-            depth += 1
-            if depth > CPP_DEPTH:
-                raise NestedTooDeeplyError(
-                    f"has more than {CPP_DEPTH:,} blocks and expressions inside each other; take it apart"
-                )
             continue
         while not cursor.goto_next_sibling():
-            depth -= 1
             if not cursor.goto_parent():
                 return
 
