@@ -29,8 +29,11 @@ if TYPE_CHECKING:
         CompilerError,
         Options,
         build,
+        call_bounded,
         cpp_compiler,
+        end_bounded,
         headers_folder,
+        start_bounded,
     )
 
 __all__ = [
@@ -46,10 +49,13 @@ __all__ = [
     "abi_profile",
     "build",
     "cache_folder",
+    "call_bounded",
     "cpp_compiler",
+    "end_bounded",
     "function_names",
     "headers_folder",
     "read_shared_object",
+    "start_bounded",
     "wanted_names",
     "writing_cache",
 ]
@@ -72,8 +78,11 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "CompilerError",
                 "Options",
                 "build",
+                "call_bounded",
                 "cpp_compiler",
+                "end_bounded",
                 "headers_folder",
+                "start_bounded",
             ),
         },
     )

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -18,7 +17,16 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from cfepy.c import CompilerError, cache_folder, cpp_compiler, headers_folder, writing_cache
+from cfepy.c import (
+    CompilerError,
+    cache_folder,
+    call_bounded,
+    cpp_compiler,
+    end_bounded,
+    headers_folder,
+    start_bounded,
+    writing_cache,
+)
 from cfepy.contained_files import write_contained
 from cfepy.convert.capacities import Capacities
 from cfepy.convert.configurations import CONFIGURATION_TYPES, configuration_headers
@@ -26,7 +34,6 @@ from cfepy.convert.entry import NodeEntry, main_header
 from cfepy.convert.messages import Profile, write_headers
 from cfepy.convert.packages import Program
 from cfepy.convert.sources import SourceSet, collect, message_types
-from cfepy.host_system import is_absent
 from cfepy.mission import ARENA_BYTES
 from cfepy.resources import shipped
 from cfepy.status import UsageError
@@ -398,7 +405,11 @@ def compile_units(units: Iterable[CompileUnit]) -> list[str]:
         group = missing[at : at + MOST_AT_ONCE]
         with _scratch() as scratch:
             running = [_Compiler(each, scratch / str(index)) for index, each in enumerate(group)]
-            warnings += [each.finished() for each in running]
+            try:
+                warnings += [each.finished() for each in running]
+            finally:
+                for each in running:
+                    each.end()
     return warnings
 
 
@@ -416,11 +427,11 @@ class _Compiler:
         self._made = folder / "made.o"
         self._log = folder / "log"
         with self._log.open("wb") as log:
-            self._process = _started(unit.command(self._made), log.fileno())
+            self._process = start_bounded(unit.command(self._made), log.fileno())
 
     def finished(self) -> str:
         """Wait for it, and keep the object file; what it warned of."""
-        status = self._process.wait()
+        status = end_bounded(self._process)
         said = self._log.read_text(encoding="utf-8", errors="replace").rstrip()
         if status:
             raise CompilerError(said or f"{cpp_compiler()[0]} ended with {status}")
@@ -432,25 +443,18 @@ class _Compiler:
         os.replace(self._made, self._unit.object)
         return said
 
-
-def _started(command: Sequence[str], log: int) -> subprocess.Popen[bytes]:
-    try:
-        return subprocess.Popen(command, stdout=log, stderr=log)
-    except OSError as error:
-        if not is_absent(command[0], error):
-            raise UsageError(f"{command[0]} cannot be started: {error.strerror}") from None
-        text = "is not there: ROS nodes in C++ need a C++ compiler (on Debian `apt-get install g++`)"
-        raise UsageError(f"{command[0]} {text}, or say with CXX which one to take") from None
+    def end(self) -> None:
+        """End it, if it is not at its end: another one has failed, and nobody waits for it."""
+        if self._process.poll() is None:
+            self._process.terminate()  # GCC's driver ends what it has started
+            self._process.wait()
 
 
 def _call(command: Sequence[str]) -> str:
-    with tempfile.TemporaryFile() as log:
-        status = _started(command, log.fileno()).wait()
-        log.seek(0)
-        said = log.read().decode("utf-8", "replace").rstrip()
+    status, said = call_bounded(command)
     if status:
-        raise CompilerError(said or f"{command[0]} ended with {status}")
-    return said
+        raise CompilerError(said.rstrip() or f"{command[0]} ended with {status}")
+    return said.rstrip()
 
 
 def _link(parts: Sequence[Path], made: Path, flags: Iterable[str]) -> None:

@@ -8,10 +8,11 @@ name is in is said by its NodeHandle; of one whose namespace is not seen all are
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Sized
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from cfepy.status import UsageError
 from rospy_shim.client.names import SEP
 
 PRIVATE = "~"
@@ -25,30 +26,41 @@ BY_INCLUDE: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "dynamic_reconfigure/": (("~parameter_descriptions", "~parameter_updates"), ("~set_parameters",)),
 }
 """Topics and services that come with a library, by the folder of its headers."""
-_TEXT = r'"((?:[^"\\\n]|\\.)*)"'
-_STRING = rf"(?:(?:std\s*::\s*)?string\s*[({{]\s*)?{_TEXT}"
-_COMMENT = re.compile(rf"{_TEXT}|//[^\n]*|/\*.*?\*/|\'(?:[^\'\\]|\\.)+\'", re.DOTALL)
+_TEXT = r'"((?:[^"\\\n]|\\.){0,500}+)"'
+_STRING = rf"(?:(?:std\s*+::\s*+)?string\s*+[({{]\s*+)?{_TEXT}"
+_TYPE = r"(?:<[^;(){}]{0,500}>)?"
+_COMMENT = re.compile(
+    r"""("(?:[^"\\\n]|\\.)*+"?)|//[^\n]*+|/\*(?:[^*]++|\*(?!/))*+(?:\*/)?|'(?:[^'\\\n]|\\.)*+'?""", re.DOTALL
+)
 _CALL = re.compile(
-    r"(?:(\w+)\s*(?:\.|->|::)\s*(?:template\s+)?)?\b(" + "|".join((*TOPIC_CALLS, *SERVICE_CALLS)) + r")\s*"
-    r"(?:<[^;(){}]*>)?\s*\(\s*(?:" + _STRING + r"|([^,()]*(?:\([^()]*\))?[^,()]*))"
+    r"(?:\b(\w++)\s*+(?:\.|->|::)\s*+(?:template\s++)?)?\b(" + "|".join((*TOPIC_CALLS, *SERVICE_CALLS)) + r")\s*+"
+    rf"{_TYPE}\s*+\(\s*+(?:" + _STRING + r"|([^,()]*+(?:\([^()]*+\))?[^,()]*+))"
 )
-_OPTIONS = re.compile(r"\b(Advertise|Subscribe|AdvertiseService|ServiceClient)Options\b[^;(]*\(\s*" + _STRING)
-_FILTER = re.compile(r"(?:message_filters\s*::\s*)?\bSubscriber\s*<[^;(){}]*>\s*(?:\w+\s*)?\(\s*(\w+)\s*,\s*" + _STRING)
-_FILTER_LATER = re.compile(r"\.\s*subscribe\s*\(\s*(\w+)\s*,\s*" + _STRING)
-_ACTION = re.compile(r"\bSimpleAction(?:Server|Client)\s*<[^;(){}]*>\s*(?:\w+\s*)?\(\s*(?:\w+\s*,\s*)?" + _STRING)
-_ACTION_MEMBER = re.compile(r"\bSimpleAction(?:Server|Client)\s*<[^;(){}]*>\s*(\w+)\s*;")
-_HANDLE = re.compile(r"\bNodeHandle\s*(?:[&*]\s*)?(\w+)\s*(;|[,)({=][^;\n]*)")
-_HANDLES = re.compile(r"\bNodeHandle\s+(\w[^;{}]*?,[^;{}]*?);")
-_DECLARED = re.compile(r"\s*(\w+)\s*((?:[(=].*)?)", re.DOTALL)
-_HANDLE_MADE = re.compile(r"\bNodeHandle\s*(?:\w+\s*)?[({]\s*(?:(\w+)\s*,\s*)?" + _STRING)
-_VARIABLE = re.compile(r"\b(\w+)\s*(?:\[\s*\])?\s*(?:=|\()\s*" + _STRING)
-_MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+" + _TEXT, re.MULTILINE)
-_PARAM = re.compile(
-    r"\b(?:param|getParam|getParamCached|get)\s*(?:<[^;(){}]*>)?\s*\(\s*" + _STRING + r"\s*\)?\s*,\s*(\w+)"
+_OPTIONS = re.compile(r"\b(Advertise|Subscribe|AdvertiseService|ServiceClient)Options\b[^;(]{0,300}+\(\s*+" + _STRING)
+_FILTER = re.compile(r"\bSubscriber\s*+<[^;(){}]{0,500}>\s*+(?:\w++\s*+)?\(\s*+(\w++)\s*+,\s*+" + _STRING)
+_FILTER_LATER = re.compile(r"\.\s*+subscribe\s*+\(\s*+(\w++)\s*+,\s*+" + _STRING)
+_ACTION = re.compile(
+    r"\bSimpleAction(?:Server|Client)\s*+<[^;(){}]{0,500}>\s*+(?:\w++\s*+)?\(\s*+(?:\w++\s*+,\s*+)?" + _STRING
 )
-_DEFAULT = re.compile(r"\bparam\s*(?:<[^;(){}]*>)?\s*\(\s*" + _STRING + r"\s*\)?\s*,\s*(\w+)\s*,\s*" + _STRING)
-_RETURNED = re.compile(r"\b(\w+)\s*=[^;=]*?\bparam\s*(?:<[^;(){}]*>)?\s*\(\s*" + _STRING + r"\s*\)?\s*,\s*" + _STRING)
-_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"]([^>\"\n]+)[>\"]", re.MULTILINE)
+_ACTION_MEMBER = re.compile(r"\bSimpleAction(?:Server|Client)\s*+<[^;(){}]{0,500}>\s*+(\w++)\s*+;")
+_BEGUN_ACTION = re.compile(r"\b(\w++)\s*+\(\s*+(?:\w++\s*+,\s*+)?" + _STRING)
+_HANDLE = re.compile(r"\bNodeHandle\s*+(?:[&*]\s*+)?(\w++)\s*+(;|[,)({=][^;\n]*+)")
+_HANDLES = re.compile(r"\bNodeHandle\s++(\w[^;{}]{0,1000}+);")
+_DECLARED = re.compile(r"\s*+(\w++)\s*+((?:[(=].*)?)", re.DOTALL)
+_HANDLE_MADE = re.compile(r"\bNodeHandle\s*+(?:\w++\s*+)?[({]\s*+(?:(\w++)\s*+,\s*+)?" + _STRING)
+_BEGUN_HANDLE = re.compile(
+    r"\b(\w++)\s*+[({=]\s*+(?:(?:ros\s*+::\s*+)?NodeHandle\s*+[({]\s*+)?"
+    rf"(?:(?:(\w++)\s*+,\s*+)?{_STRING}|(\w++)\s*+[)}};])"
+)
+_VARIABLE = re.compile(r"\b(\w++)\s*+(?:\[\s*+\]\s*+)?(?:=|\()\s*+" + _STRING)
+_MACRO = re.compile(r"^[ \t]*+#[ \t]*+define[ \t]++(\w++)[ \t]++" + _TEXT, re.MULTILINE)
+_PARAM = re.compile(rf"\b(?:param|getParam|getParamCached|get)\s*+{_TYPE}\s*+\(\s*+{_STRING}\s*+(?:\)\s*+)?,\s*+(\w++)")
+_DEFAULT = re.compile(rf"\bparam\s*+{_TYPE}\s*+\(\s*+{_STRING}\s*+(?:\)\s*+)?,\s*+(\w++)\s*+,\s*+{_STRING}")
+_RETURNED = re.compile(rf"\b(\w++)\s*+=[^;=]*?\bparam\s*+{_TYPE}\s*+\(\s*+{_STRING}\s*+(?:\)\s*+)?,\s*+{_STRING}")
+_INCLUDE = re.compile(r"^[ \t]*+#[ \t]*+include[ \t]*+[<\"]([^>\"\n]{1,8000}+)[>\"]", re.MULTILINE)
+_MOST_NAMES = 10_000
+_MOST_SPACES = 200
+_LONGEST_WORD = 200  # characters of what a call is given that is not a text
 _NAME = re.compile(r"[~/A-Za-z]?[\w/]*")
 
 
@@ -84,7 +96,7 @@ class NodeNames:
 
 def without_comments(text: str) -> str:
     """A source without its comments; texts in it stay."""
-    return _COMMENT.sub(lambda match: match[0] if match[0][0] == '"' else " ", text)
+    return _COMMENT.sub(lambda match: match[1] or " ", text)
 
 
 def includes_of(text: str) -> list[str]:
@@ -102,13 +114,25 @@ class SourceNames:
 
     def __init__(self, texts: Sequence[str], values: Mapping[str, str]) -> None:
         self._texts = texts
+        self._actions_begun = _by_name(_BEGUN_ACTION, texts)
+        self._handles_begun: dict[str, list[Any]] = {}
         self._held = self._variables(values)
         self._handles = self._handle_namespaces()
         self.open: list[str] = []
 
     def used(self) -> list[UsedName]:
-        """All names, each once."""
-        return list(dict.fromkeys(each for text in self._texts for each in self._in_text(text)))
+        """All names, each once.
+
+        Raises:
+            UsageError: they are too many.
+        """
+        found: dict[UsedName, None] = {}
+        every = (each for text in self._texts for each in self._in_text(text))
+        for count, each in enumerate(every):
+            found[each] = None
+            if count >= _MOST_NAMES:
+                raise UsageError(f"uses more than {_MOST_NAMES:,} names of topics and services; split it")
+        return list(found)
 
     def _in_text(self, text: str) -> Iterator[UsedName]:
         for handle, call, name, variable in _CALL.findall(text):
@@ -134,6 +158,9 @@ class SourceNames:
     def _by_variable(self, handle: str, call: str, variable: str, is_service: bool) -> Iterator[UsedName]:
         """NodeNames that a variable may hold; a call that is given options has its name there."""
         word = variable.strip()
+        if len(word) > _LONGEST_WORD:
+            self.open.append(f"{call}({word[:_LONGEST_WORD]}...)")
+            return
         found = [name for each in re.findall(r"\w+", word) for name in self._held.get(each, [])]
         if not found and word and not re.fullmatch(r"\w*(?:ops|opts|options|o)\w*|nh\w*|n|\d+|.*\bnh\w*", word):
             self.open.append(f"{call}({word})")
@@ -142,9 +169,8 @@ class SourceNames:
 
     def _members(self, text: str) -> Iterator[str]:
         """The names of actions whose server or client is a member that a constructor begins."""
-        for member in _ACTION_MEMBER.findall(text):
-            for each in self._texts:
-                yield from re.findall(rf"\b{member}\s*\(\s*(?:\w+\s*,\s*)?{_STRING}", each)
+        for member in dict.fromkeys(_ACTION_MEMBER.findall(text)):
+            yield from self._actions_begun.get(member, ())
 
     def _spaced(self, handle: str, name: str, is_service: bool, is_certain: bool) -> Iterator[UsedName]:
         """A name in the namespaces that its handle may have."""
@@ -162,6 +188,7 @@ class SourceNames:
         unknown: set[str] = set()
         plain: list[str] = []  # declared with nothing behind the name: a constructor may begin them otherwise
         texts = [_HANDLES.sub(_one_by_one, text) for text in self._texts]
+        self._handles_begun = _by_name(_BEGUN_HANDLE, texts)
         for text in texts:
             for name, rest in _HANDLE.findall(text):
                 spaces = self._spaces_made(rest, found)
@@ -171,32 +198,35 @@ class SourceNames:
                     plain.append(name)
                     spaces = []
                 found[name] = [*found.get(name, []), *(spaces or [])]
+                _check_few(found[name])
             for parent, space in _HANDLE_MADE.findall(text):
                 found["made"] = [*found.get("made", []), *(joined(each, space) for each in found.get(parent) or [""])]
+                found["made"] = list(dict.fromkeys(found["made"]))
+                _check_few(found["made"])
             if "getPrivateNodeHandle" in text:
                 found["made"] = [*found.get("made", []), PRIVATE]
         for name in dict.fromkeys([*plain, *unknown]):
-            self._begin_later(name, texts, found, unknown)
+            self._begin_later(name, found, unknown)
+            _check_few(found[name])
         for name in plain:
             if (not found[name] and name not in unknown) or plain.count(name) > 1:
                 found[name] = [*found[name], ""]
         is_plain = any("getNodeHandle" in text for text in texts) or not any(found.values())
         every = dict.fromkeys([*([""] if is_plain else []), *(each for spaces in found.values() for each in spaces)])
+        _check_few(every)
         known = {name: list(dict.fromkeys(spaces)) for name, spaces in found.items() if name not in unknown}
         return {**known, "": list(every)}
 
-    def _begin_later(self, name: str, texts: Iterable[str], found: dict[str, list[str]], unknown: set[str]) -> None:
+    def _begin_later(self, name: str, found: dict[str, list[str]], unknown: set[str]) -> None:
         """What a handle gets away from its declaration: of a constructor, or of an assignment."""
-        made = r"(?:(?:ros\s*::\s*)?NodeHandle\s*[({]\s*)?"
-        begun = re.compile(rf"\b{name}\s*[({{=]\s*{made}(?:(?:(\w+)\s*,\s*)?{_STRING}|(\w+)\s*[)}};])")
-        for text in texts:
-            for parent, space, other in begun.findall(text):
-                if not other:
-                    found[name] = [*found[name], *(joined(each, space) for each in found.get(parent) or [""])]
-                elif found.get(other) and other not in unknown:
-                    found[name] = [*found[name], *found[other]]
-                else:
-                    unknown.add(name)
+        for parent, space, other in self._handles_begun.get(name, ()):
+            if not other:
+                found[name] = [*found[name], *(joined(each, space) for each in found.get(parent) or [""])]
+            elif found.get(other) and other not in unknown:
+                found[name] = [*found[name], *found[other]]
+            else:
+                unknown.add(name)
+            _check_few(found[name])
 
     def _spaces_made(self, rest: str, found: Mapping[str, list[str]]) -> list[str] | None:
         """The namespaces of a handle by what follows its name where it is declared; None when that is not seen."""
@@ -225,8 +255,29 @@ class SourceNames:
         return {name: list(dict.fromkeys(held)) for name, held in found.items() if name}
 
 
+def _by_name(pattern: re.Pattern[str], texts: Iterable[str]) -> dict[str, list[Any]]:
+    """What a pattern finds in texts behind names: by its first group, the others (or the only other one)."""
+    found: dict[str, list[Any]] = {}
+    for text in texts:
+        for name, *others in pattern.findall(text):
+            found.setdefault(name, []).append(others[0] if len(others) == 1 else tuple(others))
+    return found
+
+
+def _check_few(spaces: Sized) -> None:
+    """Check that namespaces do not multiply, as those of a handle do that is made of itself.
+
+    Raises:
+        UsageError: they are too many.
+    """
+    if len(spaces) > _MOST_SPACES:
+        raise UsageError(f"has a NodeHandle with more than {_MOST_SPACES} namespaces; make one handle for each")
+
+
 def _one_by_one(declaration: re.Match[str]) -> str:
     """Handles that are declared in one go, each by itself; parameters of a function stay as they are."""
+    if "," not in declaration[1]:
+        return declaration[0]
     parts = [_DECLARED.fullmatch(each) for each in re.split(r",(?![^()]*\))", declaration[1])]
     if None in parts:
         return declaration[0]

@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cfepy.convert.names import includes_of, without_comments
+from cfepy.input_files import read_limited, text_limited
+from cfepy.input_limits import CPP_BYTES, CPP_FILES, CPP_FILES_BYTES
 from cfepy.status import UsageError
 from rospy_shim.msgs import Library
 
@@ -41,23 +43,31 @@ def collect(sources: Iterable[Path], includes: Sequence[Path]) -> SourceSet:
 
     Raises:
         OSError: a source cannot be read.
+        UsageError: a source or a header is too large or not a file, or they are too many.
     """
     found = SourceSet()
     waiting = list(sources)
     missing: dict[str, None] = {}
     where: dict[str, Path | None] = {}
+    size = 0
     for file in waiting:
         if file in found.texts:
             continue
-        found.contents[file] = file.read_bytes()
+        found.contents[file] = read_limited(file, CPP_BYTES)
+        size += len(found.contents[file])
+        if size > CPP_FILES_BYTES or len(found.contents) > CPP_FILES:
+            most = f"{CPP_FILES:,} files or {CPP_FILES_BYTES:,} bytes"
+            raise UsageError(f"includes headers of more than {most}, with those that they include", file=waiting[0])
         text = found.texts[file] = without_comments(found.contents[file].decode("utf-8", "replace"))
-        for name in includes_of(text):
+        for name in dict.fromkeys(includes_of(text)):
             beside = file.parent / name
-            if os.path.isfile(beside):
+            if ".." in beside.parts:  # otherwise files that include each other would have new names without end
+                beside = Path(os.path.normpath(beside))
+            if _is_there(beside):
                 waiting.append(beside)
                 continue
             if name not in where:
-                where[name] = next((each / name for each in includes if os.path.isfile(each / name)), None)
+                where[name] = next((each / name for each in includes if _is_there(each / name)), None)
             header = where[name]
             if header is None:
                 missing[name] = None
@@ -65,6 +75,11 @@ def collect(sources: Iterable[Path], includes: Sequence[Path]) -> SourceSet:
                 waiting.append(header)
     found.missing = list(missing)
     return found
+
+
+def _is_there(file: Path) -> bool:
+    """Whether there is a header; what is no file and no folder counts, so that reading it tells what is wrong."""
+    return os.path.exists(file) and not os.path.isdir(file)
 
 
 def message_types(headers: Iterable[str], library: Library) -> list[str]:
@@ -98,7 +113,7 @@ def main_form(sources: Iterable[Path], where: Path) -> bool:
     Raises:
         UsageError: there is no main function, or more than one.
     """
-    texts = (without_comments(each.read_text(encoding="utf-8", errors="replace")) for each in sources)
+    texts = (without_comments(text_limited(each, CPP_BYTES, "replace")) for each in sources)
     found = [match for text in texts for match in _MAIN.finditer(text)]
     if len(found) != 1:
         what = "no main function" if not found else f"{len(found)} main functions"

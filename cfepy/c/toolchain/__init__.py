@@ -14,10 +14,22 @@ from cfepy.faces import face
 if TYPE_CHECKING:
     from cfepy.c.toolchain.application import Built, Options, build
     from cfepy.c.toolchain.cmake_script import CMakeBudget, CMakeScript
-    from cfepy.c.toolchain.compiler import CompilerError, cpp_compiler
+    from cfepy.c.toolchain.compiler import CompilerError, call_bounded, cpp_compiler, end_bounded, start_bounded
     from cfepy.c.toolchain.headers import headers_folder
 
-__all__ = ["Built", "CMakeBudget", "CMakeScript", "CompilerError", "Options", "build", "cpp_compiler", "headers_folder"]
+__all__ = [
+    "Built",
+    "CMakeBudget",
+    "CMakeScript",
+    "CompilerError",
+    "Options",
+    "build",
+    "call_bounded",
+    "cpp_compiler",
+    "end_bounded",
+    "headers_folder",
+    "start_bounded",
+]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
@@ -25,7 +37,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         {
             ".application": ("Built", "Options", "build"),
             ".cmake_script": ("CMakeBudget", "CMakeScript"),
-            ".compiler": ("CompilerError", "cpp_compiler"),
+            ".compiler": ("CompilerError", "call_bounded", "cpp_compiler", "end_bounded", "start_bounded"),
             ".headers": ("headers_folder",),
         },
     )

@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
+import tempfile
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from cfepy.c.engine import compiler
 from cfepy.host_system import is_absent
+from cfepy.input_limits import COMPILER_BYTES, COMPILER_SECONDS, OBJECT_BYTES
 from cfepy.status import UsageError
 
 CPP_SUFFIXES = (".cpp", ".cc", ".cxx", ".c++", ".C")
 SOURCE_SUFFIXES = (".c", *CPP_SUFFIXES)
 COMMON = ("-fPIC", "-Wall", "-fno-stack-protector", "-U_FORTIFY_SOURCE", "-D_LINUX_OS_", "-D_POSIX_OS_")
 """What every source gets. The guards of distributions are left out: they look into memory that the host owns."""
+WAITS = "the compiler waited for something, and was ended"
+_LOOK_S = 2.5  # from one look at a compiler that goes on to the next; it has ended when two are alike
+_MOST_LOOKS = 720  # half an hour
+_ASLEEP = "S"
+_USER_TIME, _SYSTEM_TIME = 9, 10  # in /proc/PID/stat, behind the state and the parent
+_MOST_SAID = 16 << 20  # bytes of what a compiler says
 C_FLAGS = ("-std=gnu11",)
 CPP_FLAGS = ("-std=gnu++17",)
 
@@ -58,14 +68,102 @@ def is_cpp(source: Path) -> bool:
     return source.suffix in CPP_SUFFIXES
 
 
-def _call(command: list[str]) -> str:
+def start_bounded(command: Sequence[str], output: int) -> subprocess.Popen[bytes]:
+    """Start a compiler, with bounds on what it takes: a source may come from anywhere.
+
+    Args:
+        command: its command.
+        output: descriptor that gets what it says.
+
+    Returns:
+        The process; `end_bounded` waits for it.
+
+    Raises:
+        UsageError: there is no such program.
+    """
     try:
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
+        return subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=output,
+            env={**os.environ, "LC_ALL": "C"},
+            preexec_fn=_bound if os.name == "posix" else None,  # elsewhere the clock alone bounds it
+        )
     except OSError as error:
         if not is_absent(command[0], error):
             raise UsageError(f"{command[0]} cannot be started: {error.strerror}") from None
         text = "is not there: install a C compiler (on Debian `apt-get install gcc`, and g++ for C++)"
         raise UsageError(f"{command[0]} {text}, or say with CC or CXX which one to take") from None
-    if done.returncode:
-        raise CompilerError(done.stderr.rstrip() or f"{command[0]} ended with {done.returncode}")
-    return done.stderr.rstrip()
+
+
+def end_bounded(process: subprocess.Popen[bytes]) -> int:
+    """Wait for the end of a compiler.
+
+    Args:
+        process: of `start_bounded`.
+
+    Returns:
+        Its exit status; less than 0 when a signal ended it.
+
+    Raises:
+        CompilerError: it waited for something and was ended, such as for a header that is a pipe.
+    """
+    before: dict[int, tuple[str, int]] = {}
+    try:
+        for _ in range(_MOST_LOOKS):
+            with suppress(subprocess.TimeoutExpired):
+                return process.wait(_LOOK_S)
+            now = _family(process.pid)
+            if now and now == before and all(state == _ASLEEP for state, _ in now.values()):
+                break
+            before = now
+        raise CompilerError(f"{WAITS}: is a source or a header a pipe?")
+    finally:
+        if process.returncode is None:  # what it has started, too, or that would stay
+            for pid in (*_family(process.pid), process.pid):
+                with suppress(OSError):
+                    os.kill(pid, signal.SIGKILL if os.name == "posix" else signal.SIGTERM)
+            process.wait()
+
+
+def call_bounded(command: Sequence[str]) -> tuple[int, str]:
+    """Call a compiler, with bounds, until it ends. Errors as `start_bounded` and `end_bounded`.
+
+    Returns:
+        Its exit status, and what it said.
+    """
+    with tempfile.TemporaryFile() as output:
+        status = end_bounded(start_bounded(command, output.fileno()))
+        output.seek(0)
+        return status, output.read(_MOST_SAID).decode("utf-8", "replace")
+
+
+def _bound() -> None:
+    import resource
+
+    resource.setrlimit(resource.RLIMIT_CPU, (COMPILER_SECONDS, COMPILER_SECONDS))
+    resource.setrlimit(resource.RLIMIT_AS, (COMPILER_BYTES, COMPILER_BYTES))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (OBJECT_BYTES, OBJECT_BYTES))
+
+
+def _family(pid: int) -> dict[int, tuple[str, int]]:
+    """State and time of the processor of a process and all that it has started; empty where that is not told."""
+    stats: dict[int, tuple[int, str, int]] = {}
+    for each in Path("/proc").glob("[0-9]*"):
+        try:
+            state, parent, *rest = (each / "stat").read_bytes().rpartition(b")")[2].split()
+        except (OSError, ValueError):
+            continue
+        stats[int(each.name)] = (int(parent), state.decode(), int(rest[_USER_TIME]) + int(rest[_SYSTEM_TIME]))
+    found = {pid} & set(stats)
+    while more := {each for each, (parent, *_) in stats.items() if parent in found} - found:
+        found |= more
+    return {each: stats[each][1:] for each in found}
+
+
+def _call(command: list[str]) -> str:
+    status, said = call_bounded(command)
+    if status:
+        raise CompilerError(said.rstrip() or f"{command[0]} ended with {status}")
+    return said.rstrip()

@@ -34,7 +34,7 @@ NEIGHBOURS = (".", "apps", "libs")
 SCOPES = ("PUBLIC", "PRIVATE", "INTERFACE", "BEFORE", "AFTER", "SYSTEM")
 _MISSION_DIR = re.compile(r"\$\{(\w+)_MISSION_DIR\}")
 """The folder of another application, in files that are older than `add_cfe_app_dependency`."""
-_FILE_LIST = re.compile(r"set\(\w+_FILE_LIST([^)]*)\)")
+_FILE_LIST = re.compile(r"set\(\w{1,100}_FILE_LIST([^()]*+)\)")
 _LEGAL = re.compile(r"\w[\w.+-]*")
 _SHOWN = 100  # characters of a name that is wrong
 _EDS = re.compile(r"_eds_\w+$")

@@ -7,27 +7,18 @@ called clean, whatever its reason: an error of its own, its end, or too much tim
 from __future__ import annotations
 
 import json
-import os
 import re
-import subprocess
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cfepy.c import cpp_compiler
+from cfepy.c import CompilerError, call_bounded, cpp_compiler
 from cfepy.convert.build import profile_flags
 from cfepy.convert.check.findings import CheckReport, SourcePlace
 from cfepy.convert.check.headers import SYSTEM, is_of_ros
 from cfepy.convert.check.rules import RULES
 from cfepy.convert.messages import Profile
-from cfepy.host_system import is_absent
-from cfepy.status import UsageError
 
-SECONDS = 120
-"""Of the processor that a source may take to compile."""
-MEMORY = 4 << 30
-"""Bytes that the compiler may take for a source."""
-_LAST_RESORT = 1800  # seconds by the clock, for a compiler that waits for something
 _SAID = re.compile(r"^#error \"?(?:roscfe: )?(.*?) ?\[([a-z-]+)\]\"?$")
 _MOST = 50  # errors that are told of a source; GCC's own -fmax-errors throws all away with this format
 _HEADER = re.compile(r"^(.+): (?:No such file or directory|Is a directory|Permission denied|File name too long)$")
@@ -169,35 +160,10 @@ def rule_of(message: str, profile: Profile) -> tuple[str, str]:
 
 def _call(command: list[str]) -> tuple[int, str]:
     """Call the compiler, with bounds; its status and what it said."""
-    environment = {**os.environ, "LC_ALL": "C"}
     try:
-        done = subprocess.run(
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            env=environment,
-            preexec_fn=_bound if os.name == "posix" else None,  # elsewhere the clock alone bounds it
-            timeout=_LAST_RESORT,
-            check=False,
-        )
-    except OSError as error:
-        if not is_absent(command[0], error):
-            raise UsageError(f"{command[0]} cannot be started: {error.strerror}") from None
-        raise UsageError(
-            f"{command[0]} is not there: the check asks GCC's C++ compiler (on Debian `apt-get install g++`), or the "
-            "one that CXX names"
-        ) from None
-    except subprocess.TimeoutExpired:
-        return -1, ""
-    return done.returncode, done.stderr.decode("utf-8", errors="replace")
-
-
-def _bound() -> None:
-    import resource
-
-    resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        return call_bounded(command)
+    except CompilerError as error:
+        return -1, str(error)
 
 
 def _diagnostics(said: str) -> tuple[list[Diagnostic], str]:

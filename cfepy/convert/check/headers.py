@@ -13,6 +13,8 @@ from pathlib import Path
 from cfepy.convert.build import library_includes
 from cfepy.convert.messages import Profile
 from cfepy.convert.names import includes_of, without_comments
+from cfepy.input_files import text_limited
+from cfepy.input_limits import CPP_BYTES
 
 OURS, OUR_BOOST = library_includes()
 SYSTEM = Path("/usr/include")
@@ -187,7 +189,7 @@ def behind_ours(name: str) -> tuple[str, ...]:
     waiting = [name]
     while waiting:
         file = OURS / waiting.pop()
-        text = without_comments(file.read_text(encoding="utf-8")) if is_file(file) else ""
+        text = without_comments(text_limited(file, CPP_BYTES)) if is_file(file) else ""
         new = [each for each in includes_of(text) if each not in found]
         found |= dict.fromkeys(new)
         waiting += new

@@ -29,14 +29,16 @@ from cfepy.convert.configurations import configuration_headers
 from cfepy.convert.entry import LONGEST_QUEUE
 from cfepy.convert.messages import Profile
 from cfepy.convert.packages import Program
+from cfepy.input_files import read_limited
 from cfepy.status import UsageError
 from rospy_shim.msgs import Library
 
-LONGEST_SOURCE = 2_000_000
+LONGEST_SOURCE = 1_000_000
 """Bytes of a source; one that is longer is no source that somebody has written."""
 CARRIED_OUT = ("thread", "socket", "serial", "process", "getchar")
 """Rules about what refuses a node only where it is carried out."""
 _MOST_FILES = 2000
+_MOST_BYTES = 4_000_000  # of all files of a program
 _NODELET = re.compile(rb"\bPLUGINLIB_(?:EXPORT|DECLARE)_CLASS\b|\bNODELET_EXPORT\b")
 _PARTS = ("Request", "Response")
 
@@ -56,6 +58,7 @@ class ProgramSources:
         self.library = library
         self.files: dict[Path, SourceFile] = {}
         self.unreadable: dict[Path, str] = {}
+        self._size = 0  # bytes of all that was read
         self.messages: set[str] = set()
         self.has_plugin = False
         self.generated: dict[str, str] = {}
@@ -161,15 +164,18 @@ class ProgramSources:
 
     def _read(self, path: Path) -> SourceFile | None:
         try:
-            if not path.is_file():
-                raise OSError("is no file")
-            if path.stat().st_size > LONGEST_SOURCE:
-                raise OSError(f"has more than {LONGEST_SOURCE:,} bytes")
-            source = path.read_bytes()
+            source = read_limited(path, LONGEST_SOURCE)
         except OSError as error:
             self.unreadable[path] = f"{path.name} {error.strerror or error}"
             return None
+        except UsageError as error:
+            self.unreadable[path] = f"{path.name} {error.text}"
+            return None
         self.has_plugin |= _NODELET.search(source) is not None
+        self._size += len(source)
+        if self._size > _MOST_BYTES:
+            self.unreadable[path] = f"{path.name} is one too many: all files have more than {_MOST_BYTES:,} bytes"
+            return None
         return read_source(path, source)
 
     def _own(self, includer: Path, name: str) -> Path | None:

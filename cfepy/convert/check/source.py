@@ -8,6 +8,7 @@ Each file is read once, for all profiles; what a place means depends on the othe
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -81,6 +82,7 @@ _CALLBACK_TAKERS = (
     "registerCallback",
     "addCallback",
 )
+_LOST = ("ERROR", "friend_declaration")
 _CONDITIONS = ("preproc_if", "preproc_ifdef", "preproc_elif", "preproc_else", "preproc_elifdef")
 
 
@@ -103,12 +105,12 @@ class _Around(NamedTuple):
     Attributes:
         end: byte where it ends.
         kind: type of the node that it is.
-        name: of the function, when it is one.
+        function: name of the innermost function around, itself included.
     """
 
     end: int
     kind: str
-    name: str
+    function: str
 
 
 class _Reader:
@@ -117,6 +119,9 @@ class _Reader:
     def __init__(self, path: Path) -> None:
         self._file = SourceFile(path)
         self._around: list[_Around] = []
+        self._kinds: Counter[str] = Counter()  # of what is around
+        self._given: set[int] = set()  # where the lambdas begin that are given to ROS on the spot
+        self._lost: list[int] = []  # where what the parser does not understand ends, such as a class with a macro
         self._later: list[Node] = []
         self._skip = 0
         self._readers = {
@@ -141,13 +146,17 @@ class _Reader:
             if node.start_byte < self._skip:
                 continue
             while self._around and self._around[-1].end <= node.start_byte:
-                self._around.pop()
+                self._kinds[self._around.pop().kind] -= 1
+            while self._lost and self._lost[-1] <= node.start_byte:
+                self._lost.pop()
             if node.type == "ERROR" or node.is_missing:
                 self._file.unparsed += 1
             reader = self._readers.get(node.type)
             if reader is not None:
                 reader(node)
             self._enter(node)
+            if node.type in _LOST and node != root:
+                self._lost.append(node.end_byte)
         for call in self._later:  # names can be constants that are defined further down
             self._name_of_call(call)
         return self._file
@@ -158,13 +167,18 @@ class _Reader:
             condition = node.child_by_field_name("condition")
             if kind == "preproc_if" and _text(condition).strip() == "0":
                 self._skip = node.end_byte
-            self._around.append(_Around(node.end_byte, kind, ""))
+            self._go_into(node)
         elif kind == "function_definition":
-            self._around.append(_Around(node.end_byte, kind, _last(_function_name(node))))
+            self._go_into(node, _last(_function_name(node)))
         elif kind == "lambda_expression":
-            self._around.append(_Around(node.end_byte, kind, "lambda" if _is_callback(node) else ""))
+            self._go_into(node, "lambda" if node.start_byte in self._given else "")
         elif kind in ("class_specifier", "struct_specifier", "compound_statement"):
-            self._around.append(_Around(node.end_byte, kind, ""))
+            self._go_into(node)
+
+    def _go_into(self, node: Node, function: str = "") -> None:
+        outer = self._around[-1].function if self._around else ""
+        self._around.append(_Around(node.end_byte, node.type, function or outer))
+        self._kinds[node.type] += 1
 
     # -- what rules are about ------------------------------------------------------------------------------------------
 
@@ -172,15 +186,15 @@ class _Reader:
         return SourcePlace(self._file.path, node.start_point[0] + 1, node.start_point[1] + 1)
 
     def _meet(self, rule: str, node: Node, message: str) -> None:
-        names = [each.name for each in self._around if each.name]
-        self._file.met.append(Met(rule, self._place(node), message, names[-1] if names else ""))
+        function = self._around[-1].function if self._around else ""
+        self._file.met.append(Met(rule, self._place(node), message, function))
 
     def _include(self, node: Node) -> None:
         path = node.child_by_field_name("path")
         text = _text(path)
         if path is None or path.type not in ("string_literal", "system_lib_string") or len(text) < 3:
             return  # by a macro, which the compiler knows
-        conditional = any(each.kind in _CONDITIONS for each in self._around)
+        conditional = any(self._kinds[kind] for kind in _CONDITIONS)
         self._file.includes.append(Include(text[1:-1].strip(), self._place(node), conditional))
 
     def _macro(self, node: Node) -> None:
@@ -218,7 +232,7 @@ class _Reader:
             return
         first = _parameters(declarator)
         self._file.parameters.setdefault(_last(name), _text(first[0]) if first else "")
-        around = {each.kind for each in self._around}
+        around = {kind for kind, count in self._kinds.items() if count}
         is_static = any(each.type == "storage_class_specifier" and _text(each) == "static" for each in node.children)
         if not is_static and around.isdisjoint(("class_specifier", "struct_specifier")):
             self._file.owners.add(_last(name.rpartition("::")[0]))
@@ -253,12 +267,12 @@ class _Reader:
 
     def _keep(self, node: Node, name: str, words: set[str]) -> None:
         """A variable that outlives what it stands in."""
-        kinds = {each.kind for each in self._around} - set(_CONDITIONS)
-        if not kinds and not words & {"constexpr", "extern", "using", "typedef"} and _is_outermost(node):
+        kinds = {kind for kind, count in self._kinds.items() if count} - set(_CONDITIONS)
+        if not kinds and not words & {"constexpr", "extern", "using", "typedef"} and not self._lost:
             self._file.has_objects = True
         if words & {"const", "constexpr", "extern", "using", "typedef"} or not name:
             return
-        if not kinds and _is_outermost(node):
+        if not kinds and not self._lost:
             self._meet("global-state", node, f"{name} is a variable of the whole program")
         elif "static" in words and kinds & {"function_definition", "lambda_expression"}:
             self._meet("static-local", node, f"{name} outlives its function")
@@ -292,6 +306,7 @@ class _Reader:
             self._meet("heap-in-callback", node, f"{name}()")
         if name in _CALLBACK_TAKERS:
             for argument in _arguments(node):
+                self._given |= {argument.start_byte} if argument.type == "lambda_expression" else set()
                 self._file.callbacks.update(_functions_in(argument))
         if name in _HANDLE_CALLS:
             self._later.append(node)
@@ -333,7 +348,7 @@ class _Reader:
         queue = None
         if kind in ("publish", "subscribe") and len(arguments) > 1 and arguments[1].type == "number_literal":
             digits = _text(arguments[1]).rstrip("uUlL")
-            queue = int(digits) if digits.isdigit() else None
+            queue = int(digits) if digits.isdigit() and len(digits) < _LONGEST_NUMBER else None
         place = self._place(node)
         if kind == "subscribe" and len(arguments) > 2:
             self._file.handlers[place] = next(iter(_functions_in(arguments[2])), "") or _lambda_type(arguments[2])
@@ -345,7 +360,7 @@ class _Reader:
 
 def _constant_text(node: Node | None, constants: dict[str, str] | None = None) -> str | None:
     """The text that an expression has, when it is one that is known before the program runs."""
-    if node is None:
+    if node is None or (node.end_byte - node.start_byte > _LONGEST_NAME and not node.type.endswith("string_literal")):
         return None
     inner = [each for each in node.named_children if each.type != "comment"]
     if node.type == "string_literal":
@@ -360,13 +375,13 @@ def _constant_text(node: Node | None, constants: dict[str, str] | None = None) -
     if node.type in ("parenthesized_expression", "concatenated_string") or (
         node.type == "binary_expression" and _text(node.child_by_field_name("operator")) == "+"
     ):
-        if node.end_byte - node.start_byte > _LONGEST_NAME:
-            return None
         parts = [_constant_text(each, constants) for each in inner]
         return None if None in parts or not parts else "".join(filter(None, parts))
     return None
 
 
+_LONGEST_TEXT = 8_000  # bytes of a node whose text is looked at
+_LONGEST_NUMBER = 19  # digits of the length of a queue
 _LONGEST_NAME = 500  # bytes of an expression that is looked into
 
 
@@ -382,13 +397,18 @@ def _arguments(call: Node) -> list[Node]:
 
 def _functions_in(argument: Node) -> list[str]:
     """Names of the functions that an argument hands over: `&Class::method`, `function`, or in a bind."""
+    while argument.type == "call_expression" and _calls_bind(argument):
+        given = _arguments(argument)
+        if not given:
+            return []
+        argument = given[0]
     if argument.type == "pointer_expression":
         return [_last(_text(argument).lstrip("& "))]
-    if argument.type in ("identifier", "qualified_identifier"):
-        return [_last(_text(argument))]
-    if argument.type == "call_expression" and _last(_plain(_text(argument.child_by_field_name("function")))) == "bind":
-        return [name for each in _arguments(argument)[:1] for name in _functions_in(each)]
-    return []
+    return [_last(_text(argument))] if argument.type in ("identifier", "qualified_identifier") else []
+
+
+def _calls_bind(call: Node) -> bool:
+    return _last(_plain(_text(call.child_by_field_name("function")))) == "bind"
 
 
 def _lambda_type(argument: Node) -> str:
@@ -396,14 +416,6 @@ def _lambda_type(argument: Node) -> str:
     declarator = argument.child_by_field_name("declarator") if argument.type == "lambda_expression" else None
     first = [] if declarator is None else _parameters(declarator)
     return f" {_text(first[0])}" if first else ""
-
-
-def _is_callback(node: Node) -> bool:
-    """Whether a lambda is given to ROS on the spot."""
-    call = node.parent.parent if node.parent is not None and node.parent.type == "argument_list" else None
-    function = None if call is None else call.child_by_field_name("function")
-    field_node = None if function is None else function.child_by_field_name("field")
-    return field_node is not None and _plain(_text(field_node)) in _CALLBACK_TAKERS
 
 
 def _declarator(node: Node) -> Node | None:
@@ -432,16 +444,6 @@ def _taken(parameters: list[Node]) -> str:
     if len(texts) == 2 and texts[0].startswith("int") and texts[1].replace("const", "").startswith("char"):
         return "arguments"
     return ", ".join(_text(each) for each in parameters)
-
-
-def _is_outermost(node: Node) -> bool:
-    """Whether a declarator stands outside of all that the parser does not understand, such as a class with a macro."""
-    seen = node.parent
-    while seen is not None and seen.parent is not None:
-        if seen.type in ("ERROR", "friend_declaration"):
-            return False
-        seen = seen.parent
-    return True
 
 
 def _is_variable(node: Node) -> bool:
@@ -543,8 +545,10 @@ def _nodes(root: Node) -> Iterator[Node]:
 
 
 def _text(node: Node | None) -> str:
-    """The source text of a node; empty for None."""
-    return "" if node is None or node.text is None else node.text.decode("utf-8", errors="replace")
+    """The source text of a node; empty for None, and for what is longer than any name."""
+    if node is None or node.end_byte - node.start_byte > _LONGEST_TEXT:
+        return ""
+    return "" if node.text is None else node.text.decode("utf-8", errors="replace")
 
 
 def _parser() -> Parser:
