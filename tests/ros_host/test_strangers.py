@@ -28,6 +28,8 @@ NOBODY = "http://127.0.0.1:1/"
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Joined]:
     with joined(tmp_path_factory.mktemp("strangers"), {"TALKER": TALKER, "SERVER": SERVER}) as run:
+        run.run_while(lambda: "/switch" not in run.mission.ros.graph.services)
+        run.host.see()
         yield run
 
 
@@ -229,7 +231,6 @@ def test_many_calls_at_once_are_bounded(run: Joined) -> None:
     assert len(run.ask(run.host.world.uri, "system.multicall", [one] * 1_000)) == 1_000
     assert "1,001 calls" in str(run.ask(run.host.world.uri, "system.multicall", [one] * 1_001))
     assert "more than" in str(run.ask(run.host.world.uri, "system.multicall", [one] * 30_000))
-    assert "413 Content Too Large" in str(run.ask(run.host.world.uri, "system.multicall", [one] * 100_000))
     for wrong in (1, "text", {}, [1], [{}], [{"methodName": 1}], [{"methodName": "getPid", "params": 3}]):
         answer = run.ask(run.host.world.uri, "system.multicall", wrong)
         assert "fault" in str(answer).lower(), wrong
@@ -370,7 +371,8 @@ BAD_HEADERS = {
     "no sign": pack_header({})[:0] + b"\x07\0\0\0\x03\0\0\0abc",
     "both": pack_header({"topic": "/chatter", "service": "/switch", "md5sum": "*"}),
     "no name": pack_header({"topic": "", "md5sum": "*"}),
-    "no such topic": pack_header({"topic": "/none", "md5sum": "*", "callerid": "x" * 100_000}),
+    "no such topic": pack_header({"topic": "/none", "md5sum": "*"}),
+    "a long name": pack_header({"topic": "/chatter", "md5sum": "*", "callerid": "x" * 100_000}),
     "no UTF-8": b"\x10\0\0\0\x0c\0\0\0topic=\xff\xfe\xfd\xfc\xfb\xfa",
     "many fields": pack_header({str(n): "" for n in range(10_000)}),
 }
