@@ -363,6 +363,18 @@ def test_a_caller_that_does_not_wait_is_held_back(run: Joined) -> None:
     wire.socket.close()
 
 
+def test_a_caller_that_has_left_is_not_served_any_more(run: Joined) -> None:
+    wire = run.connected(run.host.service_uri("/server"), {"service": "/switch", "persistent": "1", **SET_BOOL})
+    wire.header()
+    wire.socket.sendall(b"\x01\0\0\0\x01" * 2_000)
+    for _ in range(5):
+        run.host.exchange()
+    wire.socket.close()
+    calls = run.host._last_call
+    run.run_while(lambda: bool(len(run.host.bounds.places)))
+    assert run.host._last_call < calls + 100
+
+
 BAD_HEADERS = {
     "nothing": b"\0\0\0\0",
     "zeros": bytes(400),
