@@ -72,8 +72,9 @@ class PeerSocket:
             sent = self.socket.send(data)
         except BlockingIOError:
             sent = 0
-        except OSError:
-            return  # the other side is gone, which reading tells
+        except OSError:  # the other side is gone, which reading tells
+            self.resume()
+            return
         if sent < len(data):
             self._under_way = data[sent:]
             self._watch()

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from cfepy.ground import APPLICATIONS
+from cfepy.input_limits import ROS_NAME
 from cfepy.io import ENDED, INTO, OUT_OF, Listening, PeerSocket, listening_socket
 from cfepy.ros_host.tcpros import LONGEST_FRAME, TcprosFrames, frame, pack_header, parse_header
 from cfepy.ros_host.xmlrpc_server import XmlRpcServer
@@ -151,7 +152,7 @@ class OutsideClient:
         if error:
             where = header.get("topic") or header.get("service") or "?"
             direction = OUT_OF if "topic" in header else INTO
-            count = self._host.counts.of(where, self.caller or "?", direction)
+            count = self._host.counts.of(where[:ROS_NAME], self.caller[:ROS_NAME] or "?", direction)
             count.refused += 1
             count.why = error
             self._socket.send(pack_header({"error": error}))
@@ -164,6 +165,8 @@ class OutsideClient:
         """What is wrong with a connection; "" when nothing is."""
         needed = ("topic", "md5sum") if "service" not in header else ("service", "md5sum")
         missing = [each for each in needed if not header.get(each)]
+        if len(self.caller) > ROS_NAME:
+            return f"the callerid has more than {ROS_NAME:,} characters"
         if missing:
             return f"Missing required '{missing[0]}' field"
         return self._serve(header) if "service" in header else self._publish(header)

@@ -39,7 +39,7 @@ class OutsidePublisher:
         self._again_at = 0.0
         self._is_busy = False
         self._coming: deque[bytes] = deque()  # for want of room
-        self._full_since_s = 0.0
+        self._full_since_s: float | None = None
 
     def look(self, now_s: float) -> None:
         """Connect, if it is time to."""
@@ -119,13 +119,13 @@ class OutsidePublisher:
         while coming:
             if not host.has_room(self.topic, self._name, coming[0]):
                 now_s = host.now_s()
-                self._full_since_s = self._full_since_s or now_s
+                self._full_since_s = now_s if self._full_since_s is None else self._full_since_s
                 if now_s - self._full_since_s < MOST_PATIENCE_S:
                     host.stalled.add(self)
                     if self._socket is not None:
                         self._socket.pause()
                     return
-            self._full_since_s = 0.0
+            self._full_since_s = None
             self._message(coming.popleft())
         host.stalled.discard(self)
         if self._socket is not None:

@@ -13,8 +13,8 @@ import re
 import secrets
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
-from urllib.parse import urlsplit
 
+from cfepy.io import is_this_computer
 from cfepy.status import UsageError
 
 LOOPBACK = "127.0.0.1"
@@ -23,7 +23,6 @@ TOKEN_VARIABLE = "CFEPY_VIEWER_TOKEN"
 SHORTEST_TOKEN = 8  # characters
 ANY_ORIGIN = "*"
 _TOKEN = re.compile(r"[!-~]+")
-_THIS_COMPUTER = ("localhost", "::1")
 _ORIGIN = re.compile(r"([a-z][a-z0-9+.-]*://)([a-z0-9._~-]+|\[[0-9a-f:.]+\])(:[0-9]+)?", re.IGNORECASE)
 _ORIGINS_WITHOUT_HOST = ("null", "file://", ANY_ORIGIN)
 _USUAL_PORTS = {"http://": ":80", "https://": ":443"}
@@ -42,11 +41,6 @@ class ListenPlace(NamedTuple):
 
     def __str__(self) -> str:
         return f"[{self.host}]:{self.port}" if ":" in self.host else f"{self.host}:{self.port}"
-
-
-def is_this_computer(host: str) -> bool:
-    """Whether a host is a name or an address of the loopback interface."""
-    return host in _THIS_COMPUTER or re.fullmatch(r"127(\.\d{1,3}){3}", host) is not None
 
 
 def listen_place_of(text: str) -> ListenPlace:
@@ -119,11 +113,10 @@ class Admission:
         """
         if origin is None or ANY_ORIGIN in self._origins or origin.lower() in self._origins:
             return True
-        try:
-            parts = urlsplit(origin)
-            return parts.scheme in ("http", "https") and is_this_computer(parts.hostname or "")
-        except ValueError:
+        parts = _ORIGIN.fullmatch(origin.lower())
+        if parts is None or parts[1] not in _USUAL_PORTS or int((parts[3] or ":0")[1:]) > HIGHEST_PORT:
             return False
+        return is_this_computer(parts[2].strip("[]"))
 
 
 def admission_to(

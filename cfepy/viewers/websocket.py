@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 LONGEST_MESSAGE = 1 << 25  # bytes; more ends a connection
 MOST_PARTS = 10_000  # frames of a message
-BAD_TEXT, TOO_BIG = 1007, 1009  # RFC 6455, 7.4.1
+BAD_TEXT, TOO_BIG, TRY_LATER = 1007, 1009, 1013  # RFC 6455, 7.4.1, and IANA's registry of it
 OPEN = "OPEN"
 
 
@@ -42,6 +42,11 @@ class WebSocket:
         take: gets each message, a text or bytes.
         gone: called once, when the connection is over; takes why.
         subprotocols: one of which the request has to name, the best first; none if it need not.
+        was_read: called after bytes have come, and what they say was done.
+
+    Attributes:
+        is_open: whether messages may be sent.
+        has_pinged: whether a ping waits for its pong.
     """
 
     def __init__(
@@ -53,6 +58,7 @@ class WebSocket:
         take: Callable[[str | bytes], object],
         gone: Callable[[str], object],
         subprotocols: Sequence[str] = (),
+        was_read: Callable[[], object] = lambda: None,
     ) -> None:
         self._protocol = protocols().ServerProtocol(subprotocols=list(subprotocols) or None, max_size=LONGEST_MESSAGE)
         self._refusal = refusal
@@ -60,10 +66,28 @@ class WebSocket:
         self._take = take
         self._gone = gone
         self._parts: list[bytes] = []  # of a message that comes in more than one frame
+        self._unfinished = 0  # bytes of a frame that has not ended, or a few more
         self._is_text = True
-        self.is_open = False  # for messages
+        self.is_open = self.has_pinged = False
+        self._was_read = was_read
         self._is_over = False
         self._socket = PeerSocket(selector, connected, self._read, self._lost)
+
+    @property
+    def unfinished(self) -> int:
+        """About how many bytes of a message have come that is not whole."""
+        return self._unfinished + sum(map(len, self._parts))
+
+    def ping(self) -> None:
+        """Ask the client for a sign of life (RFC 6455, 5.5.2)."""
+        if self.is_open and self._protocol.state.name == OPEN:
+            self.has_pinged = True
+            self._protocol.send_ping(b"")
+            self._flush()
+
+    def fail(self, why: str) -> None:
+        """See `Guarded.fail`."""
+        self.close(TRY_LATER, why)
 
     @property
     def dropped(self) -> int:
@@ -134,7 +158,9 @@ class WebSocket:
             return
         protocol = self._protocol
         protocol.receive_data(data)
-        for event in protocol.events_received():
+        events = protocol.events_received()
+        self._unfinished = len(data) if events else self._unfinished + len(data)
+        for event in events:
             if self._is_over:
                 return
             if protocol.handshake_exc is None and not self.is_open:
@@ -144,6 +170,7 @@ class WebSocket:
         self._flush()
         if protocol.parser_exc is not None or protocol.handshake_exc is not None or protocol.close_expected():
             self._end(_why(protocol))
+        self._was_read()
 
     def _begin(self, request: Request) -> None:
         protocol = self._protocol
@@ -165,6 +192,7 @@ class WebSocket:
         elif opcode == "CONT":
             self._parts.append(bytes(frame.data))
         else:
+            self.has_pinged = self.has_pinged and opcode != "PONG"
             return  # the protocol has answered it
         if len(self._parts) > MOST_PARTS:
             self.close(TOO_BIG, "a message has too many frames")

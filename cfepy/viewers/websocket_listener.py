@@ -11,11 +11,12 @@ import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from http import HTTPStatus
+from operator import itemgetter
 from selectors import EVENT_READ, DefaultSelector
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 from urllib.parse import parse_qs, urlsplit
 
-from cfepy.io import Listening, listening_socket
+from cfepy.io import InputRoom, Listening, Turn, listening_socket
 from cfepy.status import UsageError
 from cfepy.viewers.listen import ListenPlace
 from cfepy.viewers.websocket import WebSocket, protocols
@@ -28,6 +29,8 @@ CONNECTIONS = "(connections)"  # its row of all that is no message
 MOST_CLIENTS = 64
 MOST_MESSAGES = 256  # of a client between two pieces of the run; the others wait
 HANDSHAKE_S = 10.0  # wall time that a client has for asking for the connection
+IDLE_S = 30.0  # of silence after which a client that takes part in nothing gives way to another
+SILENCE_S = 20.0  # after which a client is asked for a sign of life, and then has for it, when places are few
 FAREWELL_S = 2.0  # and for reading what was sent to it last
 LAST_S, LOOK_S = 1.0, 0.05  # wall time that the end of a run waits for all of them together; between two looks
 GOING_AWAY, INTERNAL = 1001, 1011  # RFC 6455, 7.4.1
@@ -44,6 +47,14 @@ class ConnectedClient(Protocol):
     @property
     def is_ready(self) -> bool:
         """Whether it takes a message now; if not, the client has to wait."""
+
+    @property
+    def unfinished(self) -> int:
+        """Bytes that it keeps of messages that are not whole."""
+
+    @property
+    def takes_part(self) -> bool:
+        """Whether it hears, publishes or offers something, or waits for an answer."""
 
     def begin(self, connection: WebSocket) -> None:
         """The connection is there, for both sides."""
@@ -73,6 +84,8 @@ class _Connection(Generic[C]):
         self.client = client
         self.peer = peer
         self.since_s = time.monotonic()  # that it was accepted, or that it ends
+        self.heard_s = self.since_s  # that something came from it
+        self.pinged_s = self.since_s
         self.has_asked = self.has_begun = False
         self.coming: deque[str | bytes] = deque()
         self.left = MOST_MESSAGES
@@ -129,6 +142,9 @@ class WebSocketListener(Generic[C]):
         self.place = ListenPlace(place.host, self._listening.port)
         self._connections: dict[WebSocket, _Connection[C]] = {}
         self._ending: dict[WebSocket, float] = {}
+        self._room = InputRoom()
+        self._turn = Turn()
+        self._turns = 0
         self._is_over = False
         self._near, self._far = socket.socketpair()
         for each in (self._near, self._far):
@@ -147,18 +163,33 @@ class WebSocketListener(Generic[C]):
     def exchange(self) -> None:
         """Bring in what clients have sent, and go on with what they did not take."""
         now_s = self._go_on()
-        for made, connection in list(self._connections.items()):
+        self._turn.begin()
+        connections = list(self._connections.items())
+        first = self._turns = (self._turns + 1) % max(1, len(connections))
+        for made, connection in connections[first:] + connections[:first]:  # another one begins each time
             connection.left = MOST_MESSAGES
             self._work(made, connection)
         self._look(0)
-        if any(each.coming and each.client.is_ready for each in self._connections.values()):
+        if any(each.coming and each.client.is_ready for each in self._connections.values()) or self._turn.is_over:
             self._nudge()
+        self._look_for_life(now_s)
         for made, connection in list(self._connections.items()):
             if not connection.has_asked and now_s - connection.since_s > HANDSHAKE_S:
                 made.abort()
         for made in [each for each, since_s in self._ending.items() if each.has_ended or now_s - since_s > FAREWELL_S]:
             del self._ending[made]
             made.abort()
+
+    def _look_for_life(self, now_s: float) -> None:
+        """When places are few, end connections from which no sign of life comes."""
+        if len(self._connections) <= MOST_CLIENTS // 2:
+            return
+        for made, connection in list(self._connections.items()):
+            if made.has_pinged and now_s - connection.pinged_s > SILENCE_S:
+                made.close(GOING_AWAY, "no sign of life")
+            elif not made.has_pinged and connection.has_begun and now_s - connection.heard_s > SILENCE_S:
+                connection.pinged_s = now_s
+                made.ping()
 
     def _go_on(self) -> float:
         now_s = time.monotonic()
@@ -204,7 +235,7 @@ class WebSocketListener(Generic[C]):
         except OSError:  # it is gone again
             connected.close()
             return
-        if len(self._connections) >= MOST_CLIENTS:
+        if not self._has_place():
             connected.close()
             self._refused(peer, "too many clients")
             return
@@ -217,8 +248,34 @@ class WebSocketListener(Generic[C]):
             lambda message: self._take(made, connection, message),
             lambda why: self._gone(made, why),
             self._subprotocols,
+            lambda: self._was_read(made, connection),
         )
         self._connections[made] = connection
+
+    def _has_place(self) -> bool:
+        """Whether there is a place for another client, if need be that of one which is of no use."""
+        if len(self._connections) < MOST_CLIENTS:
+            return True
+        now_s = time.monotonic()
+        for made, connection in self._connections.items():  # the oldest first
+            if not connection.has_asked:
+                made.abort()
+                return True
+        idle = [
+            (connection.heard_s, made)
+            for made, connection in self._connections.items()
+            if not connection.client.takes_part and now_s - connection.heard_s > IDLE_S
+        ]
+        if idle:
+            min(idle, key=itemgetter(0))[1].fail("another client needs the place")
+        return bool(idle)
+
+    def _was_read(self, made: WebSocket, connection: _Connection[C]) -> None:
+        connection.heard_s = time.monotonic()
+        if made in self._connections:
+            self._room.hold(made, made.unfinished + sum(map(len, connection.coming)) + connection.client.unfinished)
+            if self._turn.is_over and not self._is_over:
+                made.pause()  # until the next one begins
 
     def _ask(self, connection: _Connection[C], request: Request) -> Refusal | None:
         connection.has_asked = True
@@ -236,7 +293,7 @@ class WebSocketListener(Generic[C]):
     def _work(self, made: WebSocket, connection: _Connection[C]) -> None:
         """Hand on what came, as long as the client is ready for it and it is not too much for once."""
         client, coming = connection.client, connection.coming
-        while coming and connection.left and client.is_ready and made.is_open:
+        while coming and connection.left and client.is_ready and made.is_open and not self._turn.is_over:
             connection.left -= 1
             self._guarded(made, client.take, coming.popleft())
         if coming or not client.is_ready:
@@ -252,6 +309,7 @@ class WebSocketListener(Generic[C]):
 
     def _gone(self, made: WebSocket, why: str) -> None:
         self._ending[made] = time.monotonic()
+        self._room.release(made)
         connection = self._connections.pop(made, None)
         if connection is None:
             return

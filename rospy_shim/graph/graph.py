@@ -28,6 +28,10 @@ Header = dict[str, str]
 """What ROS tells the two ends of a connection: caller, type, md5sum, topic, ..."""
 
 
+MOST_NAMES = 1_000
+"""Publishers, and subscribers, of a topic that the tables name; tools outside have a new name for each start."""
+
+
 class TopicRow(NamedTuple):
     """A topic in the mission's tables.
 
@@ -293,5 +297,5 @@ class Graph:
 
 
 def _remember(names: list[str], name: str) -> None:
-    if name not in names:
+    if len(names) < MOST_NAMES and name not in names:
         names.append(name)

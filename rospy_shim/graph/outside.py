@@ -12,8 +12,9 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Protocol
 from xmlrpc.client import loads
 
+from cfepy.input_limits import ROS_NAMES
 from cfepy.sb import Outlet
-from cfepy.status import CfeError
+from cfepy.status import CfeError, UsageError
 from rospy_shim.client.exceptions import ServiceException
 from rospy_shim.client.link import Link
 from rospy_shim.client.service import (
@@ -37,7 +38,7 @@ from rospy_shim.client.transport import (
     whole_header,
 )
 from rospy_shim.graph.compiled import CompiledService, DeclaredType
-from rospy_shim.graph.graph import ServiceCall
+from rospy_shim.graph.graph import MOST_NAMES, ServiceCall
 from rospy_shim.master.calls import call
 
 if TYPE_CHECKING:
@@ -330,6 +331,7 @@ class OutsideGraph:
         self._calls: dict[str, dict[int, tuple[int, str]]] = {}  # by service and its number: caller's number, caller
         self._outlets: dict[str, Outlet] = {}  # by service
         self._shown: dict[str, Outlet] = {}  # by topic
+        self._names: set[str] = set()  # of topics and services that came from outside
         self._acts: dict[str, Callable[..., Any]] = {
             "ask": self._ask,
             "publish": self._publish,
@@ -383,9 +385,25 @@ class OutsideGraph:
         node.uri = uri or node.uri
         return node
 
+    def _topic(self, name: str) -> TopicEntry:
+        """The topic of a name, which nodes of the mission may not have.
+
+        Raises:
+            UsageError: its MsgId belongs to another topic, or too many names come from outside: each has its MsgId for
+                the rest of the run, of which the mission needs some for itself.
+        """
+        if name not in self._graph.topics:
+            self._count_name(name)
+        return self._graph.topic(name)
+
+    def _count_name(self, name: str) -> None:
+        if len(self._names) >= ROS_NAMES and name not in self._names:
+            raise UsageError(f"{name[:200]}: programs outside have brought {ROS_NAMES} names, which is the limit")
+        self._names.add(name)
+
     def _publish(self, topic: str, name: str, uri: str, kind: str, md5sum: str, definition: str, latching: bool) -> str:
         """The mission is connected with an outside publisher; "" when it is, else why not."""
-        entry, declared = self._graph.topic(topic), DeclaredType(kind, md5sum, definition)
+        entry, declared = self._topic(topic), DeclaredType(kind, md5sum, definition)
         self._publish_no_more(topic, name)
         if not entry.join(declared):
             return f"it is {kind} [{md5sum}] there and {entry.type} [{entry.md5sum}] here"
@@ -396,6 +414,19 @@ class OutsideGraph:
         link = self.links.pop((topic, name), None)
         if link is not None:
             link.close()
+            self._forget_node(name)
+
+    def _forget_node(self, name: str) -> None:
+        """Forget an outside node that has nothing in the graph any more, if there are many.
+
+        Tools have a new name for each start.
+        """
+        if len(self.nodes) <= MOST_NAMES:
+            return
+        sides = (*self.links, *self.subscriptions)
+        offers = any(each.node.names.name == name for each in self.services.values())
+        if not offers and not any(node == name for _, node in sides):
+            self.nodes.pop(name, None)
 
     def _message(self, topic: str, name: str, payload: bytes) -> bool:
         """A message from an outside publisher; whether the bus took it."""
@@ -407,7 +438,7 @@ class OutsideGraph:
 
     def _subscribe(self, topic: str, name: str, uri: str, kind: str, md5sum: str, publisher: str) -> str:
         """An outside subscriber is connected with a node of the mission, "" for its cFE applications; why not."""
-        entry = self._graph.topic(topic)
+        entry = self._topic(topic)
         subscription = self.subscriptions.get((topic, name))
         if subscription is None:
             declared = DeclaredType("*" if "*" in (kind, md5sum) else kind, md5sum, "")
@@ -465,6 +496,7 @@ class OutsideGraph:
         if not subscription.publishers:
             del self.subscriptions[topic, name]
             subscription.close()
+            self._forget_node(name)
 
     def _show(self, topic: str, msg_id: int) -> None:
         """Somebody outside hears packets of cFE applications."""
@@ -553,6 +585,7 @@ class OutsideGraph:
         if former is not None and not isinstance(former.service, OutsideService):
             return False
         self._serve_no_more(service)
+        self._count_name(service)
         made = OutsideService(
             self._node(name, uri),
             service,
@@ -586,6 +619,7 @@ class OutsideGraph:
             entry = self._graph.services.get(service)
             if entry is not None and entry.service is made:
                 del self._graph.services[service]
+            self._forget_node(made.node.names.name)
 
     def _answer(self, service: str, number: int, good: bool, body: bytes) -> bool:
         """The answer of an outside service; False when nobody waits for it."""

@@ -9,10 +9,11 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from rospy_shim.client.exceptions import ROSException
-from rospy_shim.parameters.table import FREE, Record, Row, rows_for
-from rospy_shim.parameters.values import leaves_of, text_of, written
+from rospy_shim.parameters.table import FREE, VALUE_BYTES, Record, Row, count_rows, rows_for
+from rospy_shim.parameters.values import leaf_names, least_size, leaves_of, text_of, written
 
 _FREE, _USED = 0, 1
+_MOST_SHOWN = 200  # characters of a name in an error
 
 
 class ParametersFull(ROSException):
@@ -63,9 +64,13 @@ class ParameterRows:
         Raises:
             ParametersFull: there is no room; nothing has changed.
         """
+        room = len(self.rows) * VALUE_BYTES
+        if least_size(value, room) > room:  # before the texts are made
+            raise ParametersFull(
+                f"the parameter tables are full: {_shown(name)} takes more than all {len(self.rows)} rows"
+            )
         new = dict(leaves_of(name, value))
-        old = [each for each, _ in leaves_of(name, former)]
-        self._change(name, new, [*old, *self._above(name)])
+        self._change(name, new, [*leaf_names(name, former), *self._above(name)])
 
     def remove(self, name: str, former: Any, empty: str | None) -> None:
         """A parameter or namespace is gone.
@@ -76,7 +81,7 @@ class ParameterRows:
             empty: the namespace above it when nothing is left in that, and it is not the root.
         """
         new = {} if empty is None else {empty: text_of({})}
-        self._change(name, new, [each for each, _ in leaves_of(name, former)])
+        self._change(name, new, list(leaf_names(name, former)))
 
     def _above(self, name: str) -> list[str]:
         """Values, or empty namespaces, that a name needs as a namespace."""
@@ -90,13 +95,13 @@ class ParameterRows:
     def _change(self, name: str, new: dict[str, str], old: list[str]) -> None:
         going = [record for each in dict.fromkeys(old) if (record := self._records.get(each)) is not None]
         kept = {record.name: record for record in going if new.get(record.name) == record.text}
-        coming = {each: rows_for(each, text) for each, text in new.items() if each not in kept}
         released = sum(record.length for record in going if record.name not in kept)
-        needed, free = sum(map(len, coming.values())), self.free + released
+        needed = sum(count_rows(each, text) for each, text in new.items() if each not in kept)
+        free = self.free + released
         if needed > free:
-            raise ParametersFull(
-                f"the parameter tables are full: {name or '/'} takes {needed} rows of {len(self.rows)}, {free} are free"
-            )
+            rows = f"{needed} rows of {len(self.rows)}, {free} are free"
+            raise ParametersFull(f"the parameter tables are full: {_shown(name)} takes {rows}")
+        coming = {each: rows_for(each, text) for each, text in new.items() if each not in kept}
         for record in going:
             if record.name not in kept and not self._in_place(record, new, coming):
                 self._release(record)
@@ -147,6 +152,10 @@ class ParameterRows:
         if self.rows[index] != row:
             self.rows[index] = row
             self.changed[index] = None
+
+
+def _shown(name: str) -> str:
+    return name[:_MOST_SHOWN] or "/"
 
 
 def name_of(parts: Iterable[str]) -> str:

@@ -105,11 +105,15 @@ TABLES = tuple(
 def rows_for(name: str, text: str) -> list[Row]:
     """The rows of one parameter, one after the other."""
     rows = [(name[:NAME_BYTES], text[:VALUE_BYTES])]
-    name, text = name[NAME_BYTES:], text[VALUE_BYTES:]
-    while name or text:
-        rows.append((MORE + name[:_GROWN], text[:VALUE_BYTES]))
-        name, text = name[_GROWN:], text[VALUE_BYTES:]
+    for row in range(1, count_rows(name, text)):
+        part = name[NAME_BYTES + (row - 1) * _GROWN : NAME_BYTES + row * _GROWN]
+        rows.append((MORE + part, text[row * VALUE_BYTES : (row + 1) * VALUE_BYTES]))
     return rows
+
+
+def count_rows(name: str, text: str) -> int:
+    """How many rows a parameter takes."""
+    return max(1, -(-len(text) // VALUE_BYTES), 1 - (NAME_BYTES - len(name)) // _GROWN)
 
 
 def pack(row: Row) -> bytes:

@@ -9,8 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from cfepy.input_limits import PARAMETER_BYTES, PARAMETER_DEPTH
+from rospy_shim.client.exceptions import ROSException
 from rospy_shim.client.names import SEP, join, namespace_of
 from rospy_shim.parameters.rows import ParameterRows, name_of
+from rospy_shim.parameters.values import depth_of, least_size
 
 _MISSING = object()
 
@@ -138,6 +141,7 @@ class ParameterTree:
         Raises:
             TypeError: the root can only be a dictionary.
             ParametersFull: the tables have no room for it.
+            ROSException: it has too many levels, or is too large.
         """
         self._set(key, value)
         self._save()
@@ -147,6 +151,12 @@ class ParameterTree:
         parts = _parts(key)
         if not parts and type(value) is not dict:
             raise TypeError("cannot set root of parameter tree to non-dictionary")
+        if len(parts) + depth_of(value) > PARAMETER_DEPTH:
+            raise ROSException(
+                f"parameter {key[:200]}: more than {PARAMETER_DEPTH} namespaces and lists inside each other"
+            )
+        if least_size(value, PARAMETER_BYTES) > PARAMETER_BYTES:
+            raise ROSException(f"parameter {key[:200]}: more than {PARAMETER_BYTES:,} bytes, which is the limit")
         if self._rows is not None:
             former = self.find(key)
             self._rows.replace(name_of(parts), value, {} if former is _MISSING else former)

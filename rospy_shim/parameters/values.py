@@ -17,6 +17,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from cfepy.input_limits import PARAMETER_DEPTH
+
 _INT_MAX = 2**31 - 1
 _INT_MIN = -(2**31)
 _BUILT_IN = (int, float, str, bytes, list, tuple, dict)
@@ -137,6 +139,41 @@ def leaves_of(name: str, value: Any) -> Iterator[tuple[str, str]]:
         return
     for key, inner in value.items():
         yield from leaves_of(f"{name}/{written(key)}", inner)
+
+
+def leaf_names(name: str, value: Any) -> Iterator[str]:
+    """The names that `leaves_of` gives, without the texts."""
+    if type(value) is not dict or not value:
+        if name:
+            yield name
+        return
+    for key, inner in value.items():
+        yield from leaf_names(f"{name}/{written(key)}", inner)
+
+
+def least_size(value: Any, most: int) -> int:
+    """How many characters the text of a value has at least; counted no further than to one more than `most`."""
+    size, waiting = 0, [value]
+    while waiting and size <= most:
+        each = waiting.pop()
+        size += len(each) if isinstance(each, str | bytes) else 1
+        if isinstance(each, dict):
+            size += sum(map(len, each))
+            waiting.extend(each.values())
+        elif isinstance(each, list):
+            waiting.extend(each)
+    return size
+
+
+def depth_of(value: Any) -> int:
+    """How many lists and namespaces stand inside each other in a value; 0 for a plain one."""
+    depth, level = 0, [value]
+    while level := [each for each in level if isinstance(each, dict | list)]:
+        depth += 1
+        if depth > PARAMETER_DEPTH:
+            break
+        level = [inner for each in level for inner in (each.values() if isinstance(each, dict) else each)]
+    return depth
 
 
 def written(part: str) -> str:

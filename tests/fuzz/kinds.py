@@ -50,6 +50,7 @@ from rospy_shim.roslaunch.reader import read
 from rospy_shim.roslaunch.values import from_yaml
 from tests.c.building import compile_c
 from tests.es.test_cds import Board
+from tests.fuzz import servers
 
 ROOT = Path(__file__).parents[2]
 DATA = ROOT / "tests/data"
@@ -516,6 +517,13 @@ KINDS = {
         Kind("xtce-names", texts("capture", "a b/c", "\x1b[0m"), names),
         Kind("shared-object", shared_objects, shared_object, "startup.scr"),
         Kind("yaml", files("missions/*/*.yaml", "boards/*.yaml"), yaml_file, "any.yaml"),
+        Kind("tcpros", servers.tcpros_samples, servers.tcpros),
+        Kind("http", servers.http_samples, servers.http),
+        Kind("master-api", servers.master_samples, servers.master_api),
+        Kind("slave-api", servers.slave_samples, servers.slave_api),
+        Kind("websocket", servers.websocket_samples, servers.websocket),
+        Kind("rosbridge", servers.rosbridge_samples, servers.rosbridge),
+        Kind("foxglove", servers.foxglove_samples, servers.foxglove),
     )
 }
 

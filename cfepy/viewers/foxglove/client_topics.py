@@ -7,7 +7,6 @@ A viewer is a node outside, /foxglove_1 and so on, and has its publishers as all
 
 from __future__ import annotations
 
-import json
 import re
 from collections import deque
 from collections.abc import Callable
@@ -19,6 +18,7 @@ from cfepy.io import INTO, PeerCounts
 from cfepy.mission import PACKET, ROS, Mission
 from cfepy.msg import Command
 from cfepy.status import CfeError, UsageError
+from cfepy.viewers.bounded_json import loads
 from cfepy.viewers.foxglove.protocol import JSON, ROS1, Advertised, Published
 from cfepy.viewers.foxglove.viewer import PEER, Viewer
 from cfepy.viewers.websocket_listener import CONNECTIONS
@@ -114,7 +114,7 @@ class ClientTopics:
         row.size += len(message.data)
         try:
             if isinstance(publication, CommandPublication):
-                self._send(publication.command, message.data)
+                self._command(publication.command, message.data)
                 return
             payload = publication.encode(message.data)
         except (CfeError, UsageError, ValueError) as error:
@@ -223,8 +223,14 @@ class ClientTopics:
                 row.dropped += 1
                 row.why = "the Software Bus did not take it"
 
+    def _command(self, command: Command, data: bytes) -> None:
+        try:
+            self._send(command, data)
+        except (TypeError, KeyError, AttributeError, OverflowError) as error:  # of values that no field takes
+            raise ValueError(f"no {command.name}: {error}") from None
+
     def _send(self, command: Command, data: bytes) -> None:
-        values = json.loads(data)
+        values = loads(data)
         if not isinstance(values, dict):
             raise ValueError("a command is a JSON object of its fields")
         fields = {name: value for name, value in values.items() if not name.startswith("_")}
@@ -249,7 +255,7 @@ def _encoder(class_of: Callable[[str], Any], kind: str, is_json: bool) -> Callab
     def encode(data: bytes) -> bytes:
         try:
             if is_json:
-                return bytes(message_from_json(class_of, kind, json.loads(data))._pack())
+                return bytes(message_from_json(class_of, kind, loads(data))._pack())
             is_whole = made._unpack(data)._pack() == data
         except Exception as error:  # whatever the generated code raises for what is no such message
             raise ValueError(f"no {kind}: {error}") from None

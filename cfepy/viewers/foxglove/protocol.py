@@ -15,11 +15,16 @@ import struct
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from cfepy.input_limits import ROS_NAME, VIEWER_ROWS
+from cfepy.viewers.bounded_json import loads
+
 SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 CAPABILITIES = ("clientPublish", "connectionGraph", "parameters", "parametersSubscribe", "services", "time")
 JSON, ROS1 = "json", "ros1"
 ROS1_SCHEMA, JSON_SCHEMA = "ros1msg", "jsonschema"
 WARNING, ERROR = 1, 2  # levels of a status
+MOST_ROWS = {"channels": 100, "parameters": 1_000}
+"""Entries of lists whose entries are work; others have `VIEWER_ROWS`."""
 HALF_A_CHARACTER = "\\ud"  # in JSON: one of two surrogates, without the other of which it is no text
 
 _MESSAGE_DATA, _TIME, _SERVICE_RESPONSE = 1, 2, 3  # from the server
@@ -250,7 +255,7 @@ def ops_of(frame: str | bytes) -> list[Op]:
     if isinstance(frame, bytes):
         return [_binary(frame)] if frame else []
     try:
-        message = json.loads(frame)
+        message = loads(frame)
         if HALF_A_CHARACTER in frame.lower():
             json.dumps(message, ensure_ascii=False).encode()
     except (ValueError, RecursionError) as error:
@@ -335,7 +340,10 @@ def _field(of: Mapping[str, Any], name: str, kind: type, what: str) -> Any:
 
 
 def _text(of: Mapping[str, Any], name: str) -> str:
-    return str(_field(of, name, str, "a text"))
+    text = str(_field(of, name, str, "a text"))
+    if len(text) > ROS_NAME:
+        raise FrameError(f"{name} has more than {ROS_NAME:,} characters")
+    return text
 
 
 def _request(of: Mapping[str, Any]) -> str | None:
@@ -351,13 +359,19 @@ def _number(of: Mapping[str, Any], name: str) -> int:
 
 def _list(of: Mapping[str, Any], name: str, kind: type, what: str) -> list[Any]:
     values: list[Any] = _field(of, name, list, f"a list of {what}")
+    most = MOST_ROWS.get(name, VIEWER_ROWS)
+    if len(values) > most:
+        raise FrameError(f"{name} has {len(values):,} entries; the limit is {most:,}")
     if not all(isinstance(each, kind) and not isinstance(each, bool) for each in values):
         raise FrameError(f"{name} has to be a list of {what}")
     return values
 
 
 def _texts(of: Mapping[str, Any], name: str) -> list[str]:
-    return _list(of, name, str, "texts")
+    texts: list[str] = _list(of, name, str, "texts")
+    if any(len(each) > ROS_NAME for each in texts):
+        raise FrameError(f"{name} has a text of more than {ROS_NAME:,} characters")
+    return texts
 
 
 def _numbers(of: Mapping[str, Any], name: str) -> list[int]:

@@ -107,6 +107,16 @@ class Viewer:
         """See `ConnectedClient.is_ready`: what it publishes waits elsewhere for room."""
         return True
 
+    @property
+    def unfinished(self) -> int:
+        """See `ConnectedClient.unfinished`."""
+        return 0
+
+    @property
+    def takes_part(self) -> bool:
+        """See `ConnectedClient.takes_part`; one that publishes is heard now and then."""
+        return bool(self._subscribed or self.watched or self.watches_graph)
+
     def begin(self, connection: WebSocket) -> None:
         """See `ConnectedClient.begin`."""
         self._connection = connection

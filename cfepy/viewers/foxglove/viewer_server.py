@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 OPTION, EXTRA = "--foxglove", "viz"
 APPS = ("https://app.foxglove.dev", "https://studio.foxglove.dev")
 """Pages that are Foxglove itself."""
+PROGRAMS = ("app",)
+"""Schemes of the pages in programs with windows of their own, besides files; --viewer-origin lets others in."""
 MOST_WATCHED = 10_000  # names of parameters, by one viewer
 NOTHING: Graph = ({}, {}, {})
 
@@ -216,9 +218,9 @@ class ViewerServer:
 def _is_app(origin: str | None) -> bool:
     """Whether a page is Foxglove's own: from its site, or in a program that has windows of its own, such as Electron.
 
-    What has another scheme than http and https is no page of a site: browsers say "null" for what they do not trust.
+    Extensions of a browser are not: they have schemes of their own, too, such as chrome-extension and moz-extension.
     """
     if origin is None or origin.rstrip("/") in APPS:
         return True
-    scheme, mark, _ = origin.partition("://")
-    return bool(mark) and scheme.lower() not in ("http", "https")
+    scheme, mark, rest = origin.lower().partition("://")
+    return bool(mark) and (scheme in PROGRAMS or (scheme == "file" and rest in ("", "/")))

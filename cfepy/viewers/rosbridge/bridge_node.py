@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from xmlrpc.client import dumps
 
 from cfepy.ground import APPLICATIONS, TOO_SHORT, ShownPacket
+from cfepy.input_limits import ROS_NAME
 from cfepy.mission import Mission
 from cfepy.msg import get_msg_id
 from cfepy.status import CfeError, UsageError
@@ -165,7 +166,7 @@ class BridgeNode:
         """
         try:
             body = dumps((NODE, *arguments), method).encode()
-        except (TypeError, OverflowError) as error:
+        except (TypeError, ValueError, OverflowError, RecursionError) as error:
             raise NotPossible(str(error)) from None
         if self._is_over:
             return 0, "the run is over", 0
@@ -210,8 +211,8 @@ class BridgeNode:
         Raises:
             NotPossible: it is no name of ROS's (wiki.ros.org/Names).
         """
-        if not name or not is_legal_name(name) or name.strip("/~") == "":
-            raise NotPossible(f"{name!r} is not a legal name")
+        if not name or len(name) > ROS_NAME or not is_legal_name(name) or name.strip("/~") == "":
+            raise NotPossible(f"{name[:200]!r} is not a legal name")
         return resolve(name, NODE)
 
     # -- topics --------------------------------------------------------------------------------------------------------
@@ -512,6 +513,10 @@ class BridgeNode:
         """The client that offers a service."""
         offered = self._offered.get(service)
         return None if offered is None else offered.client
+
+    def offered_by(self, client: Hearer) -> int:
+        """How many services a client offers."""
+        return sum(each.client is client for each in self._offered.values())
 
     def withdraw(self, service: str) -> None:
         """A service is offered no longer; who waits for an answer is told."""

@@ -14,6 +14,7 @@ from typing import Any, Concatenate, ParamSpec
 
 from cfepy.io import INTO, OUT_OF, PeerCounts
 from cfepy.status import UsageError
+from cfepy.viewers.bounded_json import loads
 from cfepy.viewers.rosbridge.bridge_node import BridgeNode
 from cfepy.viewers.rosbridge.fragments import Assembly, fragments
 from cfepy.viewers.rosbridge.known_types import NotPossible
@@ -32,6 +33,8 @@ MOST_TOPICS = 1000  # that a client publishes, and that it hears
 MOST_PATIENCE_S = 1.0  # wall time for which the mission may be full, before a message is lost
 SHORTEST_FRAGMENT = 16  # characters
 LONGEST_ID = 1000  # characters
+MOST_IDS = 100  # of one topic
+MOST_SERVICES = 100  # that a client offers
 POLICY = 1008  # RFC 6455, 7.4.1
 
 Op = dict[str, Any]
@@ -113,6 +116,17 @@ class RosbridgeClient:
         return self._stalled is None
 
     @property
+    def unfinished(self) -> int:
+        """See `ConnectedClient.unfinished`."""
+        return self._assembly.size
+
+    @property
+    def takes_part(self) -> bool:
+        """See `ConnectedClient.takes_part`."""
+        offers = self._node.offered_by(self)
+        return bool(self._published or self._hears or self._calls or self._stalled is not None or offers)
+
+    @property
     def has_more(self) -> bool:
         """Whether it has messages that wait for room: the connection itself has them."""
         return False
@@ -147,8 +161,8 @@ class RosbridgeClient:
         if isinstance(message, bytes):
             raise NotPossible("a binary message is BSON, which this server does not take: send JSON as text")
         try:
-            op = json.loads(message)
-        except (ValueError, RecursionError) as error:
+            op = loads(message)
+        except ValueError as error:
             raise NotPossible(f"Unable to deserialize message from client: {message[:200]}: {error}") from None
         if not isinstance(op, dict):
             raise NotPossible(f"a message is a JSON object, not {type(op).__name__}: {message[:200]}")
@@ -212,7 +226,10 @@ class RosbridgeClient:
         _check(op, ("topic", True, _TEXT), ("type", True, _TEXT))
         topic = self._node.resolved(op["topic"])
         self._publishes(topic, op["type"], op.get("latch") is True)
-        self._advertised.setdefault(topic, set()).add(_hashable(op.get("id")))
+        names = self._advertised.setdefault(topic, set())
+        if len(names) >= MOST_IDS:
+            raise NotPossible(f"a client may advertise a topic under {MOST_IDS} ids")
+        names.add(_hashable(op.get("id")))
 
     def _publishes(self, topic: str, kind: str | None, latching: bool) -> None:
         if len(self._published) >= MOST_TOPICS and topic not in self._published:
@@ -271,10 +288,14 @@ class RosbridgeClient:
         if topic not in self._hears and len(self._hears) >= MOST_TOPICS:
             raise NotPossible(f"a client may subscribe to {MOST_TOPICS} topics")
         by_name = self._hears.setdefault(topic, {})
+        if len(by_name) >= MOST_IDS and name not in by_name:
+            raise NotPossible(f"a client may write the name of a topic in {MOST_IDS} ways")
         pacing = by_name.get(name)
+        if pacing is not None and pacing.wishes >= MOST_IDS:
+            raise NotPossible(f"a client may subscribe to a topic under {MOST_IDS} ids")
         is_new = pacing is None
         if pacing is None:
-            pacing = by_name[name] = Pacing()
+            pacing = by_name[name] = Pacing(lambda message: len(message.payload))
         pacing.want(_hashable(op.get("id")), Wish(max(op.get("throttle_rate", 0), 0), length, compression))
         try:
             self._node.subscribe(self, topic, op.get("type"), compression == CBOR_RAW)
@@ -370,6 +391,8 @@ class RosbridgeClient:
     def _advertise_service(self, op: Op) -> None:
         _check(op, ("service", True, _TEXT), ("type", True, _TEXT))
         name = op["service"]
+        if self._node.offered_by(self) >= MOST_SERVICES:
+            raise NotPossible(f"a client may offer {MOST_SERVICES} services")
         if self._node.offer(self, self._node.resolved(name), op["type"]):
             self._status("warning", f"Duplicate service advertised. Overwriting {name}.")
         self._status("info", f"Advertised service {name}.")

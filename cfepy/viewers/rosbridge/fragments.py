@@ -10,6 +10,7 @@ from cfepy.status import UsageError
 PATIENCE_S = 600.0  # wall time for the next piece of a message, as rosbridge has it
 MOST_BEGUN = 16  # messages of a client of which a piece is missing
 MOST_PIECES = 100_000
+PIECE_BYTES = 150  # that a piece takes besides its characters
 
 
 def fragments(text: str, size: int, name: object) -> Iterator[dict[str, Any]]:
@@ -27,13 +28,13 @@ def fragments(text: str, size: int, name: object) -> Iterator[dict[str, Any]]:
 
 
 class _Begun:
-    """A message of which pieces have come."""
+    """A message of which pieces have come, the last one at a wall time."""
 
-    def __init__(self, total: int) -> None:
+    def __init__(self, total: int, at_s: float) -> None:
         self.total = total
         self.pieces: dict[int, str] = {}
-        self.size = 0
-        self.at_s = 0.0
+        self.size = self.held = 0  # characters; bytes that they take, about
+        self.at_s = at_s
 
 
 class Assembly:
@@ -46,6 +47,11 @@ class Assembly:
     def __init__(self, longest: int) -> None:
         self._longest = longest
         self._begun: dict[str, _Begun] = {}
+
+    @property
+    def size(self) -> int:
+        """About how many bytes the pieces take that wait for others."""
+        return sum(each.held for each in self._begun.values())
 
     def add(self, message: dict[str, Any], now_s: float) -> str | None:
         """A piece has come; the whole message when it was the last one missing.
@@ -67,11 +73,13 @@ class Assembly:
         if begun is None:
             if not 0 < total <= MOST_PIECES or len(self._begun) >= MOST_BEGUN:
                 raise UsageError(f"a message of {total} fragments, beside {len(self._begun)} others, is too much")
-            begun = self._begun[key] = _Begun(total)
+            begun = _Begun(total, now_s)
         if total != begun.total or not 0 <= number < total or number in begun.pieces:
             raise UsageError(f"error while trying to append fragment {number}")
+        self._begun[key] = begun  # not before: a piece that was refused begins nothing
         begun.pieces[number] = data
         begun.size += len(data)
+        begun.held += PIECE_BYTES + len(data) * (1 if data.isascii() else 4)
         begun.at_s = now_s
         if sum(each.size for each in self._begun.values()) > self._longest:
             del self._begun[key]

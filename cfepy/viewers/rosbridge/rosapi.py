@@ -12,7 +12,9 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from cfepy.ground import APPLICATIONS
+from cfepy.input_limits import ROS_NAME
 from cfepy.status import UsageError
+from cfepy.viewers.bounded_json import loads
 from cfepy.viewers.rosbridge.bridge_node import NODE, BridgeNode, fields_of
 from cfepy.viewers.rosbridge.known_types import ANY, NotPossible
 from rospy_shim.client.names import is_legal_name
@@ -217,8 +219,8 @@ class Rosapi:
 
     def _set_param(self, asked: Any) -> Values:
         try:
-            value = json.loads(asked.value)
-        except (ValueError, RecursionError):
+            value = loads(asked.value)
+        except ValueError:
             text = "Due to the type flexibility of the ROS parameter server, the value argument to set_param must be a"
             raise NotPossible(f"{text} JSON-formatted string.") from None
         self._change("setParam", _resolved(asked.name), value)
@@ -228,8 +230,8 @@ class Rosapi:
         value = self._find(asked.name)
         if value is _MISSING:
             try:
-                value = json.loads(asked.default) if asked.default else None
-            except (ValueError, RecursionError):
+                value = loads(asked.default) if asked.default else None
+            except ValueError:
                 value = asked.default
         return {"value": json.dumps(value, default=str)}
 
@@ -263,8 +265,8 @@ _MISSING = ParameterTree.MISSING
 
 
 def _resolved(name: str) -> str:
-    if not name or not is_legal_name(name):
-        raise NotPossible(f"{name!r} is not a legal name of a parameter")
+    if not name or len(name) > ROS_NAME or not is_legal_name(name):
+        raise NotPossible(f"{name[:200]!r} is not a legal name of a parameter")
     return resolve(name, NAME)
 
 

@@ -7,6 +7,7 @@ rates, with the shortest of the queues and the strongest of the compressions.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -14,6 +15,7 @@ NONE, PNG, CBOR, CBOR_RAW = "none", "png", "cbor", "cbor-raw"
 COMPRESSIONS = (NONE, PNG, CBOR, CBOR_RAW)
 """From the weakest."""
 LONGEST_QUEUE = 10_000
+MOST_QUEUED_BYTES = 8 << 20  # of the messages of a topic that wait for a client
 
 T = TypeVar("T")
 
@@ -36,19 +38,29 @@ class Wish:
 class Pacing(Generic[T]):
     """Decides when a client gets which message of one topic.
 
+    Args:
+        size_of: gives the bytes of a message.
+
     Attributes:
         compression: how they are sent.
         dropped: messages that the queue had no room for. What a rate leaves out is as asked for.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, size_of: Callable[[T], int] = lambda message: 0) -> None:
+        self._size_of = size_of
         self.compression = NONE
         self.dropped = 0
         self._wishes: dict[object, Wish] = {}
         self._throttle_s = 0.0
         self._length = 0
         self._queue: deque[T] = deque()
+        self._size = 0  # of what waits
         self._last_s = float("-inf")
+
+    @property
+    def wishes(self) -> int:
+        """How many subscriptions there are."""
+        return len(self._wishes)
 
     def want(self, name: object, wish: Wish) -> None:
         """A subscription under an id, or another one in its place."""
@@ -83,8 +95,9 @@ class Pacing(Generic[T]):
             return message
         if self._length:
             self._queue.append(message)
-            while len(self._queue) > self._length:
-                self._queue.popleft()
+            self._size += self._size_of(message)
+            while len(self._queue) > self._length or self._size > MOST_QUEUED_BYTES:
+                self._size -= self._size_of(self._queue.popleft())
                 self.dropped += 1
         return None
 
@@ -93,4 +106,6 @@ class Pacing(Generic[T]):
         if not self._queue or now_s < self._last_s + self._throttle_s:
             return None
         self._last_s = now_s
-        return self._queue.popleft()
+        message = self._queue.popleft()
+        self._size -= self._size_of(message)
+        return message

@@ -9,10 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rospy_shim.client.exceptions import ROSException
+from rospy_shim.parameters import rows as rows_module
 from rospy_shim.parameters.rows import ParameterRows, ParametersFull
-from rospy_shim.parameters.table import FREE, pack, records, rows_for, tree_of, unpack
+from rospy_shim.parameters.table import FREE, count_rows, pack, records, rows_for, tree_of, unpack
 from rospy_shim.parameters.tree import ParameterTree
-from rospy_shim.parameters.values import DateTime, leaves_of, parts_of, text_of, value_of, written
+from rospy_shim.parameters.values import DateTime, leaf_names, leaves_of, parts_of, text_of, value_of, written
 
 SCALARS = st.one_of(
     st.booleans(),
@@ -159,3 +161,64 @@ def test_rows_that_make_no_sense_are_left_out_and_emptied() -> None:
 @given(st.binary(min_size=128, max_size=128))
 def test_rows_that_no_parameter_has_can_be_written_again(image: bytes) -> None:
     assert unpack(b"".join(map(pack, unpack(image)))) == unpack(image)
+
+
+def kept() -> ParameterTree:
+    tree = ParameterTree()
+    tree.keep_in(ParameterRows([FREE] * 8_128, {}), lambda: None, {})
+    return tree
+
+
+EXCESSIVE = {
+    "a text": ("/big", "y" * 8_000_000),
+    "a larger text": ("/big", "y" * 60_000_000),
+    "bytes": ("/big", b"y" * 8_000_000),
+    "a list": ("/big", [0] * 700_000),
+    "many names": ("/big", dict.fromkeys(map(str, range(50_000)), 1)),
+    "a name": ("/" + "a" * 1_000_000, 1),
+    "a deep name": ("/a" * 101, 1),
+}
+
+
+@pytest.mark.parametrize(("key", "value"), EXCESSIVE.values(), ids=list(EXCESSIVE))
+def test_excessive_parameter_is_refused_before_rows_are_made(
+    key: str, value: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def rows_made(name: str, text: str) -> None:
+        raise AssertionError("rows were made")
+
+    tree = kept()
+    tree.set("/small", 1)
+    monkeypatch.setattr(rows_module, "rows_for", rows_made)
+    with pytest.raises(ROSException) as refused:
+        tree.set(key, value)
+    assert len(str(refused.value)) < 400
+    assert tree.names() == ["/small"]
+
+
+@pytest.mark.parametrize("depth", [95, 100, 5_000, 200_000])
+def test_depth_of_a_parameter_is_bounded(depth: int) -> None:
+    value: Any = 1
+    for number in range(depth):
+        value = [value] if number % 2 else {"a": value}
+    if depth <= 98:
+        kept().set("/ns/deep", value)
+        return
+    for tree in (kept(), ParameterTree()):
+        with pytest.raises(ROSException, match="more than 100 namespaces and lists"):
+            tree.set("/ns/deep", value)
+
+
+def test_rows_of_a_long_text_are_made_in_linear_work() -> None:
+    text = "abcdefgh" * 80_000
+    rows = rows_for("/long", text)
+    assert len(rows) == 8_000
+    assert [each.text for each in records(rows)] == [text]
+
+
+@given(st.text("abc", max_size=300), st.text("abc", max_size=300))
+def test_number_of_rows_is_known_before_they_are_made(name: str, text: str) -> None:
+    assert count_rows(name, text) == len(rows_for(name, text))
+    assert list(leaf_names(name, {"a": {}, "b": {"c": text}})) == [
+        each for each, _ in leaves_of(name, {"a": {}, "b": {"c": text}})
+    ]

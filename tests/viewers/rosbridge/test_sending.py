@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cfepy.status import UsageError
+from cfepy.viewers.rosbridge import sending
 from cfepy.viewers.rosbridge.fragments import Assembly, fragments
 from cfepy.viewers.rosbridge.sending import Pacing, Wish
 
@@ -81,3 +82,26 @@ def test_pieces_that_are_too_much() -> None:
     with pytest.raises(UsageError, match="beside 16 others"):
         assembly.add({"id": 16, "num": 0, "total": 2, "data": ""}, 0.0)
     assert assembly.add({"id": 16, "num": 0, "total": 1, "data": "y"}, 601.0) == "y", "the others were given up"
+
+
+@pytest.mark.parametrize("now_s", [0.0, 1.0, 599.0, 1e6])
+def test_a_piece_that_is_refused_takes_no_place_at_any_time_since_the_boot(now_s: float) -> None:
+    assembly = Assembly(10)
+    for name in range(40):
+        with pytest.raises(UsageError, match="append fragment 2"):
+            assembly.add({"id": name, "num": 2, "total": 2, "data": ""}, now_s)
+    assert assembly.add({"id": 0, "num": 0, "total": 1, "data": "y"}, now_s) == "y"
+
+
+def test_messages_that_wait_are_bounded_in_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sending, "MOST_QUEUED_BYTES", 10)
+    pacing = Pacing[bytes](len)
+    pacing.want(None, Wish(1000, 100))
+    assert pacing.add(b"first", 0.0) == b"first"
+    for each in (b"1234", b"5678", b"9abc"):
+        assert pacing.add(each, 0.1) is None
+    assert pacing.dropped == 1
+    assert pacing.due(1.0) == b"5678"
+    for _ in range(3):
+        pacing.add(b"wxyz", 1.1)
+    assert pacing.due(2.0) == b"wxyz"
