@@ -15,6 +15,7 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterable
+from types import CodeType
 from typing import Literal, overload
 
 from cfepy.garbage import no_collection
@@ -51,6 +52,23 @@ def parsed(source: str | bytes, file: str = "<unknown>", *, mode: Literal["exec"
             return ast.parse(source, file, mode)
     except (RecursionError, MemoryError):  # the latter is what the parser makes of thousands of brackets
         raise TooDeepError(f"{_TOO_DEEP} for Python; take it apart", (file, 1, 1, None)) from None
+
+
+def compiled(source: str | bytes | ast.Module, file: str) -> CodeType:
+    """Compile a module of a mission with its asserts, however Python was started.
+
+    A run must not depend on `python -O` or PYTHONOPTIMIZE.
+
+    Args:
+        source: its text or its tree.
+        file: its name, for tracebacks.
+
+    Raises:
+        SyntaxError: it is not Python.
+        ValueError: it has a NUL byte.
+    """
+    code: CodeType = compile(source, file, "exec", dont_inherit=True, optimize=0)
+    return code
 
 
 @overload

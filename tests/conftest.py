@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from tests import quick
+pytest.register_assert_rewrite("tests")  # what tests share says as much when it fails, and is not left out by python -O
+
+from tests import quick  # noqa: E402
 
 pytest_plugins = ["pytester", "cfepy.testing.plugin"]  # the latter has this name when it is installed, too
 

@@ -14,17 +14,18 @@ class Sensor:
 
     reads = 0
 
-    @CachedProperty
-    def value(self) -> int:
-        """What it measures."""
+    def read(self) -> int:
+        """Read it."""
         self.reads += 1
         return self.reads
+
+    value = CachedProperty(read)
 
 
 def test_it_is_made_once_for_each_object() -> None:
     first, second = Sensor(), Sensor()
     assert (first.value, first.value, second.value, first.reads) == (1, 1, 1, 1)
-    assert Sensor.value.__doc__ == "What it measures."
+    assert Sensor.value.__doc__ == Sensor.read.__doc__
     with pytest.raises(TypeError, match="without calling __set_name__"):
         CachedProperty(len).__get__(first)
 

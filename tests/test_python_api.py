@@ -20,6 +20,7 @@ from tests import python_api
 ROOT = Path(__file__).parents[1]
 GUIDE = ROOT / "docs" / "python_api.md"
 MISSIONS = ROOT / "tests" / "quality" / "missions"
+needs_docstrings = pytest.mark.skipif(sys.flags.optimize > 1, reason="python -OO leaves docstrings out")
 EXAMPLES = re.findall(r"^```python\n(.*?)^```", GUIDE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 
 
@@ -41,6 +42,7 @@ def test_no_name_is_that_of_a_package() -> None:
     assert not packages & set(cfepy.__all__)
 
 
+@needs_docstrings
 @pytest.mark.parametrize("name", sorted(set(cfepy.__all__) - {"__version__"}))
 def test_everything_is_documented(name: str) -> None:
     thing: Any = getattr(cfepy, name)
@@ -49,6 +51,7 @@ def test_everything_is_documented(name: str) -> None:
         assert inspect.getdoc(value), f"{name}.{member}"
 
 
+@needs_docstrings
 def test_the_options_are_those_of_a_plan() -> None:
     """Each attribute of a plan is an option, but for what the mission itself says."""
     from cfepy.pilot import RunPlan
@@ -60,6 +63,7 @@ def test_the_options_are_those_of_a_plan() -> None:
         assert f"`{option}`" in inspect.getdoc(cfepy.run)  # type: ignore[operator]
 
 
+@needs_docstrings
 def test_the_reference_is_not_stale() -> None:
     assert python_api.PAGE.read_text(encoding="utf-8") == python_api.page(), "python -m tests.python_api"
 

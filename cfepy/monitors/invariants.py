@@ -20,6 +20,7 @@ from cfepy.mission import sources
 from cfepy.monitors.predicate import LATEST, Predicate
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.status import UsageError
+from cfepy.syntax_trees import compiled
 
 NAMES = ("msg", "last", LATEST, "topic", "sender", "t", "count")
 CAUSE = "cause"
@@ -207,7 +208,7 @@ def code_of(invariant: Invariant) -> Any:
     assert invariant.file is not None
     space: dict[str, Any] = {"__name__": invariant.file.stem, "__file__": str(invariant.file)}
     try:
-        exec(compile(read_limited(invariant.file, PYTHON_BYTES), str(invariant.file), "exec"), space)
+        exec(compiled(read_limited(invariant.file, PYTHON_BYTES), str(invariant.file)), space)
         found = space[invariant.function]
         return found() if isinstance(found, type) else found
     except Exception as error:

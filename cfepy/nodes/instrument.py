@@ -16,7 +16,7 @@ from types import CodeType
 from typing import NamedTuple, TypeVar
 
 from cfepy.nodes.ordered_sets import with_ordered_sets
-from cfepy.syntax_trees import FUNCTION, MODULE, NameScopes, parsed
+from cfepy.syntax_trees import FUNCTION, MODULE, NameScopes, compiled, parsed
 
 READING_METHODS = frozenset(
     {
@@ -93,8 +93,7 @@ def compile_with_hooks(source: bytes | str, file: str, kinds: Kinds, ordered: bo
     tree = parsed(source, file)
     if ordered:
         tree = with_ordered_sets(tree)
-    code: CodeType = compile(_Hooking(tree, kinds, file).visit(tree), file, "exec", dont_inherit=True)
-    return code
+    return compiled(_Hooking(tree, kinds, file).visit(tree), file)
 
 
 def lines_to_reach(source: bytes | str, file: str, is_main: bool) -> list[int]:

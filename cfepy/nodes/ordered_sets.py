@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from types import CodeType
 from typing import Any
 
-from cfepy.syntax_trees import parsed
+from cfepy.syntax_trees import compiled, parsed
 
 SET_NAME = "__ordered_set__"
 
@@ -183,8 +183,7 @@ def compile_ordered(source: bytes | str, file: str) -> CodeType:
     Raises:
         SyntaxError: as `compile` does.
     """
-    code: CodeType = compile(with_ordered_sets(parsed(source, file)), file, "exec", dont_inherit=True)
-    return code
+    return compiled(with_ordered_sets(parsed(source, file)), file)
 
 
 def with_ordered_sets(tree: ast.Module) -> ast.Module:

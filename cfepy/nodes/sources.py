@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.input_files import read_limited
 from cfepy.input_limits import PYTHON_BYTES
+from cfepy.syntax_trees import compiled
 
 if TYPE_CHECKING:
     from cfepy.nodes.instrument import Kinds
@@ -97,7 +98,7 @@ def _compile(source: bytes, path: str, ordered: bool, kinds: Kinds | None) -> Co
 
         return compile_with_hooks(source, path, kinds, ordered)
     if not ordered:
-        return compile(source, path, "exec", dont_inherit=True)
+        return compiled(source, path)
     from cfepy.nodes.ordered_sets import compile_ordered
 
     return compile_ordered(source, path)
@@ -115,7 +116,10 @@ def code_of_library(spec: importlib.machinery.ModuleSpec) -> CodeType:
         loader = spec.loader
         if not isinstance(loader, importlib.machinery.SourceFileLoader):
             raise ImportError(f"{spec.name} is not a Python source file, so it cannot be loaded into a node")
-        code = loader.get_code(spec.name)
+        if sys.flags.optimize:  # Python's cache has the code without asserts
+            code = compiled(loader.get_data(loader.path), loader.path)
+        else:
+            code = loader.get_code(spec.name)
         if code is None:
             raise ImportError(f"{spec.name} has no code")
         _compiled[key] = code

@@ -12,6 +12,7 @@ import pytest
 from cfepy.nodes.accesses import Accesses, Touch
 from cfepy.nodes.instrument import Kinds, compile_with_hooks
 from cfepy.rtos import Policy, make_kernel
+from cfepy.syntax_trees import compiled
 from tests.nodes.programs import PROGRAMS
 
 ALL = Kinds(accesses=True, lines=True, calls=False, is_main=True)
@@ -30,9 +31,7 @@ def flown(source: str, kinds: Kinds | None, policy: Policy | None = None) -> tup
     vars(module).update(vars(builtins))
     vars(module).update(accesses.hooks())
     names["__builtins__"] = vars(module)
-    code = (
-        compile(source, FILE, "exec", dont_inherit=True) if kinds is None else compile_with_hooks(source, FILE, kinds)
-    )
+    code = compiled(source, FILE) if kinds is None else compile_with_hooks(source, FILE, kinds)
     accesses.adopt(names)
     ended: Any = None
     linecache.cache[FILE] = (len(source), None, source.splitlines(True), FILE)
