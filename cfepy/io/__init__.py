@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from cfepy.io.host_network import Guest, HostNetwork
     from cfepy.io.own_names import OwnNames, is_this_computer
     from cfepy.io.peer_counts import INTO, OUT_OF, PeerCount, PeerCounts
-    from cfepy.io.peer_places import InputRoom, PeerPlaces, Turn
+    from cfepy.io.peer_places import InputRoom, InputTurn, PeerPlaces
     from cfepy.io.peer_socket import ENDED, Listening, PeerSocket, listening_socket
     from cfepy.io.typed_lines import TypedLines
     from cfepy.io.udp import UdpListener, own_address, send
@@ -32,13 +32,13 @@ __all__ = [
     "Guest",
     "HostNetwork",
     "InputRoom",
+    "InputTurn",
     "Listening",
     "OwnNames",
     "PeerCount",
     "PeerCounts",
     "PeerPlaces",
     "PeerSocket",
-    "Turn",
     "TypedLines",
     "UdpListener",
     "is_this_computer",
@@ -68,7 +68,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".peer_places": (
                 "InputRoom",
                 "PeerPlaces",
-                "Turn",
+                "InputTurn",
             ),
             ".peer_socket": (
                 "ENDED",

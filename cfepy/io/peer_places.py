@@ -111,7 +111,7 @@ class InputRoom:
         self.size -= self._held.pop(peer, 0)
 
 
-class Turn:
+class InputTurn:
     """The wall time for what clients ask for between two pieces of a run.
 
     Args:

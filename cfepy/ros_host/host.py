@@ -19,7 +19,7 @@ from xmlrpc.client import dumps
 
 from cfepy.ground import APPLICATIONS, CLOCK, TOO_SHORT, ShownPackets
 from cfepy.input_limits import ROS_PUBLISHERS
-from cfepy.io import OUT_OF, InputRoom, OwnNames, PeerCounts, PeerPlaces, Turn
+from cfepy.io import OUT_OF, InputRoom, InputTurn, OwnNames, PeerCounts, PeerPlaces
 from cfepy.mission import Mission
 from cfepy.ros_host.errands import Errands
 from cfepy.ros_host.mission_node import ANY, MissionNode, OutsideClient
@@ -95,7 +95,9 @@ class RosHost:
         self.errands = Errands(tell)
         self.counts = PeerCounts()
         names = OwnNames(filter(None, (environ.get("ROS_HOSTNAME"), environ.get("ROS_IP"))))
-        self.bounds = ServerBounds(names, PeerPlaces(), InputRoom(), Turn(), deque(), self.errands.nudge, self.now_s)
+        self.bounds = ServerBounds(
+            names, PeerPlaces(), InputRoom(), InputTurn(), deque(), self.errands.nudge, self.now_s
+        )
         self.pid = os.getpid()
         self.tell = tell
         self.ros: RosRuntime | None = None

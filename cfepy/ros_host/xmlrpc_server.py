@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from xmlrpc.client import Fault, dumps
 
 from cfepy.input_limits import RPC_ANSWER_BYTES, RPC_BYTES, RPC_CALLS
-from cfepy.io import InputRoom, Listening, OwnNames, PeerPlaces, PeerSocket, Turn, listening_socket
+from cfepy.io import InputRoom, InputTurn, Listening, OwnNames, PeerPlaces, PeerSocket, listening_socket
 from cfepy.ros_host.rpc_body import RpcError, read_body
 
 LONGEST_HEAD = 1 << 14  # bytes
@@ -46,7 +46,7 @@ class ServerBounds(NamedTuple):
     names: OwnNames
     places: PeerPlaces
     room: InputRoom
-    turn: Turn
+    turn: InputTurn
     late: deque[_Connection]
     nudge: Callable[[], object]
     now_s: Callable[[], float]

@@ -16,7 +16,7 @@ from selectors import EVENT_READ, DefaultSelector
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 from urllib.parse import parse_qs, urlsplit
 
-from cfepy.io import InputRoom, Listening, Turn, listening_socket
+from cfepy.io import InputRoom, InputTurn, Listening, listening_socket
 from cfepy.status import UsageError
 from cfepy.viewers.listen import ListenPlace
 from cfepy.viewers.websocket import WebSocket, protocols
@@ -143,7 +143,7 @@ class WebSocketListener(Generic[C]):
         self._connections: dict[WebSocket, _Connection[C]] = {}
         self._ending: dict[WebSocket, float] = {}
         self._room = InputRoom()
-        self._turn = Turn()
+        self._turn = InputTurn()
         self._turns = 0
         self._is_over = False
         self._near, self._far = socket.socketpair()

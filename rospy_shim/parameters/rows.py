@@ -99,8 +99,8 @@ class ParameterRows:
         needed = sum(count_rows(each, text) for each, text in new.items() if each not in kept)
         free = self.free + released
         if needed > free:
-            rows = f"{needed} rows of {len(self.rows)}, {free} are free"
-            raise ParametersFull(f"the parameter tables are full: {_shown(name)} takes {rows}")
+            room = f"{needed} rows of {len(self.rows)}, {free} are free"
+            raise ParametersFull(f"the parameter tables are full: {_shown(name)} takes {room}")
         coming = {each: rows_for(each, text) for each, text in new.items() if each not in kept}
         for record in going:
             if record.name not in kept and not self._in_place(record, new, coming):

@@ -72,7 +72,7 @@ class ServersRun:
             self.network.join(guest)
         while "/switch" not in (self.mission.ros.graph.services if self.mission.ros is not None else ()):
             self.go_on()
-        self.go_on()
+        self.host.see()
         self.cases = 0
         self._lines = len(self.mission.console.lines)
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable
-from functools import wraps
 from typing import Any, Concatenate, ParamSpec
 
 from cfepy.io import INTO, OUT_OF, PeerCounts
@@ -49,8 +48,7 @@ P = ParamSpec("P")
 def _alone(step: Callable[Concatenate[RosbridgeClient, P], None]) -> Callable[Concatenate[RosbridgeClient, P], None]:
     """Let an error of a step that the mission takes for a client end the client's connection, and nothing else."""
 
-    @wraps(step)
-    def guarded(client: RosbridgeClient, *values: P.args, **named: P.kwargs) -> None:
+    def guarded(client: RosbridgeClient, /, *values: P.args, **named: P.kwargs) -> None:
         try:
             step(client, *values, **named)
         except Exception as error:

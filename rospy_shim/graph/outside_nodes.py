@@ -1,0 +1,263 @@
+"""Nodes outside of the mission, as the two sides of a topic or a service see theirs.
+
+They stand for programs on the computer that the run is on. Nothing here waits for them: a message for an outside
+subscriber is handed on at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+from cfepy.sb import Outlet
+from cfepy.status import CfeError
+from rospy_shim.client.link import Link
+from rospy_shim.client.subscription import Subscription
+from rospy_shim.client.transport import (
+    EVERYBODY,
+    HEADER_BYTES,
+    SPARE_AT,
+    WHOLE,
+    Assembler,
+    segments,
+    sequence_of,
+    whole_header,
+)
+from rospy_shim.graph.compiled import CompiledService, DeclaredType
+
+if TYPE_CHECKING:
+    from cfepy.app import Cfe
+    from cfepy.rtos import Kernel
+    from cfepy.sb import Pipe
+    from rospy_shim.graph.graph import Graph, Header, TopicEntry
+
+
+class OutsideNode:
+    """A node outside of the mission, as the two sides of a topic see theirs.
+
+    Args:
+        name: its full name.
+        uri: where it answers.
+        graph: the mission's ROS graph.
+        cfe: the services.
+        kernel: the simulated computer's.
+    """
+
+    call_ns = publish_slot_ns = pid = 0
+    owner = None
+    config = SimpleNamespace(app="host")  # in whose name its messages are sent, as the watches of the bus see it
+
+    def __init__(self, name: str, uri: str, graph: Graph, cfe: Cfe, kernel: Kernel) -> None:
+        self.names = SimpleNamespace(name=name)
+        self.uri = uri
+        self.client = SimpleNamespace(get_node_uri=lambda: self.uri)
+        self.graph = graph
+        self.cfe = cfe
+        self.kernel = kernel
+
+    def working(self, name: str, unpack: Any) -> Any:
+        """Its callbacks take none of the mission's time."""
+        return unpack
+
+
+class OutsideLink(Link):
+    """The publishing side of an outside node: what came from it is sent on the bus.
+
+    Args:
+        node: the publisher.
+        topic: the topic, which it has joined.
+        declared: type of the messages.
+        latching: it latches.
+    """
+
+    is_outside = True
+
+    def __init__(self, node: OutsideNode, topic: TopicEntry, declared: DeclaredType, latching: bool) -> None:
+        as_node: Any = node
+        as_class: Any = declared
+        super().__init__(as_node, topic.name, as_class)
+        self.topic = topic
+        self.raw = topic.raw
+        self.msg_id = topic.msg_id
+        self.is_latch = latching
+        self.header |= self._own_header()
+        topic.add_link(self)
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self.closed = True
+        self._routes = {}
+        if self.topic is not None:
+            self.topic.remove_link(self)
+            self.topic.leave()
+            self.topic = None
+
+    def has_room(self, payload: bytes) -> bool:
+        """Whether the bus and every subscriber take a message now, or drop an older one for it.
+
+        One whose queue is longer than a pipe can be drops none: what the pipe does not hold can wait outside.
+        """
+        count = -(-len(payload) // self._room) or 1
+        route = self._routes.get(self.msg_id)
+        return route is None or (
+            self._bus.has_room(payload) and all(self._takes(each.pipe, count) for each in route.active)
+        )
+
+    def _takes(self, pipe: Pipe, count: int) -> bool:
+        if len(pipe.items) + count <= pipe.depth:
+            return True
+        drops = pipe.keeps_newest and count <= pipe.depth
+        return drops and not any(each.is_cut_short(pipe) for each in self.peers)
+
+    def enter(self, payload: bytes) -> bool:
+        """A message came; False when the bus did not take it."""
+        self.seq += 1
+        self.message_data_sent += len(payload)
+        if self.is_latch:
+            self.latch = payload
+        route = self._routes.get(self.msg_id)
+        if self.topic is None or route is None or not route.active:
+            return True
+        try:
+            packets = self._packets(payload)
+            if self.raw and int.from_bytes(packets[0][:2], "big") != self.msg_id:
+                return False
+            for index, packet in enumerate(packets):
+                self._note(index)
+                self._bus.transmit_msg(packet)
+        except CfeError:
+            return False
+        return True
+
+    def _packets(self, payload: bytes) -> list[bytes]:
+        if self.raw:
+            return [payload[12:]]  # behind the fields of an empty layout and the length of the data
+        if len(payload) <= self._room:
+            return [whole_header(self.msg_id) + payload]
+        packets = list(segments(self.msg_id, payload, self._room))
+        for subscription in self.peers:
+            subscription.expect_segments(len(packets))
+        return packets
+
+    def serialize(self, message: Any) -> bytes:
+        """A latched message, which is kept as it came."""
+        return bytes(message)
+
+    def give_latched(self, subscription: Subscription) -> None:
+        """See `Link.give_latched`; another outside node is connected with the publisher itself."""
+        if self.is_latch and self.latch is not None and not self.raw and not subscription.is_outside:
+            subscription.deliver(self.latch, self.header)
+            if self.topic is not None:
+                self.topic.latched += 1
+
+
+class OutsideSubscription(Subscription):
+    """The subscribing side of an outside node: what it hears goes out.
+
+    Args:
+        node: the subscriber.
+        topic: the topic, which it has joined.
+        declared: type that it wants.
+        outsiders: says whether a message comes from an outside node that has sent it to this one already.
+        out: takes publisher and message.
+    """
+
+    is_outside = True
+
+    def __init__(
+        self,
+        node: OutsideNode,
+        topic: TopicEntry,
+        declared: DeclaredType,
+        outsiders: Callable[[], bool],
+        out: Callable[[str, bytes], object],
+    ) -> None:
+        as_node: Any = node
+        as_class: Any = declared
+        super().__init__(as_node, topic.name, as_class)
+        self.topic = topic
+        self.has_begun = True
+        self.publishers: list[str] = []  # with which it is connected
+        self._outsiders = outsiders
+        self._out = out
+        self._raw = topic.raw
+        self._together = Assembler()
+        self._outlet = Outlet(node.cfe.sb, topic.msg_id, f"{node.names.name}{topic.name}", self._take)
+        topic.add_subscription(self)
+
+    def expect_segments(self, count: int) -> None:
+        """Nothing waits here."""
+
+    def ignore(self, link: Link) -> None:
+        """See `Subscription.ignore`."""
+        self._outlet.ignore(link.node.owner)
+
+    def heed(self, link: Link) -> None:
+        """See `Subscription.heed`."""
+        self._outlet.heed(link.node.owner)
+
+    def deliver(self, payload: bytes, header: Header) -> None:
+        """See `Subscription.deliver`."""
+        self._out(header["callerid"], payload)
+
+    def close(self) -> None:
+        """Leave the graph."""
+        if self.topic is not None:
+            self.topic.remove_subscription(self)
+            self.topic.leave()
+            self.topic = None
+            self._outlet.close()
+
+    def _take(self, packet: bytes) -> None:
+        topic = self.topic
+        if topic is None or self._outsiders():
+            return
+        if self._raw:
+            self._out(topic.sender_of(packet)["callerid"], bytes(8) + len(packet).to_bytes(4, "little") + packet)
+            return
+        if packet[SPARE_AT:HEADER_BYTES] != EVERYBODY:
+            return
+        whole: bytes | None = packet
+        if packet[2] < WHOLE:
+            header, index = topic.notes.get(sequence_of(packet), (None, None))
+            whole = self._together.add(packet, header["callerid"] if header is not None else "", index)
+        if whole is not None:
+            self._out(topic.sender_of(packet)["callerid"], whole[HEADER_BYTES:])
+
+
+class OutsideService(CompiledService):
+    """A service that an outside node offers.
+
+    Args:
+        node: which one.
+        name: resolved name of the service.
+        declared: its type.
+        uri: where it is called, rosrpc://HOST:PORT.
+        open_outlet: makes what takes its requests; a service that nobody calls needs no MsgId.
+    """
+
+    def __init__(
+        self,
+        node: OutsideNode,
+        name: str,
+        declared: DeclaredType,
+        uri: str,
+        open_outlet: Callable[[], Outlet],
+    ) -> None:
+        as_node: Any = node
+        super().__init__(as_node, name, declared)
+        self.uri = uri
+        self._open = open_outlet
+        self._outlet: Outlet | None = None
+
+    def has_room(self, packet: bytes) -> bool:
+        """A request goes out at once."""
+        if self._outlet is None:
+            self._outlet = self._open()
+        return True
+
+    def close(self) -> None:
+        """It is called no more."""
+        if self._outlet is not None:
+            self._outlet.close()
