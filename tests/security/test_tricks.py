@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
+from tests.security.package_tricks import PACKAGE_TRICKS
 from tests.security.tricks import CANARY, HARMLESS, TRICKS, Trick
 
 QUICKER = {
@@ -23,12 +24,23 @@ def test_a_trick_does_nothing(
 ) -> None:
     for name, limit in QUICKER.items():
         monkeypatch.setattr(name, limit)
+    check(trick, tmp_path, capsys)
+
+
+@pytest.mark.parametrize("trick", PACKAGE_TRICKS, ids=[trick.name for trick in PACKAGE_TRICKS])
+def test_a_trick_of_a_package_does_nothing(trick: Trick, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    check(trick, tmp_path, capsys)
+
+
+def check(trick: Trick, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Do what a trick asks for; it must fail as it should, or do nothing, and write nowhere but below `out`."""
     trick.make(tmp_path)
     before = set(tmp_path.rglob("*"))
     status = main(trick.words.replace("{}", str(tmp_path)).split())
     out, err = capsys.readouterr()
     assert not list(tmp_path.rglob(CANARY)), "code of the file has run, or it has left its folder"
-    assert set(tmp_path.rglob("*")) - before <= {tmp_path / "out"}
+    made = set(tmp_path.rglob("*")) - before
+    assert all(each.is_relative_to(tmp_path / "out") for each in made)
     assert "Traceback" not in err + out
     assert status in (0, 1, 2)
     if trick.said != HARMLESS:
