@@ -104,10 +104,23 @@ def parsed_input(source: str | bytes, file: str = "<unknown>", *, mode: Literal[
     return tree
 
 
+def _inside(nodes: list[ast.AST]) -> list[ast.AST]:
+    """The parts of nodes; `ast.iter_child_nodes` takes three times as long."""
+    found: list[ast.AST] = []
+    for node in nodes:
+        for name in node._fields:
+            value = getattr(node, name, None)
+            if isinstance(value, list):
+                found += [each for each in value if isinstance(each, ast.AST)]
+            elif isinstance(value, ast.AST) and not isinstance(value, ast.expr_context):
+                found.append(value)
+    return found
+
+
 def _check_depth(tree: ast.AST, file: str) -> None:
     level: list[ast.AST] = [tree]
     for _ in range(PYTHON_DEPTH):
-        level = [inner for node in level for inner in ast.iter_child_nodes(node)]
+        level = _inside(level)
         if not level:
             return
     line = next((node.lineno for node in level if isinstance(node, ast.expr | ast.stmt)), 1)

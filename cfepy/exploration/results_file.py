@@ -149,7 +149,7 @@ def whole_lines(file: Any, path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         line += 1
         try:
             record = json.loads(data)
-        except ValueError:
+        except (ValueError, RecursionError):
             record = None
         if not isinstance(record, dict):
             raise _damaged(path, line)

@@ -13,7 +13,14 @@ from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 from cfepy.c.engine import compiler
+from cfepy.c.toolchain.sources import read_cmake_lists
 from cfepy.cli.ros.rostest import read_results as read_test_results
+from cfepy.convert.check.source import read_source
+from cfepy.convert.names import SourceNames, names_of
+from cfepy.convert.output import write_files
+from cfepy.convert.packages import program_of, read_package
+from cfepy.convert.project import cmake_word
+from cfepy.convert.sources import collect, main_form
 from cfepy.debugger.breakpoints import breakpoints
 from cfepy.es.startup_script import check, entries
 from cfepy.exploration.results_file import read_failures, read_results
@@ -25,18 +32,22 @@ from cfepy.ground.fields import steps_of, value_at
 from cfepy.ground.files import table_yaml
 from cfepy.ground.files.dump_files import read_dump
 from cfepy.ground.files.table_file import defects_of, document, take_apart
+from cfepy.ground.names import constants_in
 from cfepy.ground.parameters import of_files
 from cfepy.ground.recording import summary_of
 from cfepy.ground.values import packet_of
 from cfepy.ground.xtce import xtce_of
 from cfepy.journal import read_journal
 from cfepy.marked_yaml import Mistakes, load
-from cfepy.mission import MissionSpec, read_mission
+from cfepy.mission import MissionSpec, read_mission, sources
 from cfepy.mission.finding import read_lock
 from cfepy.mission.mission_file import read_mission_file
 from cfepy.monitors import read_demands
 from cfepy.msg import Layout, Telemetry
 from cfepy.pilot.check import check_mission
+from cfepy.pilot.check.cfe_names import wrong_names
+from cfepy.pilot.determinism_look import suspects
+from cfepy.plain_xml import XmlError, plain_xml
 from cfepy.plain_yaml import YamlError
 from cfepy.psp.profile import load_profile
 from cfepy.rtos import Schedule
@@ -316,6 +327,56 @@ def manifest(data: bytes, path: Path) -> None:
     list(Packages(path.parent / "x.py", {}).names())
 
 
+def cmake_lists(data: bytes, path: Path) -> None:
+    """A CMakeLists.txt, of a catkin package and of an application of cFS."""
+    (path.parent / "src").mkdir(exist_ok=True)
+    for name in ("src/one.cpp", "src/two.c", "one.cpp"):
+        (path.parent / name).write_text("int a;\n")
+    package = read_package(path.parent, "demo", testing=True)
+    for node_type in (*package.executables(), *package.nodelets()):
+        with suppress(UsageError):
+            program = program_of(package, node_type, Packages(path, {}))
+            for word in program.definitions:
+                cmake_word(word, path)
+    with suppress(UsageError):
+        read_cmake_lists(path.parent)
+
+
+def package_manifest(data: bytes, path: Path) -> None:
+    """A package.xml, and a file of plugins."""
+    (path.parent / "plugins.xml").write_bytes(data)
+    (path.parent / "CMakeLists.txt").write_text("add_library(n n.cpp)\n")
+    package = read_package(path.parent, "demo")
+    package.executables()
+    package.nodelets()
+    with suppress(XmlError):
+        plain_xml(data)
+
+
+def cpp_source(data: bytes, path: Path) -> None:
+    """A source of a node in C++."""
+    found = collect([path], [path.parent])
+    names_of(SourceNames(list(found.texts.values()), {"p": "x"}).used(), "/", "/n", [])
+    with suppress(UsageError):
+        main_form([path], path)
+    read_source(path, data)
+
+
+def python_source(data: bytes, path: Path) -> None:
+    """A source in Python, as checks look into it."""
+    if sources.syntax_error(path) is None:
+        list(wrong_names(path, "A_Main"))
+        sources.defines(path, "A_Main")
+    suspects(str(path))
+    list(constants_in(path))
+
+
+def output_list(data: bytes, path: Path) -> None:
+    """The list of what `cfepy convert` wrote the last time."""
+    with suppress(OSError):  # which the command tells, such as a name that is too long
+        write_files(path.parent, {"a/b": b"1"}, force=True)
+
+
 def names(data: bytes, path: Path) -> None:
     """A mission's name and descriptions in XTCE, which any XML reader must take."""
     from xml.etree import ElementTree
@@ -430,6 +491,65 @@ FULL = (
     f"{MESSAGE}{'=' * 80}\nMSG: geometry_msgs/Pose\nOther position\n{'=' * 80}\nMSG: geometry_msgs/Other\nfloat64 x\n"
 )
 FULL += f"{'=' * 80}\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
+CMAKE = """cmake_minimum_required(VERSION 3.0.2)
+project(demo)
+set(SOURCES src/one.cpp "src/two.c")
+list(APPEND SOURCES ${SOURCES})
+if(NOT DEFINED X AND (UNIX OR ${PROJECT_NAME} STREQUAL "demo") AND 3.10 VERSION_GREATER 2)
+  foreach(i RANGE 0 3)
+    add_library(l${i} ${SOURCES})
+  endforeach()
+else()
+  add_subdirectory(src)
+endif()
+file(GLOB_RECURSE ALL src/*.c* *.cpp)
+macro(both name)
+  add_executable(${name} ${ARGN}) # and what it needs
+  target_link_libraries(${name} l0 l1 ${catkin_LIBRARIES})
+endmacro()
+find_package(catkin REQUIRED COMPONENTS roscpp std_msgs)
+both(node ${ALL})
+add_definitions(-DA="b c" -DE=\\"f\\")
+add_cfe_app(demo ${SOURCES})
+add_cfe_tables(demo fsw/tables/t.c)
+#[[ what
+is left out ]]
+include_directories(include ${X_MISSION_DIR}/fsw/inc)
+"""
+PACKAGE = """<?xml version="1.0"?>
+<!DOCTYPE package [<!ENTITY a "text">]>
+<package format="2"><name>demo</name><version>0.0.0</version><depend>roscpp</depend>
+<export><nodelet plugin="${prefix}/plugins.xml"/></export>
+<library path="lib/libn"><class name="demo/N" type="demo::N" base_class_type="nodelet::Nodelet">&a;</class></library>
+</package>
+"""
+CPP = """#include <ros/ros.h>
+#include "input"
+#define NAME "odom" /* of the topic */
+class A { ros::NodeHandle nh, p{"~"}; ros::Subscriber s; message_filters::Subscriber<a::B> f{nh, "x", 1};
+  A() : p(nh, "q") { s = nh.subscribe<std_msgs::String>(NAME, 1, boost::bind(&A::on, this, _1)); throw 1; } };
+int main(int argc, char **argv) { std::string t = "y"; ros::NodeHandle n("~"), m(n, "a");
+  n.param("p", t, std::string("z"));
+  ros::Publisher out = n.advertise<a::B>(t, 10); actionlib::SimpleActionServer<a::C> c(n, "act", false); // \"'
+  n.createTimer(ros::Duration(1), [&](const ros::TimerEvent &) { new int('\\''); }); return R"(a)"[0]; }
+"""
+PYTHON = """import rospy
+from cfepy.app import Cfe
+STATUS_MID = 0x0883
+class A:
+    def __init__(self, cfe: Cfe) -> None:
+        self.cfe = cfe
+def A_Main(cfe):
+    held = A(cfe).cfe.sb
+    while (key := held.receive_buffer(1, -1)) is not None and [x.a.b for x in {1, 2}]:
+        try:
+            cfe.evs.sent_event(1, f"{key!r:>{3}}")
+        except (AttributeError, TypeError):
+            match key:
+                case {"a": [1, *rest]}:
+                    lambda *a, b=1, **c: (yield)
+"""
+WRITTEN = '{"a/b": "6b86b273ff34fce19d6b804eff5a3f57", "c": "x", "../d": "y"}'
 EXPRESSIONS = (
     "1 + 2 * 3 ** 2 // 5 % 7",
     "[i * 2 for i in range(10) if i % 2]",
@@ -513,6 +633,13 @@ KINDS = {
         ),
         Kind("breakpoints", texts("/joint_states", "CFE_ES:3", "0x910", "msg.data > 3 and t > 1", "HK:ERROR"), breaks),
         Kind("test-results", texts(JUNIT), junit, "results.xml"),
+        Kind(
+            "cmake-lists", lambda: [*texts(CMAKE)(), *files("tests/**/CMakeLists.txt")()], cmake_lists, "CMakeLists.txt"
+        ),
+        Kind("package-manifest", texts(PACKAGE), package_manifest, "package.xml"),
+        Kind("cpp-source", lambda: [*texts(CPP)(), *files("tests/convert/nodes/**/*.cpp")()], cpp_source, "input.cpp"),
+        Kind("python-source", lambda: [*texts(PYTHON)(), *files("apps/*/app.py")()], python_source, "input.py"),
+        Kind("output-list", texts(WRITTEN), output_list, ".cfepy-convert.json"),
         Kind("manifest", texts("<package><name>arm</name></package>", "setup(package_dir={'': 'src'})"), manifest),
         Kind("xtce-names", texts("capture", "a b/c", "\x1b[0m"), names),
         Kind("shared-object", shared_objects, shared_object, "startup.scr"),

@@ -9,7 +9,16 @@ import pytest
 from tests.fuzz.kinds import KINDS
 from tests.fuzz.runs import failures
 
-SLOW = {"mission": 3, "table": 5, "table-yaml": 5, "launch": 10, "service-definition": 10, "manifest": 10}
+SLOW = {
+    "mission": 3,
+    "table": 5,
+    "table-yaml": 5,
+    "launch": 10,
+    "service-definition": 10,
+    "manifest": 10,
+    "python-source": 8,
+    "cpp-source": 15,
+}
 """Kinds of which a case takes long, and how many of them are done here."""
 
 

@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from cfepy.cli.main import main
+from tests.security.package_tricks import PACKAGE_TRICKS
 from tests.security.tricks import CANARY, HARMLESS, TRICKS, Trick
 
+SECONDS = 30
+"""Of the processor, for a trick; most take one."""
+MEMORY = 500 << 10
+"""KB that a trick may take."""
 QUICKER = {
+    "cfepy.c.toolchain.cmake_script.CMAKE_CHARACTERS": 1_000_000,
+    "cfepy.c.toolchain.cmake_script.CMAKE_COMMANDS": 20_000,
+    "cfepy.c.toolchain.cmake_script.CMAKE_FILES": 5_000,
+    "cfepy.convert.packages.CPP_FILES": 500,
+    "cfepy.syntax_trees.PYTHON_WORDS": 50_000,
     "rospy_shim.libraries.rosbag_storage.compression.LARGEST": 10 << 20,
     "cfepy.plain_xml.XML_TAGS": 10_000,
     "rospy_shim.roslaunch.reader.LAUNCH_WORK": 100_000,
@@ -21,21 +34,61 @@ QUICKER = {
 def test_a_trick_does_nothing(
     trick: Trick, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    check(trick, tmp_path, capsys, monkeypatch)
+
+
+@pytest.mark.parametrize("trick", PACKAGE_TRICKS, ids=[trick.name for trick in PACKAGE_TRICKS])
+def test_a_trick_of_a_package_does_nothing(
+    trick: Trick, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    check(trick, tmp_path, capsys, monkeypatch)
+
+
+def check(trick: Trick, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Do what a trick asks for, with limits that are sooner reached."""
     for name, limit in QUICKER.items():
         monkeypatch.setattr(name, limit)
     trick.make(tmp_path)
     before = set(tmp_path.rglob("*"))
     status = main(trick.words.replace("{}", str(tmp_path)).split())
     out, err = capsys.readouterr()
-    assert not list(tmp_path.rglob(CANARY)), "code of the file has run, or it has left its folder"
-    assert set(tmp_path.rglob("*")) - before <= {tmp_path / "out"}
-    assert "Traceback" not in err + out
+    judge(trick, tmp_path, before, status, out + err)
+
+
+def judge(trick: Trick, folder: Path, before: set[Path], status: int, said: str) -> None:
+    """It must fail as it should, or do nothing, and write nowhere but below `out`."""
+    assert not list(folder.rglob(CANARY)), "code of the file has run, or it has left its folder"
+    assert all(each.is_relative_to(folder / "out") for each in set(folder.rglob("*")) - before)
+    assert "Traceback" not in said
     assert status in (0, 1, 2)
     if trick.said != HARMLESS:
         assert status != 0
-        assert trick.said in out + err
+        assert trick.said in said
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(os, "wait4"), reason="what a process took is not told")
+@pytest.mark.parametrize("trick", PACKAGE_TRICKS, ids=[trick.name for trick in PACKAGE_TRICKS])
+def test_a_trick_of_a_package_takes_little_with_the_limits_as_they_are(trick: Trick, tmp_path: Path) -> None:
+    import resource
+
+    def bound() -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
+
+    folder = tmp_path / "made"
+    folder.mkdir()
+    trick.make(folder)
+    before = set(folder.rglob("*"))
+    words = trick.words.replace("{}", str(folder)).split()
+    with (tmp_path / "said").open("wb") as said:
+        command = [sys.executable, "-m", "cfepy", *words]
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, preexec_fn=bound)
+        _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    judge(trick, folder, before, process.returncode, (tmp_path / "said").read_text(errors="replace"))
+    assert used.ru_maxrss < MEMORY
 
 
 def test_there_are_fifty() -> None:
     assert len(TRICKS) >= 50
-    assert len({trick.name for trick in TRICKS}) == len(TRICKS)
+    assert len({trick.name for trick in (*TRICKS, *PACKAGE_TRICKS)}) == len(TRICKS) + len(PACKAGE_TRICKS)

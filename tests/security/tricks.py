@@ -7,7 +7,7 @@ canary; where a path would leave the folder, it leads to the canary.
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -54,6 +54,16 @@ def _files(**contents: str) -> Callable[[Path], object]:
     def make(folder: Path) -> None:
         for name, content in contents.items():
             _file(name.replace("__", "."), content)(folder)
+
+    return make
+
+
+def files_of(contents: Mapping[str, str]) -> Callable[[Path], object]:
+    """Files by their paths; @ in their texts is the folder."""
+
+    def make(folder: Path) -> None:
+        for name, content in contents.items():
+            _file(name, content)(folder)
 
     return make
 

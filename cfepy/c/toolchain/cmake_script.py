@@ -61,8 +61,9 @@ class CMakeBudget:
             raise self._error(f"has more than {CMAKE_COMMANDS:,} commands to carry out, loops included")
 
     def turns(self, count: int) -> None:
-        """A loop is about to go round. Errors as `spend`."""
-        if count > self._commands:
+        """A loop is about to go round; each turn counts as a command. Errors as `spend`."""
+        self._commands -= count
+        if self._commands < 0:
             raise self._error(f"has a loop of {count:,} turns, and may have {CMAKE_COMMANDS:,} commands carried out")
 
     def spend(self, characters: int) -> None:
@@ -295,8 +296,9 @@ class CMakeScript:
                 values = [item for each in rest if each != "ITEMS" for item in self._listed(each, "LISTS" in rest)]
             case ["RANGE", *numbers] if all(map(_NUMBER.fullmatch, numbers)) and len(numbers) in (1, 2):
                 first, last = (0, *map(int, numbers))[-2:]
-                self.budget.turns(last - first)
+                self.budget.turns(max(last - first, 0))
                 values = [str(each) for each in range(first, last + 1)]
+        self.budget.turns(len(values))
         for value in values:
             self.variables[name] = [value]
             if not self._all(body):
