@@ -116,10 +116,8 @@ def code_of_library(spec: importlib.machinery.ModuleSpec) -> CodeType:
         loader = spec.loader
         if not isinstance(loader, importlib.machinery.SourceFileLoader):
             raise ImportError(f"{spec.name} is not a Python source file, so it cannot be loaded into a node")
-        if sys.flags.optimize:  # Python's cache has the code without asserts
-            code = compiled(loader.get_data(loader.path), loader.path)
-        else:
-            code = loader.get_code(spec.name)
+        in_cache = not sys.flags.optimize  # otherwise the code there has no asserts
+        code = loader.get_code(spec.name) if in_cache else compiled(loader.get_data(loader.path), loader.path)
         if code is None:
             raise ImportError(f"{spec.name} has no code")
         _compiled[key] = code

@@ -37,7 +37,7 @@ def test_node_is_the_same_under_an_optimizing_python(tmp_path: Path, option: str
     (tmp_path / "node.py").write_text(NODE)
     shown = [
         subprocess.run(
-            [sys.executable, *options, "-m", "cfepy", "node", str(tmp_path / "node.py"), "--for", "1"],
+            [sys.executable, *options, "-m", "cfepy", "run", str(tmp_path / "node.py"), "--for", "1"],
             capture_output=True,
             text=True,
             check=False,
