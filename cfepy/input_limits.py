@@ -64,6 +64,7 @@ ROS_NAME = 1_000  # characters of a name of a topic, service, node or parameter,
 ROS_REGISTRATIONS = 10_000  # of all nodes outside at a master that a mission serves
 ROS_NAMES = 1_000  # of topics and services that programs outside bring into a run: each takes a MsgId
 ROS_PUBLISHERS = 256  # outside, with which a mission connects
+ROS_CALLS = 256  # of a service, from outside, that wait for their answers
 PARAMETER_BYTES = 32 << 20  # of a parameter; the tables that keep it over a reset have room for less
 PARAMETER_DEPTH = 100  # lists and namespaces inside each other, with those of its name
 PEER_CONNECTIONS = 512  # with all nodes of a mission and its master
