@@ -133,7 +133,7 @@ class JoinedMaster:
 
         def done(uris: Any, error: Exception | None) -> None:
             if entry.kind == SUBSCRIBER and error is None:
-                self._publishers[entry.name] = list(uris)
+                self._publishers[entry.name] = list(map(str, uris))
                 self._host.soon()
 
         kind = seen.types.get(entry.name, "*")
@@ -270,13 +270,18 @@ class JoinedMaster:
 
 
 def _look_at(uri: str, caller: str, own: set[str], known: dict[str, str]) -> MasterState:
-    """Ask the master what it knows; nodes that are known already are looked up no more as long as they are there."""
-    pid = ask(uri, "getPid", caller)
+    """Ask the master what it knows; nodes that are known already are looked up no more as long as they are there.
+
+    Raises:
+        RosError, OSError: it does not answer, or not as a master does.
+        TypeError, ValueError: the same.
+    """
+    pid = int(ask(uri, "getPid", caller))
     state = ask(uri, "getSystemState", caller)
-    types = dict(ask(uri, "getTopicTypes", caller))
+    types = {str(name): str(kind) for name, kind in ask(uri, "getTopicTypes", caller)}
     kinds = (PUBLISHER, SUBSCRIBER, SERVICE)
     entries = [
-        RosEntry(kind, name, node)
+        RosEntry(kind, str(name), str(node))
         for kind, part in zip(kinds, state, strict=True)
         for name, who in part
         for node in who
@@ -284,14 +289,14 @@ def _look_at(uri: str, caller: str, own: set[str], known: dict[str, str]) -> Mas
     nodes: dict[str, str] = {}
     for node in dict.fromkeys(each.node for each in entries if each.node not in own):
         try:
-            nodes[node] = ask(uri, "lookupNode", caller, node)
+            nodes[node] = str(ask(uri, "lookupNode", caller, node))
         except RosError:
             pass  # it has left meanwhile
     services = {}
     for entry in entries:
         if entry.kind == SERVICE and entry.node in nodes:
             try:
-                services[entry.name] = ask(uri, "lookupService", caller, entry.name)
+                services[entry.name] = str(ask(uri, "lookupService", caller, entry.name))
             except RosError:
                 pass
     return MasterState(pid, entries, types, nodes, services)

@@ -258,6 +258,8 @@ class OutsideClient:
         self._node.forget(self)
         self._host.bounds.places.leave(self)
         self._host.bounds.room.release(self)
+        self._frames.clear()
+        self._requests.clear()
         if self._topic:
             topic, self._topic = self._topic, ""
             self._host.counts.of(topic, self.caller, OUT_OF).dropped += self._socket.dropped

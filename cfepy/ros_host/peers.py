@@ -153,6 +153,7 @@ class OutsidePublisher:
             self._socket.close()
             self._socket = None
         self._coming.clear()
+        self._frames.clear()
         self._host.stalled.discard(self)
         self._host.bounds.room.release(self)
         if self._name:

@@ -60,7 +60,10 @@ class _Reader:
 
     def read(self, body: bytes) -> None:
         self._target.xml(None, None)
-        self._parser.Parse(body, True)
+        try:
+            self._parser.Parse(body, True)
+        finally:
+            del self._parser  # the two hold each other, and with that the body
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         self._depth += 1

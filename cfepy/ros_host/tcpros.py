@@ -71,6 +71,10 @@ class TcprosFrames:
         """Bytes of a frame that is not complete."""
         return len(self._data)
 
+    def clear(self) -> None:
+        """Forget what came."""
+        self._data.clear()
+
     def add(self, data: bytes) -> None:
         """Take what came."""
         self._data += data
@@ -94,7 +98,8 @@ class TcprosFrames:
                 end = at + lead + 4 + size
                 if len(buffer) < end:
                     return
-                found = bytes(buffer[at : at + lead]) + bytes(buffer[at + lead + 4 : end])
+                with memoryview(buffer) as view:
+                    found = b"".join((view[at : at + lead], view[at + lead + 4 : end]))
                 at = end
                 yield found
         finally:

@@ -145,6 +145,8 @@ class WebSocket:
 
     def _end(self, why: str) -> None:
         self.is_open = False
+        self._parts.clear()
+        self._protocol.reader.discard()  # what has come of a message that is not whole
         self._socket.finish()
         if not self._is_over:
             self._is_over = True

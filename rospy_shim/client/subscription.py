@@ -33,6 +33,7 @@ WHOLE = 0xC0
 NO_PIPE = -1
 NO_LIMIT = 0xFFFF
 POLL = 0
+MOST_TOLD = 16  # messages that could not be read, each of which is logged
 _ADDRESS = re.compile(r"0x[0-9a-f]+")
 
 
@@ -62,6 +63,7 @@ class Subscription(TopicSide):
         self._segments = 1  # packets of the longest message so far
         self._pipe = NO_PIPE
         self._assembler = Assembler()
+        self._unreadable = 0  # messages
 
     def _paid(self, unpack: Callable[[bytes, int], Any]) -> Callable[[bytes, int], Any]:
         """`unpack` with the virtual time of a call for each message in arrays, which genpy makes one by one."""
@@ -313,7 +315,7 @@ class Subscription(TopicSide):
             try:
                 message = unpack(packet, HEADER_BYTES)
             except Exception as error:
-                self.node.logs.logerr("cannot read a message on %s: %s", self.name, error)
+                self._tell_unreadable(error)
                 continue
             message._connection_header = topic.header or topic.sender_of(packet)
             if topic.latching:
@@ -350,13 +352,21 @@ class Subscription(TopicSide):
         try:
             message = self._unpack(payload, 0)
         except Exception as error:
-            self.node.logs.logerr("cannot read a message on %s: %s", self.name, error)
+            self._tell_unreadable(error)
             return
         message._connection_header = header
         if header.get("latching") == "1":
             self.latest = message
         for callback, argument in self._calls:
             self._call(callback, argument, message)
+
+    def _tell_unreadable(self, error: Exception) -> None:
+        """Log a message that cannot be read; of many, the first ones and then ever fewer."""
+        self._unreadable = count = self._unreadable + 1
+        if count <= MOST_TOLD:
+            self.node.logs.logerr("cannot read a message on %s: %s", self.name, error)
+        elif not count & count - 1:
+            self.node.logs.logerr("cannot read a message on %s, the %s. of its kind: %s", self.name, count, error)
 
     def _assemble(self, packet: bytes, topic: TopicEntry) -> bytes | None:
         header, index = topic.notes.get(sequence_of(packet), (None, None))

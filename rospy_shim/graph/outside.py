@@ -11,9 +11,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 from xmlrpc.client import loads
 
-from cfepy.input_limits import ROS_NAMES
+from cfepy.input_limits import ROS_CALLS, ROS_NAMES
 from cfepy.sb import Outlet
-from cfepy.status import CfeError, UsageError
+from cfepy.status import CFE_ES_NO_RESOURCE_IDS_AVAILABLE, CfeError, UsageError
 from rospy_shim.client.exceptions import ServiceException
 from rospy_shim.client.service import (
     ANSWER_LEAD,
@@ -86,7 +86,8 @@ class OutsideGraph:
         self._kernel = kernel
         self._entering = ""  # the outside node of which a message comes in
         self._pieces: dict[str, Pieces] = {}  # of long requests, by service
-        self._calls: dict[str, dict[int, tuple[int, str]]] = {}  # by service and its number: caller's number, caller
+        # By service and its number: the caller's number, and the caller; None when it does not wait any more.
+        self._calls: dict[str, dict[int, tuple[int, str] | None]] = {}
         self._outlets: dict[str, Outlet] = {}  # by service
         self._shown: dict[str, Outlet] = {}  # by topic
         self._names: set[str] = set()  # of topics and services that came from outside
@@ -278,8 +279,11 @@ class OutsideGraph:
 
         Raises:
             KeyError: there is none of that name.
+            CfeError: too many calls of it wait, each of which may take a task.
         """
         entry = self._graph.services[service]
+        if len(entry.calls) >= ROS_CALLS:
+            raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"{ROS_CALLS} calls of {service} wait for their answers")
         header = {"callerid": caller, "md5sum": entry.service.service_class._md5sum, "service": service}
         self._listen(service, entry)
         inner = entry.begin(ServiceCall(NO_PIPE, header))
@@ -314,14 +318,15 @@ class OutsideGraph:
 
             def take(packet: bytes) -> None:
                 inner, good = call_of_answer(packet)
-                outer = self._calls[service].get(inner)
-                body = None if outer is None else pieces.add(inner, packet)
-                if outer is not None and body is not None:
-                    del self._calls[service][inner]
-                    current = self._graph.services.get(service)
-                    if current is not None:
-                        current.calls.pop(inner, None)
-                        current.half_answered.discard(inner)
+                body = pieces.add(inner, packet) if inner in self._calls[service] else None
+                if body is None:
+                    return
+                outer = self._calls[service].pop(inner)
+                current = self._graph.services.get(service)
+                if current is not None:
+                    current.calls.pop(inner, None)
+                    current.half_answered.discard(inner)
+                if outer is not None:
                     number, caller = outer
                     way = self._way_to(caller)
                     if way is not None:
@@ -333,7 +338,7 @@ class OutsideGraph:
         """The caller does not wait for the answer any more."""
         calls = self._calls.get(service, {})
         for inner in [each for each, outer in calls.items() if outer == (number, caller)]:
-            del calls[inner]
+            calls[inner] = None  # the service still works on it
 
     # -- services of outside nodes -----------------------------------------------------------------------------------
 

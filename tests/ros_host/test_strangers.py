@@ -20,7 +20,7 @@ from cfepy.ros_host.errands import Errands, RosError, ask
 from cfepy.ros_host.rpc_body import RpcError, read_body
 from cfepy.ros_host.tcpros import pack_header
 from cfepy.status import UsageError
-from tests.ros_host.peers import CALLER, SERVER, SET_BOOL, TALKER, Joined, joined
+from tests.ros_host.peers import CALLER, SERVER, SET_BOOL, TALKER, Joined, OutsideSpeaker, joined, text
 
 NOBODY = "http://127.0.0.1:1/"
 
@@ -341,7 +341,7 @@ def test_the_largest_unfinished_message_gives_way(run: Joined, monkeypatch: pyte
     run.run_while(lambda: bool(run.host.bounds.room.size))
 
 
-@pytest.mark.parametrize("size", [1 << 31, (64 << 20) + 1])
+@pytest.mark.parametrize("size", [1 << 31, (32 << 20) + 1])
 def test_a_huge_frame_ends_its_connection(run: Joined, size: int) -> None:
     wire = run.connected(run.host.service_uri("/server"), {"service": "/switch", **SET_BOOL})
     wire.header()
@@ -373,6 +373,62 @@ def test_a_caller_that_has_left_is_not_served_any_more(run: Joined) -> None:
     calls = run.host._last_call
     run.run_while(lambda: bool(len(run.host.bounds.places)))
     assert run.host._last_call < calls + 100
+
+
+SLOW = """
+import threading
+import rospy
+from std_msgs.msg import String
+from std_srvs.srv import SetBool
+rospy.init_node("server")
+going = threading.Event()
+rospy.Subscriber("/go", String, lambda message: going.set())
+rospy.Service("/switch", SetBool, lambda request: (going.wait(), "on"))
+rospy.spin()
+"""
+
+
+def test_calls_of_a_service_that_wait_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rospy_shim.graph.outside.ROS_CALLS", 4)
+    with joined(tmp_path, {"SERVER": SLOW}) as run:
+        uri = run.master("lookupService", "/switch")
+        fields = {"service": "/switch", **SET_BOOL}
+        left = [run.connected(uri, fields) for _ in range(4)]
+        for each in left:
+            each.header()
+            each.socket.sendall(b"\x01\0\0\0\x01")
+        entry = run.mission.ros.graph.services["/switch"]
+        run.run_while(lambda: len(entry.calls) < 4)
+        late = run.connected(uri, fields)
+        late.header()
+        late.frames.has_status = True
+        late.socket.sendall(b"\x01\0\0\0\x01")
+        assert b"4 calls of /switch wait for their answers" in late.frame()
+        for each in (*left, late):
+            each.socket.close()
+        run.mission.outside.act("publish", "/go", text("now"))
+        run.run_while(lambda: bool(entry.calls))  # also those whose callers have left
+        again = run.connected(uri, fields)
+        again.header()
+        again.frames.has_status = True
+        again.socket.sendall(b"\x01\0\0\0\x01")
+        assert again.frame()[0] == 1
+        again.socket.close()
+
+
+def test_many_messages_that_cannot_be_read_make_few_lines(tmp_path: Path) -> None:
+    with joined(tmp_path, {"TALKER": TALKER}) as run:
+        before = len(run.mission.console.lines)
+        speaker = OutsideSpeaker(run, "/orders")
+        speaker.connect()
+        for _ in range(40):
+            speaker.send_frames(b"\0\0\0\0" * 25)
+        speaker.send(b"\4\0\0\0done")
+        chatter = run.mission.ros.graph.nodes["/talker"].links["/chatter"]
+        run.run_while(lambda: chatter.latch is None or chatter.latch.data != "DONE")
+        told = [each for each in run.mission.console.lines[before:] if "cannot read a message" in each]
+        assert 16 < len(told) < 40
+        speaker.close()
 
 
 BAD_HEADERS = {
