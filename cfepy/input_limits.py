@@ -48,8 +48,9 @@ JOURNAL_VALUES = 1_000_000  # of a frame
 JOURNAL_FILE_BYTES = 64 << 20  # of a file that a journal carries
 JOURNAL_FILES_BYTES = 512 << 20  # of all of them
 
-# texts that are read line by line: startup scripts, scripts of commands
-LINE_FILE_BYTES = 16 << 20
+# texts that are read line by line
+LINE_FILE_BYTES = 16 << 20  # scripts of commands
+STARTUP_BYTES = 256 << 10  # startup scripts
 
 # programs: they are read, not executed
 PYTHON_BYTES = 4 << 20  # of a Python source
