@@ -69,8 +69,9 @@ VIEWER_ROWS = 10_000  # of a list in a message of a viewer
 JSON_BRACKETS = 200_000  # lists and objects in a message of a viewer
 JSON_VALUES = 2_000_000
 
-# texts that are read line by line: startup scripts, scripts of commands
-LINE_FILE_BYTES = 16 << 20
+# texts that are read line by line
+LINE_FILE_BYTES = 16 << 20  # scripts of commands
+STARTUP_BYTES = 256 << 10  # startup scripts
 
 # programs: they are read, not executed
 PYTHON_BYTES = 4 << 20  # of a Python source

@@ -72,10 +72,18 @@ def compiled(source: str | bytes | ast.Module, file: str) -> CodeType:
 
 
 @overload
-def parsed_input(source: str | bytes, file: str = ...) -> ast.Module: ...
+def parsed_input(source: str | bytes, file: str = ..., *, depth: int = ...) -> ast.Module: ...
 @overload
-def parsed_input(source: str | bytes, file: str = ..., *, mode: Literal["eval"]) -> ast.Expression: ...
-def parsed_input(source: str | bytes, file: str = "<unknown>", *, mode: Literal["exec", "eval"] = "exec") -> ast.AST:
+def parsed_input(
+    source: str | bytes, file: str = ..., *, mode: Literal["eval"], depth: int = ...
+) -> ast.Expression: ...
+def parsed_input(
+    source: str | bytes,
+    file: str = "<unknown>",
+    *,
+    mode: Literal["exec", "eval"] = "exec",
+    depth: int = PYTHON_DEPTH,
+) -> ast.AST:
     """Parse a source that is looked into and not executed, within the limits of all inputs.
 
     A tree takes a thousand times the memory of its text, and what walks through it goes as deep as it is nested.
@@ -84,6 +92,8 @@ def parsed_input(source: str | bytes, file: str = "<unknown>", *, mode: Literal[
         source: its text.
         file: its name, for errors.
         mode: as of `ast.parse`.
+        depth: expressions and blocks inside each other that it may have; less than the usual number where what looks
+            into the tree goes down by calls.
 
     Returns:
         The tree.
@@ -100,7 +110,7 @@ def parsed_input(source: str | bytes, file: str = "<unknown>", *, mode: Literal[
             text = f"has more than {PYTHON_WORDS:,} words and signs, which is the limit for a source; split it"
             raise SyntaxError(text, (file, 1, 1, None))
     tree = parsed(source, file, mode=mode) if mode == "eval" else parsed(source, file)
-    _check_depth(tree, file)
+    _check_depth(tree, file, depth)
     return tree
 
 
@@ -117,14 +127,14 @@ def _inside(nodes: list[ast.AST]) -> list[ast.AST]:
     return found
 
 
-def _check_depth(tree: ast.AST, file: str) -> None:
+def _check_depth(tree: ast.AST, file: str, depth: int) -> None:
     level: list[ast.AST] = [tree]
-    for _ in range(PYTHON_DEPTH):
+    for _ in range(depth):
         level = _inside(level)
         if not level:
             return
     line = next((node.lineno for node in level if isinstance(node, ast.expr | ast.stmt)), 1)
-    raise TooDeepError(f"{_TOO_DEEP}: more than {PYTHON_DEPTH} levels; take it apart", (file, line, 1, None))
+    raise TooDeepError(f"{_TOO_DEEP}: more than {depth} levels; take it apart", (file, line, 1, None))
 
 
 class NameScope:

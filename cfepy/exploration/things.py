@@ -110,6 +110,9 @@ class Things:
         return f"{variable}#{number + 1} {place}" if number else f"{variable} {place}"
 
 
+_DEPTH = 100  # what is nested more deeply is not looked into
+
+
 def is_made_of(file: str, read: str, written: str, variable: str) -> bool:
     """Whether what a statement writes into a variable is made of what another one has read from it.
 
@@ -121,7 +124,7 @@ def is_made_of(file: str, read: str, written: str, variable: str) -> bool:
     """
     read_at, written_at = (int(place.rpartition(":")[2]) for place in (read, written))
     try:
-        tree = parsed_input(read_limited(file, PYTHON_BYTES))
+        tree = parsed_input(read_limited(file, PYTHON_BYTES), depth=_DEPTH)
     except (OSError, SyntaxError, ValueError):
         return False
     sources: dict[str, list[ast.AST]] = {}
@@ -163,7 +166,7 @@ def _variables(frame: FrameType | None) -> Iterator[tuple[str, Any]]:
 def _variable_of(frame: FrameType) -> str:
     """What the call that a frame makes is assigned to; `lock` where it is not assigned to a variable."""
     try:
-        tree = parsed_input(read_limited(frame.f_code.co_filename, PYTHON_BYTES))
+        tree = parsed_input(read_limited(frame.f_code.co_filename, PYTHON_BYTES), depth=_DEPTH)
     except (OSError, SyntaxError, ValueError):
         return "lock"
     place = _position(frame.f_code, frame.f_lasti)

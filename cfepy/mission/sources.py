@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 import importlib.util
+import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from cfepy.input_limits import PYTHON_BYTES
 from cfepy.status import UsageError
 from cfepy.syntax_trees import parsed_input
 
+_MOST_MODULES = 100  # that are followed, one from the other
 PACKAGE_FILE = "__init__.py"
 
 
@@ -107,6 +109,6 @@ def _imports(statement: ast.ImportFrom, alias: ast.alias, source: Path, name: st
     if alias.name != "*" and (alias.asname or alias.name) != name:
         return False
     sibling = source.parent / f"{statement.module}.py" if statement.level == 1 and statement.module else None
-    if sibling is None or not sibling.is_file() or sibling in seen:
+    if sibling is None or not os.path.isfile(sibling) or sibling in seen or len(seen) > _MOST_MODULES:
         return True
     return _defines(sibling, name if alias.name == "*" else alias.name, seen)

@@ -11,7 +11,7 @@ from cfepy.cached import CachedProperty
 from cfepy.es import StartupEntry
 from cfepy.es import entries as read_entries
 from cfepy.input_files import read_limited
-from cfepy.input_limits import LINE_FILE_BYTES
+from cfepy.input_limits import STARTUP_BYTES
 from cfepy.marked_yaml import Marked
 from cfepy.mission.cpp_nodes import CppNodesConfig
 from cfepy.mission.limits import MissionLimits
@@ -107,7 +107,7 @@ class MissionSpec:
     @property
     def startup_script(self) -> bytes:
         """The startup script's contents: its own, or those of the file `script`."""
-        return read_limited(self.script, LINE_FILE_BYTES) if self.startup is None else self.startup
+        return read_limited(self.script, STARTUP_BYTES) if self.startup is None else self.startup
 
     @CachedProperty
     def entries(self) -> tuple[StartupEntry, ...]:

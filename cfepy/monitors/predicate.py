@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from types import CodeType
 from typing import Any
 
+from cfepy.input_limits import EXPRESSION_CHARACTERS, EXPRESSION_DEPTH
 from cfepy.marked_yaml import Marked
 from cfepy.suggestions import did_you_mean
 from cfepy.syntax_trees import parsed_input
@@ -51,8 +52,10 @@ class Predicate:
             UsageError: it is no expression, or names something else.
         """
         source = _one_line(entry)
+        if len(source) > EXPRESSION_CHARACTERS:
+            raise entry.fail(f"has {len(source):,} characters, the limit is {EXPRESSION_CHARACTERS:,}; split it")
         try:
-            tree = parsed_input(source, mode="eval")
+            tree = parsed_input(source, mode="eval", depth=EXPRESSION_DEPTH)
         except (SyntaxError, ValueError) as error:
             what = error.msg if isinstance(error, SyntaxError) else str(error)
             raise entry.fail(f"{source!r} is no Python expression: {what}") from None

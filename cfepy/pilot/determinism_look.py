@@ -201,11 +201,14 @@ class Suspect(NamedTuple):
     source: str
 
 
+_DEPTH = 300  # what is nested more deeply is not looked into
+
+
 def suspects(file: str) -> list[Suspect]:
     """The suspicious lines of a Python file, in order; none when it cannot be read."""
     try:
         text = text_limited(file, PYTHON_BYTES)
-        tree = parsed_input(text)
+        tree = parsed_input(text, depth=_DEPTH)
     except (OSError, SyntaxError, ValueError):
         return []
     lines = text.splitlines()

@@ -238,7 +238,11 @@ def of_json(text: str) -> Any:
     Raises:
         ValueError: it is no JSON, or nothing that ROS can carry.
     """
-    return _restored(json.loads(text))
+    try:
+        found = json.loads(text)
+    except RecursionError:
+        raise ValueError("is nested too deeply") from None
+    return _restored(found)
 
 
 def _is_plain(text: str) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import textwrap
 from pathlib import Path
 
@@ -9,7 +10,8 @@ import pytest
 
 from cfepy.c import Built, CompilerError, Options, build
 from cfepy.c.elf import elf_file
-from cfepy.c.toolchain.sources import read_cmake_lists
+from cfepy.c.toolchain.compiler import compile_file
+from cfepy.c.toolchain.sources import find_sources, read_cmake_lists
 from cfepy.fs import read_table_file
 from cfepy.status import UsageError
 from tests.c.building import console_of, fly, needs_compiler, needs_cpp, said, write_mission
@@ -307,3 +309,32 @@ def test_what_is_no_table(old: str, new: str, wrong: str, app: Path) -> None:
     write(app, {"fsw/tables/bad.c": text})
     with pytest.raises(UsageError, match=wrong):
         build(app)
+
+
+def test_a_compiler_that_waits_for_a_pipe_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cfepy.c.toolchain.compiler._LOOK_S", 0.2)
+    os.mkfifo(tmp_path / "pipe.h")
+    (tmp_path / "a.c").write_text('#include "pipe.h"\n')
+    with pytest.raises(CompilerError, match="waited for something"):
+        compile_file(tmp_path / "a.c", tmp_path / "a.o", [])
+
+
+def test_a_compiler_is_held_to_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cfepy.c.toolchain.compiler.OBJECT_BYTES", 1 << 20)
+    (tmp_path / "a.c").write_text("char many[8 << 20] = {1};\n")
+    with pytest.raises(CompilerError):
+        compile_file(tmp_path / "a.c", tmp_path / "a.o", [])
+    (tmp_path / "a.c").write_text("char few[8] = {1};\n")
+    assert compile_file(tmp_path / "a.c", tmp_path / "a.o", []) == ""
+
+
+@pytest.mark.parametrize("name", ["../victim", "/victim", "a/b", "..", "a b", "-o"])
+def test_a_name_that_leads_out_is_refused(name: str, app: Path) -> None:
+    write(app, {"CMakeLists.txt": f'add_cfe_app("{name}" fsw/src/probe.c)\n'})
+    with pytest.raises(UsageError, match="names the application"):
+        build(app)
+
+
+def test_a_header_that_a_mission_makes_stays_where_it_is_written(app: Path) -> None:
+    write(app, {"mission_build.cmake": "set(PROBE_PLATFORM_FILE_LIST ../../../victim.h /victim.h good.h)\n"})
+    assert set(find_sources(app).chosen) == {"good.h", "probe_msgids.h"}

@@ -7,6 +7,7 @@ import contextlib
 import sys
 from collections import deque
 from collections.abc import Mapping
+from io import TextIOWrapper
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any, TextIO
@@ -14,6 +15,7 @@ from typing import Any, TextIO
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.run.compared_run import ComparedRun
 from cfepy.cli.run.compared_runs import FirstDifference, facts_of, failure, show_sides, started
+from cfepy.input_files import open_input
 from cfepy.journal import Journal, differences, is_journal, read_journal
 from cfepy.pilot.determinism import RunEndedError, first_parting
 from cfepy.pilot.determinism_look import Look
@@ -40,7 +42,7 @@ def compare_texts(one: str, other: str, before: int, stream: TextIO) -> bool:
     latest: deque[str] = deque(maxlen=before)
     count = 0
     try:
-        with open(one, encoding="utf-8") as first, open(other, encoding="utf-8") as second:
+        with _lines(one) as first, _lines(other) as second:
             for mine, theirs in zip_longest(first, second, fillvalue=""):
                 count += 1
                 if mine != theirs:
@@ -51,6 +53,10 @@ def compare_texts(one: str, other: str, before: int, stream: TextIO) -> bool:
         raise UsageError("one of the two is neither a journal nor a trace", file=f"{one}, {other}") from None
     print(f"the same run: all {count:,} lines are alike", file=stream)
     return True
+
+
+def _lines(file: str) -> TextIO:
+    return TextIOWrapper(open_input(file, handed=True), encoding="utf-8")
 
 
 def _show(number: int, before: deque[str], sides: dict[str, str], stream: TextIO) -> None:

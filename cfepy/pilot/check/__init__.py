@@ -12,7 +12,7 @@ from pathlib import Path
 
 from cfepy.es import CFE_APP, StartupEntry, entries
 from cfepy.input_files import read_limited
-from cfepy.input_limits import LINE_FILE_BYTES
+from cfepy.input_limits import STARTUP_BYTES
 from cfepy.marked_yaml import Mistakes
 from cfepy.mission import (
     LAUNCH_FILES,
@@ -93,7 +93,7 @@ def _check_node(file: Path) -> list[MissionProblem]:
 
 def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None) -> list[MissionProblem]:
     """A startup script with all that belongs to it."""
-    data = read_limited(script, LINE_FILE_BYTES)
+    data = read_limited(script, STARTUP_BYTES)
     mistakes = Mistakes(keep=True)
     path = mission_file_of(script)
     said = MissionSections() if path is None else read_mission_file(path, mistakes)

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from rospy_shim.msgs import Packages
+from cfepy.status import UsageError
+from rospy_shim.msgs import Packages, check_package_name
+from rospy_shim.msgs.packages import name_of
 
 
 def make_package(folder: Path, name: str = "", *files: str) -> Path:
@@ -97,3 +99,29 @@ def test_python_code_of_packages(tmp_path: Path) -> None:
     (rover / "src" / "rover" / "__init__.py").touch()
     make_package(tmp_path / "other", "other", "src/main.cpp")
     assert Packages(None, {"ROS_PACKAGE_PATH": str(tmp_path)}).code_folders() == [rover / "src"]
+
+
+@pytest.mark.parametrize("name", ["../x", "/x", "a b", "", "a\0b", "-a", "_a", "é", "a" * 256, "a.b", "a\nb"])
+def test_a_name_that_no_package_has_is_not_taken(name: str, tmp_path: Path) -> None:
+    folder = tmp_path / "here"
+    folder.mkdir()
+    (folder / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    assert name_of(folder) == "here"
+    with pytest.raises(UsageError, match="is not the name of a package"):
+        check_package_name(folder)
+
+
+@pytest.mark.parametrize("name", ["arm", "Arm_2", "a-b", "2d_nav", " arm ", "\n arm\n"])
+def test_a_name_that_a_package_may_have_is_taken(name: str, tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    check_package_name(tmp_path)
+    assert name_of(tmp_path) == name.strip()
+
+
+def test_a_manifest_that_is_too_large_names_nothing(tmp_path: Path) -> None:
+    folder = tmp_path / "here"
+    folder.mkdir()
+    with (folder / "package.xml").open("wb") as file:
+        file.write(b"<package><name>other</name>")
+        file.truncate(1 << 40)
+    assert name_of(folder) == "here"

@@ -13,6 +13,7 @@ from cfepy.status import UsageError
 from rospy_shim.msgs import Packages
 from rospy_shim.parameters.values import DateTime
 from rospy_shim.roslaunch.model import Launch
+from rospy_shim.roslaunch.plan import plan_of
 from rospy_shim.roslaunch.reader import read
 
 
@@ -224,3 +225,18 @@ def test_arguments_that_nothing_uses(tmp_path: Path, body: str, unused: list[str
 def test_tags_that_are_nested_too_deeply(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"x\.launch:2: <group>: is inside 100 other tags"):
         launch(tmp_path, "<group>" * 2000 + "</group>" * 2000)
+
+
+def test_results_of_a_test_stay_in_their_folder(tmp_path: Path) -> None:
+    """A test's own name may have any characters; that of a node may not, and is another one here."""
+    names = ("good", "../../victim", "/victim", "a b", "a/b", "a_b", "x" * 5000, "é")
+    tests = "".join(f'<test test-name="{name}" name="n{at}" pkg="arm" type="t.py"/>' for at, name in enumerate(names))
+    (tmp_path / "package.xml").write_text("<package><name>arm</name></package>")
+    (tmp_path / "t.py").write_text("#!/usr/bin/env python3\n")
+    (tmp_path / "x.launch").write_text(f"<launch>{tests}</launch>")
+    plan = plan_of(tmp_path / "x.launch", {}, {}, results=tmp_path / "results")
+    files = [test.results for test in plan.tests]
+    assert files[0].name == "arm-good.xml"
+    assert {each.parent for each in files} == {tmp_path / "results"}
+    assert len(set(files)) == len(names)
+    assert max(len(each.name) for each in files) < 255
