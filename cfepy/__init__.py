@@ -18,10 +18,14 @@ and so on), what tests use beyond this in `cfepy.testing`. Names are loaded when
 
 from __future__ import annotations
 
-from cfepy.early_end import is_command, leave_on_interrupt
+import os as _os
+import sys as _sys
 
-if is_command():
-    leave_on_interrupt()  # before any other import, in which Python would answer Ctrl-C with a traceback
+if _os.path.basename((_sys.argv or [""])[0]).startswith(("cfepy", "-m")):  # perhaps the command
+    from cfepy.early_end import is_command, leave_on_interrupt
+
+    if is_command():
+        leave_on_interrupt()  # before any other import, in which Python would answer Ctrl-C with a traceback
 
 from typing import TYPE_CHECKING
 

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 # fmt: off
 REPLACED = frozenset({
     "aifc", "bz2", "cProfile", "chunk", "codecs", "configparser", "dbm", "filecmp", "fileinput", "genericpath",
-    "gettext", "glob", "gzip", "imghdr", "importlib", "io", "logging", "lzma", "mailbox", "mailcap", "mimetypes",
-    "netrc", "numpy", "os", "pathlib", "posixpath", "profile", "pstats", "quopri", "runpy", "shelve", "shutil",
+    "gettext", "glob", "grp", "gzip", "imghdr", "importlib", "io", "logging", "lzma", "mailbox", "mailcap", "mimetypes",
+    "netrc", "numpy", "os", "pathlib", "posixpath", "profile", "pstats", "pwd", "quopri", "runpy", "shelve", "shutil",
     "sndhdr", "sqlite3", "sunau", "tarfile", "tempfile", "tokenize", "uu", "wave", "xml", "zipapp", "zipfile",
 })
 # fmt: on
@@ -159,6 +159,7 @@ class AppModules:
 def os_module(universe: Universe) -> ModuleType:
     """`os` of applications: the host's, over the files of the run."""
     from cfepy.nodes.stdlib.os_module import paths
+    from cfepy.nodes.stdlib.users import identity
     from cfepy.nodes.synth import rebind
 
     def write(fd: int, data: Any) -> int:
@@ -167,7 +168,8 @@ def os_module(universe: Universe) -> ModuleType:
             universe.overlay.wrote(fd)
         return written
 
-    own = {**paths(universe), "write": write, "register_at_fork": lambda **hooks: None}  # explorations fork, not apps
+    forked = {"register_at_fork": lambda **hooks: None}  # explorations fork, not apps
+    own = {**paths(universe), **identity(universe), "write": write, **forked}
     module = rebind(os, **own)
     modules = universe.importer.modules
     modules["os"] = module  # its own path functions import it
@@ -239,7 +241,7 @@ def make_app_universe(**options: Any) -> Universe:
         "os": os_module,
         "sys": sys_module,
     }
-    like_nodes = {name: MADE[name] for name in ("codecs", "io", "sqlite3", "sqlite3.dbapi2")}
+    like_nodes = {name: MADE[name] for name in ("codecs", "grp", "io", "pwd", "sqlite3", "sqlite3.dbapi2")}
     fixes = {name: FIXES[name] for name in ("random", "xml.etree.ElementTree")}
     provision = Provision({**like_nodes, **own}, fixes, REPLACED | {"random"}, is_process=False)
     return Universe(**options, provision=provision)

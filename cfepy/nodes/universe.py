@@ -364,8 +364,12 @@ class Universe:
     def change_directory(self, path: str | os.PathLike[str]) -> None:
         """`os.chdir`."""
         if self.overlay is not None:
-            target = self.overlay.real(self.absolute(path))
-            self.overlay.check_folder(target)
+            try:
+                target = self.overlay.real(self.absolute(path))
+                self.overlay.check_entry(target)
+            except OSError as error:
+                error.filename = path
+                raise
         else:
             target = os.path.normpath(self.resolve(path))
             os.listdir(target)  # raises what os.chdir would

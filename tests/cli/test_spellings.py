@@ -46,6 +46,7 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--points": ("KIND[:MODULE,...]", "in at more points of the mission's Python code than at its calls"),
     "--port": ("PORT=HERE", "open the mission's port PORT"),
     "--quiet": (None, "no "),
+    "--quote-formulas": (None, "put ' before a text that a spreadsheet takes for a formula"),
     "--races": (None, "find accesses of Python code to one attribute, item or variable that nothing orders"),
     "-r --rate": ("HZ", "how often"),
     "--spacecraft-id": ("N", "number of the spacecraft"),

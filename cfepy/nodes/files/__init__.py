@@ -12,6 +12,19 @@ from cfepy.nodes.files.calls import Entries, FileCalls
 from cfepy.nodes.files.opened import OpenFiles
 from cfepy.nodes.files.overlay import PREFIX, Overlay
 from cfepy.nodes.files.paths import below_root
-from cfepy.nodes.files.stamps import ASKED, LISTED, MADE, NEEDED
+from cfepy.nodes.files.stamps import ASKED, GROUP, LISTED, MADE, NEEDED, USER
 
-__all__ = ["ASKED", "LISTED", "MADE", "NEEDED", "PREFIX", "Entries", "FileCalls", "OpenFiles", "Overlay", "below_root"]
+__all__ = [
+    "ASKED",
+    "GROUP",
+    "LISTED",
+    "MADE",
+    "NEEDED",
+    "PREFIX",
+    "USER",
+    "Entries",
+    "FileCalls",
+    "OpenFiles",
+    "Overlay",
+    "below_root",
+]

@@ -12,14 +12,15 @@ import stat
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from cfepy.nodes.files.stamps import GROUP, USER
+
 if TYPE_CHECKING:
     from cfepy.nodes.files.overlay import Overlay
     from cfepy.nodes.universe import Universe
 
 _LOOKS = ("getxattr", "listxattr", "pathconf", "statvfs")
-_CHANGES = ("chflags", "chmod", "chown", "removexattr", "setxattr")
-_ON_DESCRIPTORS = ("fchmod",)
-_LINK_CHANGES = ("lchflags", "lchmod", "lchown")
+_CHANGES = ("chflags", "removexattr", "setxattr")
+_LINK_CHANGES = ("lchflags",)
 _WRITES = ("copy_file_range", "ftruncate", "posix_fallocate", "pwrite", "pwritev", "sendfile", "writev")
 _MKFIFO_MODE, _MKDIR_MODE = 0o666, 0o777
 
@@ -149,7 +150,15 @@ class FileCalls:
             "unlink": self._remove,
             "utime": self._utime,
         }
-        found |= {name: self._on_descriptor(getattr(os, name)) for name in _ON_DESCRIPTORS if hasattr(os, name)}
+        owners = {
+            "chmod": self._chmod,
+            "chown": self._chown,
+            "fchmod": overlay.change_mode,
+            "fchown": self._chown,
+            "lchmod": lambda path, mode: self._chmod(path, mode, follow_symlinks=False),
+            "lchown": lambda path, uid, gid: self._chown(path, uid, gid, follow_symlinks=False),
+        }
+        found |= {name: function for name, function in owners.items() if hasattr(os, name)}
         found |= {name: self._look_at(getattr(os, name)) for name in _LOOKS if hasattr(os, name)}
         found |= {name: self._changing(getattr(os, name)) for name in _CHANGES if hasattr(os, name)}
         found |= {name: self._changing(getattr(os, name), follow=False) for name in _LINK_CHANGES if hasattr(os, name)}
@@ -179,14 +188,6 @@ class FileCalls:
     def _close(self, fd: int) -> None:
         self._folders.pop(fd, None)
         os.close(fd)
-
-    def _on_descriptor(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        def call(fd: int, *args: Any) -> Any:
-            value = function(fd, *args)
-            self._overlay.stamps.changed(os.fstat(fd))
-            return value
-
-        return call
 
     def _writing(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
         at = 1 if name == "copy_file_range" else 0
@@ -229,7 +230,7 @@ class FileCalls:
             where = self._overlay.real(self.where(path, dir_fd), follow_symlinks)
         except OSError:
             return False
-        return os.access(self._overlay.place(where), mode, effective_ids=effective_ids)
+        return self._overlay.allows(where, mode)
 
     def _readlink(self, path: Any, *, dir_fd: int | None = None) -> Any:
         where = self.where(path, dir_fd)
@@ -306,6 +307,8 @@ class FileCalls:
             path: Any, *args: Any, dir_fd: int | None = None, follow_symlinks: bool = follow, **options: Any
         ) -> None:
             if isinstance(path, int):
+                if not self._overlay.is_own(path):  # an open file of the host
+                    raise PermissionError(errno.EPERM, os.strerror(errno.EPERM), path)
                 function(path, *args, **options)
                 self._overlay.stamps.changed(os.fstat(path))
                 return
@@ -314,6 +317,21 @@ class FileCalls:
                 self._overlay.change(where, lambda place: function(place, *args, **options), follow_symlinks)
 
         return call
+
+    def _chmod(self, path: Any, mode: int, *, dir_fd: int | None = None, follow_symlinks: bool = True) -> None:
+        where = path if isinstance(path, int) else self.where(path, dir_fd)
+        with _told(path):
+            self._overlay.change_mode(where, mode, follow_symlinks)
+
+    def _chown(self, path: Any, uid: int, gid: int, *, dir_fd: int | None = None, follow_symlinks: bool = True) -> None:
+        """An ordinary user gives no file away."""
+        with _told(path):
+            if isinstance(path, int):
+                self._overlay.stamps.changed(os.fstat(path))
+            else:
+                self._overlay.change(self.where(path, dir_fd), lambda place: None, follow_symlinks)
+            if uid not in (-1, USER) or gid not in (-1, GROUP):
+                raise PermissionError(errno.EPERM, os.strerror(errno.EPERM), path)
 
     def _truncate(self, path: Any, length: int) -> None:
         if isinstance(path, int):

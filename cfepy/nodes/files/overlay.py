@@ -22,7 +22,9 @@ from weakref import WeakSet, finalize
 from cfepy.host_system import in_forked_process
 from cfepy.nodes.files.paths import (
     HAS_DRIVES,
+    is_in,
     is_root,
+    os_error,
     parent,
     parted,
     path_below,
@@ -31,13 +33,13 @@ from cfepy.nodes.files.paths import (
     with_end,
     with_slashes,
 )
-from cfepy.nodes.files.stamps import ASKED, LISTED, MADE, NEEDED, Stamps, key_of
+from cfepy.nodes.files.stamps import ASKED, LISTED, MADE, NEEDED, Stamps, asked_by, copy_tree, is_special, key_of
 
 PREFIX = "cfepy-files-"  # of the folders that runs have in the temporary one
 _SYSTEM = ("/proc", "/sys", "/dev")  # no files, but questions to the operating system
 _SHM = "/dev/shm"
 _MOST_LINKS = 40
-_UMASK = 0o022
+_OWNER_S = 6  # bits from the owner's permissions to those of access()
 _CREATES = os.O_CREAT | os.O_TRUNC | getattr(os, "O_TMPFILE", 0)
 _TMPFILE = getattr(os, "O_TMPFILE", -1)
 
@@ -59,7 +61,7 @@ class Overlay:
         self._asked: set[str] = set()  # paths of the host that were looked at
         self._top = ""
         self._gone: set[str] = set()  # what of the host does not show through, with all below it
-        self._no_links: set[str] = set()  # folders of which this is known
+        self._no_links: set[str] = set()  # folders of which this is known, and that they may be searched
         self._descriptors: dict[int, str] = {}  # places of what was opened last
         self._remove: Callable[[], object] = bool
         _living().add(self)
@@ -87,13 +89,13 @@ class Overlay:
             here = f"{done}/{part}"
             target = self._target(here) if parts or follow else None
             if target is None:
-                if parts and here not in self._no_links and self.exists(here):
-                    raise _error(errno.ENOTDIR, path)
+                if parts and here not in self._no_links:
+                    self._refuse_search(here, path, any(parts))
                 done = here
                 continue
             links += 1
             if links > _MOST_LINKS:
-                raise _error(errno.ELOOP, path)
+                raise os_error(errno.ELOOP, path)
             if HAS_DRIVES:
                 other, target = parted(target)
                 drive = other or drive
@@ -101,19 +103,52 @@ class Overlay:
             done = drive if target.startswith("/") else done
         return with_end(done)
 
+    def _refuse_search(self, here: str, path: str, is_searched: bool) -> None:
+        """Raise the OSError of a path that goes on behind what is no folder, or is one that must not be searched."""
+        if not self.is_folder(here):
+            if self.exists(here):
+                raise os_error(errno.ENOTDIR, path)
+        elif is_searched and not self.allows(here, os.X_OK):
+            raise os_error(errno.EACCES, path)
+
     def _target(self, path: str) -> str | None:
         if path in self._no_links:
             return None
         try:
             return os.readlink(self.place(path))
         except OSError:
-            if self.is_folder(path):
+            if self.is_folder(path) and self.allows(path, os.X_OK):
                 self._no_links.add(path)
             return None
 
+    def allows(self, path: str, bits: int) -> bool:
+        """Whether the program may do something with what is at a path without links.
+
+        It is the owner of all files, and no root, whoever runs cfepy. What the host does not let cfepy read, it may not
+        read either; what it writes, it writes into a copy.
+
+        Args:
+            path: of the file.
+            bits: `os.R_OK`, `os.W_OK`, `os.X_OK`.
+        """
+        place, own = self.place(path), self.own_place(path)
+        if self.is_system(path):
+            return os.access(place, bits)
+        try:
+            mode = self.stamps.mode(os.lstat(place))
+        except OSError:
+            return False
+        seen = bits & (os.R_OK | os.X_OK)
+        return mode >> _OWNER_S & bits == bits and (own is not None or not seen or os.access(place, seen))
+
+    def _check(self, path: str, bits: int, told: str | None = None) -> None:
+        """Raise the OSError of a file with which the program must not do something."""
+        if not self.allows(path, bits):
+            raise os_error(errno.EACCES, told or path)
+
     def is_system(self, path: str) -> bool:
         """Whether the operating system answers at a path, and not a disk."""
-        return path.startswith(_SYSTEM) and any(_is_in(path, each) for each in _SYSTEM) and not _is_in(path, _SHM)
+        return path.startswith(_SYSTEM) and any(is_in(path, each) for each in _SYSTEM) and not is_in(path, _SHM)
 
     def place(self, path: str) -> str:
         """Where the file at a path without links lies, or would lie if it were there."""
@@ -177,7 +212,12 @@ class Overlay:
     def check_folder(self, path: str) -> None:
         """Raise the OSError of a path without links that is no folder."""
         if not self.is_folder(path):
-            raise _error(errno.ENOTDIR if self.exists(path) else errno.ENOENT, path)
+            raise os_error(errno.ENOTDIR if self.exists(path) else errno.ENOENT, path)
+
+    def check_entry(self, path: str) -> None:
+        """Raise the OSError of a path without links that no program can work in."""
+        self.check_folder(path)
+        self._check(path, os.X_OK)
 
     def _shines_through(self, path: str) -> bool:
         return not self.is_hidden(path) and os.path.lexists(self._host(path))
@@ -186,9 +226,14 @@ class Overlay:
         """What is in a folder, sorted.
 
         Raises:
-            OSError: it is none.
+            OSError: it is none, or must not be read.
         """
         self.check_folder(path)
+        if not self.is_system(path):
+            self._check(path, os.R_OK)
+        return self._names(path)
+
+    def _names(self, path: str) -> list[str]:
         below = path.rstrip("/")
         found: set[str] = set()
         if not self.is_hidden(path) and os.path.isdir(place := self._host(path)):
@@ -229,9 +274,9 @@ class Overlay:
             os.symlink(os.readlink(place), own)
         elif stat.S_ISDIR(real.st_mode):
             os.mkdir(own)
-            os.chmod(own, stat.S_IMODE(real.st_mode) | stat.S_IRWXU)
+            os.chmod(own, stat.S_IRWXU)
         elif not stat.S_ISREG(real.st_mode):
-            raise _error(errno.EPERM, own)
+            raise os_error(errno.EPERM, own)
         else:
             if with_data:
                 from shutil import copyfile  # a run that writes nothing does without
@@ -239,7 +284,7 @@ class Overlay:
                 copyfile(place, own)
             else:
                 os.close(os.open(own, os.O_CREAT | os.O_WRONLY))
-            os.chmod(own, stat.S_IMODE(real.st_mode))
+            os.chmod(own, stat.S_IRUSR | stat.S_IWUSR)
         self.stamps.made(os.lstat(own), real)
 
     def _folder_of(self, path: str) -> None:
@@ -256,9 +301,7 @@ class Overlay:
         """The same, for something new in it, or for something to go."""
         folder = parent(path)
         self.check_folder(folder)
-        place = self.place(folder)
-        if not os.access(place, os.W_OK | os.X_OK):
-            raise _error(errno.EACCES, path)
+        self._check(folder, os.W_OK | os.X_OK, path)
         self._folder_of(path)
 
     def _touch_folder(self, path: str) -> None:
@@ -289,12 +332,15 @@ class Overlay:
         path = self.real(path, not (must_be_new or flags & getattr(os, "O_NOFOLLOW", 0)))
         place = self.place(path)
         changes = flags & (os.O_WRONLY | os.O_RDWR | _CREATES)
-        if not changes or self.is_system(path) or _is_special(place):
+        if not changes or self.is_system(path) or is_special(place):
+            if not (self.is_system(path) or flags & getattr(os, "O_PATH", 0)) and self.exists(path):
+                self._check(path, asked_by(flags))
             descriptor = os.open(place, flags, mode)
         elif flags & _TMPFILE == _TMPFILE:
             self._own_folder_of(os.path.join(path, "new"))
             place = self._own_of_home(path)
             descriptor = os.open(place, flags, mode)
+            self.stamps.made(os.fstat(descriptor), mode=mode)
         else:
             descriptor = self._open_to_write(path, flags, mode)
             place = self._own(path)
@@ -305,20 +351,20 @@ class Overlay:
         is_new = not self.exists(path)
         if is_new:
             if not flags & os.O_CREAT:
-                raise _error(errno.ENOENT, path)
+                raise os_error(errno.ENOENT, path)
             self._own_folder_of(path)
         elif flags & os.O_CREAT and flags & os.O_EXCL:
-            raise _error(errno.EEXIST, path)
+            raise os_error(errno.EEXIST, path)
         elif self.is_folder(path):
-            raise _error(errno.EISDIR, path)
-        elif not os.access(self.place(path), os.W_OK):
-            raise _error(errno.EACCES, path)
+            raise os_error(errno.EISDIR, path)
+        else:
+            self._check(path, asked_by(flags))
         own = self.claim(path, with_data=not flags & os.O_TRUNC)
-        descriptor = os.open(own, flags, mode)
+        descriptor = os.open(own, flags, stat.S_IRUSR | stat.S_IWUSR)
         if is_new:
             if hasattr(os, "fchmod"):
-                os.fchmod(descriptor, mode & ~_UMASK)
-            self.stamps.made(os.fstat(descriptor))
+                os.fchmod(descriptor, stat.S_IRUSR | stat.S_IWUSR)  # whatever the umask of the computer is
+            self.stamps.made(os.fstat(descriptor), mode=mode)
             self._touch_folder(path)
         elif flags & os.O_TRUNC:
             self.stamps.written(key_of(os.fstat(descriptor)))
@@ -334,28 +380,27 @@ class Overlay:
         """
         path = self.real(path, follow=False)
         if self.exists(path):
-            raise _error(errno.EEXIST, path)
+            raise os_error(errno.EEXIST, path)
         self._own_folder_of(path)
         own = self._own_of_home(path)
         how(own)
         if mode is not None:
-            os.chmod(own, mode & ~_UMASK)
+            os.chmod(own, stat.S_IRWXU)
         self._no_links.clear()
-        self.stamps.made(os.lstat(own))
+        self.stamps.made(os.lstat(own), mode=mode)
         self._touch_folder(path)
 
     def link(self, source: str, target: str) -> None:
         """`os.link`."""
         source = self.real(source, follow=False)
         if not self.exists(source):
-            raise _error(errno.ENOENT, source)
+            raise os_error(errno.ENOENT, source)
         target = self.real(target, follow=False)
         if self.exists(target):
-            raise _error(errno.EEXIST, target)
-        self.check_folder(parent(target))
-        if self.is_folder(source):
-            raise _error(errno.EPERM, source)
+            raise os_error(errno.EEXIST, target)
         self._own_folder_of(target)
+        if self.is_folder(source):
+            raise os_error(errno.EPERM, source)
         os.link(self.claim(source), self._own_of_home(target), follow_symlinks=False)
         self.stamps.changed(os.lstat(self._own_of_home(target)))
         self._touch_folder(target)
@@ -363,18 +408,26 @@ class Overlay:
     def remove(self, path: str) -> None:
         """`os.unlink`."""
         path = self.real(path, follow=False)
+        self._check_taken_away(path)
+        if self.is_folder(path):
+            raise os_error(errno.EISDIR, path)
+        self._take_away(path, os.unlink)
+
+    def _check_taken_away(self, path: str) -> None:
+        """Raise the OSError of what is not there, or whose folder must not be changed."""
         if not self.exists(path):
             self.check_folder(parent(path))
-            raise _error(errno.ENOENT, path)
-        if self.is_folder(path):
-            raise _error(errno.EISDIR, path)
-        self._take_away(path, os.unlink)
+            raise os_error(errno.ENOENT, path)
+        if not is_root(path):
+            self._check(parent(path), os.W_OK | os.X_OK, path)
 
     def remove_folder(self, path: str) -> None:
         """`os.rmdir`."""
         path = self.real(path, follow=False)
-        if self.names(path):
-            raise _error(errno.ENOTEMPTY, path)
+        self._check_taken_away(path)
+        self.check_folder(path)
+        if self._names(path):
+            raise os_error(errno.ENOTEMPTY, path)
         self._take_away(path, os.rmdir)
 
     def _take_away(self, path: str, how: Callable[[str], object]) -> None:
@@ -390,17 +443,28 @@ class Overlay:
 
     def rename(self, source: str, target: str) -> None:
         """`os.rename`: what is at the target is replaced, a folder only if it is empty."""
-        source, target = self.real(source, follow=False), self.real(target, follow=False)
+        source = self.real(source, follow=False)
+        self.check_folder(parent(source))
+        target = self.real(target, follow=False)
         if not self.exists(source):
-            raise _error(errno.ENOENT, source)
+            raise os_error(errno.ENOENT, source)
         is_folder = self.is_folder(source)
         self.check_folder(parent(target))
-        if is_folder and _is_in(target, source) and target != source:
-            raise _error(errno.EINVAL, source)
-        if _is_in(source, target) and source != target:
-            raise _error(errno.ENOTEMPTY, source)
-        if self.exists(target) and not self._make_room(source, target, is_folder):
+        if is_folder and is_in(target, source) and target != source:
+            raise os_error(errno.EINVAL, source)
+        if is_in(source, target) and source != target:
+            raise os_error(errno.ENOTEMPTY, source)
+        is_there = self.exists(target)
+        if is_there and os.path.samestat(os.lstat(self.place(source)), os.lstat(self.place(target))):
             return
+        for each in (source, target):
+            self._check(parent(each), os.W_OK | os.X_OK, each)
+        if is_there and self.is_folder(target) != is_folder:
+            raise os_error(errno.ENOTDIR if is_folder else errno.EISDIR, target)
+        if is_folder and parent(source) != parent(target):
+            self._check(source, os.W_OK)  # what ".." is in it changes
+        if is_there:
+            (self.remove_folder if is_folder else self.remove)(target)
         own = self._claim_all(source)
         self._own_folder_of(target)
         os.rename(own, self._own_of_home(target))
@@ -412,26 +476,11 @@ class Overlay:
         self._touch_folder(source)
         self._touch_folder(target)
 
-    def _make_room(self, source: str, target: str, is_folder: bool) -> bool:
-        """Remove what a rename replaces; False when both are one file."""
-        if self.is_folder(target):
-            if not is_folder:
-                raise _error(errno.EISDIR, target)
-            if source != target:
-                self.remove_folder(target)
-            return source != target
-        if is_folder:
-            raise _error(errno.ENOTDIR, target)
-        if os.path.samestat(os.lstat(self.place(source)), os.lstat(self.place(target))):
-            return False
-        self.remove(target)
-        return True
-
     def _claim_all(self, path: str) -> str:
         self._own_folder_of(path)
         own = self.claim(path)
         if self.is_folder(path):
-            for name in self.names(path):
+            for name in self._names(path):
                 self._claim_all(f"{path}/{name}")
         return own
 
@@ -445,11 +494,19 @@ class Overlay:
         """
         path = self.real(path, follow)
         if not self.exists(path):
-            raise _error(errno.ENOENT, path)
-        own = path if self.is_system(path) or _is_special(self.place(path)) else self.claim(path)
+            raise os_error(errno.ENOENT, path)
+        own = path if self.is_system(path) or is_special(self.place(path)) else self.claim(path)
         how(own)
         self.stamps.changed(os.lstat(own))
         return own
+
+    def change_mode(self, path: str | int, mode: int, follow: bool = True) -> None:
+        """`os.chmod` of a path, or of an open file; the host's own stays as it is."""
+        if isinstance(path, int):
+            self.stamps.set_mode(os.fstat(path), mode)
+        else:
+            self.stamps.set_mode(os.lstat(self.change(path, lambda place: None, follow)), mode)
+        self._no_links.clear()
 
     def truncate(self, path: str, length: int) -> None:
         """`os.truncate` of a path."""
@@ -506,7 +563,7 @@ class Overlay:
         if old:
             self._top, self._remove = "", bool
             new = self._home()
-            _copy_tree(old, new, self.stamps)
+            copy_tree(old, new, self.stamps)
         for descriptor in list(self._descriptors):
             try:
                 place, at = place_of(descriptor), os.lseek(descriptor, 0, os.SEEK_CUR)
@@ -518,43 +575,6 @@ class Overlay:
             os.lseek(again, at, os.SEEK_SET)
             os.dup2(again, descriptor, inheritable=False)
             os.close(again)
-
-
-def _copy_tree(old: str, new: str, stamps: Stamps) -> None:
-    from shutil import copy2
-
-    links: dict[tuple[int, int], str] = {}
-    for folder, folders, names in os.walk(old):
-        inside = new + folder.removeprefix(old)
-        for name in (*folders, *names):
-            source, target = os.path.join(folder, name), os.path.join(inside, name)
-            real = os.lstat(source)
-            if stat.S_ISDIR(real.st_mode):
-                os.mkdir(target)
-                os.chmod(target, stat.S_IMODE(real.st_mode))
-            elif key_of(real) in links:
-                os.link(links[key_of(real)], target)
-                continue
-            else:
-                copy2(source, target, follow_symlinks=False)
-                links[key_of(real)] = target
-            stamps.moved(key_of(real), key_of(os.lstat(target)))
-
-
-def _error(number: int, path: str) -> OSError:
-    return OSError(number, os.strerror(number), path)
-
-
-def _is_in(path: str, folder: str) -> bool:
-    return path == folder or path.startswith(folder + "/")
-
-
-def _is_special(place: str) -> bool:
-    try:
-        mode = os.stat(place).st_mode
-    except OSError:
-        return False
-    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode) or stat.S_ISLNK(mode))
 
 
 def _remove_tree(top: str, process: int) -> None:

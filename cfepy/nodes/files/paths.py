@@ -72,3 +72,13 @@ def place_of(descriptor: int) -> str:
         return os.readlink(f"/proc/self/fd/{descriptor}")
     except OSError:
         return ""
+
+
+def is_in(path: str, folder: str) -> bool:
+    """Whether a path is a folder, or one of what is in it."""
+    return path == folder or path.startswith(folder + "/")
+
+
+def os_error(number: int, path: str) -> OSError:
+    """The error of the system about a path."""
+    return OSError(number, os.strerror(number), path)

@@ -1,7 +1,10 @@
 """What files say of themselves: numbers in the order in which a run first looks at them, and times of the run's clock.
 
 A file of the host is as old as it is there, but never younger than the run, whose clock may stand in 1980. All else
-that another computer would answer differently (device, blocks, sizes and links of folders) is the same for all.
+that another computer or user would have otherwise (owner, device, blocks, sizes of folders, links of what is not the
+run's own) is the same for all. Permissions are kept here for files of the run, which lie on the disk such that cfepy
+can work with them; of a file of the host those of its owner count, and the others' follow from them, as the umask of
+who made it is no matter.
 """
 
 from __future__ import annotations
@@ -19,6 +22,10 @@ NEEDED = "cfepy.folder"  # of each folder that must be there, since something is
 MADE = "cfepy.files"  # and of the folder in which a run has its own files
 DEVICE = 1
 BLOCK = 4096
+USER = GROUP = 1000
+"""The owner of all files: the user that all programs of a run are."""
+UMASK = 0o022
+_LINK_MODE = 0o777
 _SECTOR = 512
 _MARK_NS = NS_PER_S  # the real time of a file that nobody has written into since it was looked at
 
@@ -48,14 +55,24 @@ class Stamps:
         self._start_ns = now_ns()
         self._numbers: dict[Key, int] = {}
         self._stamps: dict[Key, Stamp] = {}
+        self._modes: dict[Key, int] = {}
         self._count = 1
 
-    def made(self, real: os.stat_result, like: os.stat_result | None = None) -> None:
-        """The run has a new file of its own; it is a copy of the host's when `like` is given."""
+    def made(self, real: os.stat_result, like: os.stat_result | None = None, mode: int | None = None) -> None:
+        """The run has a new file of its own.
+
+        Args:
+            real: what the computer says of it.
+            like: it is a copy of this one of the host.
+            mode: its permissions, if the run said them.
+        """
         key, now = key_of(real), self.now_ns()
         if like is not None:
             self._numbers[key] = self._number(key_of(like))
             now = self._of_host(like.st_mtime_ns)
+            mode = self.mode(like)
+        if mode is not None:
+            self._modes[key] = mode & ~UMASK if like is None else mode
         self._stamps[key] = Stamp(now, now, now)
 
     def written(self, key: Key) -> None:
@@ -79,6 +96,7 @@ class Stamps:
         if real.st_nlink <= 1 or stat.S_ISDIR(real.st_mode):
             self._numbers.pop(key_of(real), None)
             self._stamps.pop(key_of(real), None)
+            self._modes.pop(key_of(real), None)
 
     def moved(self, old: Key, new: Key) -> None:
         """A file of the run is another one of the computer's from now on."""
@@ -86,6 +104,23 @@ class Stamps:
             self._numbers[new] = self._numbers.pop(old)
         if old in self._stamps:
             self._stamps[new] = self._stamps.pop(old)
+        if old in self._modes:
+            self._modes[new] = self._modes.pop(old)
+
+    def mode(self, real: os.stat_result) -> int:
+        """The permissions of a file."""
+        if stat.S_ISLNK(real.st_mode):
+            return _LINK_MODE
+        mode = self._modes.get(key_of(real))
+        if mode is None:
+            owner = real.st_mode >> 6 & 0o7
+            mode = owner * 0o111 & ~UMASK
+        return mode
+
+    def set_mode(self, real: os.stat_result, mode: int) -> None:
+        """The program gives a file other permissions."""
+        self._modes[key_of(real)] = stat.S_IMODE(mode)
+        self.changed(real)
 
     def dressed(self, real: os.stat_result, own: str | int | None) -> os.stat_result:
         """What the program gets to know of a file.
@@ -95,16 +130,16 @@ class Stamps:
             own: place or descriptor of a file of the run's own; None for one of the host's.
         """
         is_folder = stat.S_ISDIR(real.st_mode)
-        if not (is_folder or stat.S_ISREG(real.st_mode) or stat.S_ISLNK(real.st_mode)):
-            return real
         size = BLOCK if is_folder else real.st_size
+        is_device = stat.S_ISCHR(real.st_mode) or stat.S_ISBLK(real.st_mode)
+        mode = stat.S_IFMT(real.st_mode) | (stat.S_IMODE(real.st_mode) if is_device else self.mode(real))
         times = self._times(real, own)
-        number, links = self._number(key_of(real)), 1 if is_folder else real.st_nlink
-        plain = (real.st_mode, number, DEVICE, links, real.st_uid, real.st_gid, size)
+        number, links = self._number(key_of(real)), 1 if is_folder or own is None else real.st_nlink
+        plain = (mode, number, DEVICE, links, USER, GROUP, size)
         more: dict[str, float] = {
             "st_blksize": BLOCK,
             "st_blocks": -(-size // BLOCK) * (BLOCK // _SECTOR),
-            "st_rdev": 0,
+            "st_rdev": getattr(real, "st_rdev", 0) if is_device else 0,
         }
         for name, value in zip(("st_atime", "st_mtime", "st_ctime"), times, strict=True):
             more |= {name: value / NS_PER_S, f"{name}_ns": value}
@@ -139,3 +174,41 @@ class Stamps:
 def key_of(real: os.stat_result) -> Key:
     """What tells a real file from others."""
     return real.st_dev, real.st_ino
+
+
+def asked_by(flags: int) -> int:
+    """What of a file is asked for by the flags of `os.open`."""
+    writes = flags & (os.O_WRONLY | os.O_RDWR | os.O_TRUNC)
+    reads = not flags & os.O_WRONLY
+    return (os.R_OK if reads else 0) | (os.W_OK if writes else 0)
+
+
+def is_special(place: str) -> bool:
+    """Whether at a place is something else than a file, a folder or a link."""
+    try:
+        mode = os.stat(place).st_mode
+    except OSError:
+        return False
+    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode) or stat.S_ISLNK(mode))
+
+
+def copy_tree(old: str, new: str, stamps: Stamps) -> None:
+    """Copy what a run wrote to another folder, for one that goes on in a forked process."""
+    from shutil import copy2
+
+    links: dict[tuple[int, int], str] = {}
+    for folder, folders, names in os.walk(old):
+        inside = new + folder.removeprefix(old)
+        for name in (*folders, *names):
+            source, target = os.path.join(folder, name), os.path.join(inside, name)
+            real = os.lstat(source)
+            if stat.S_ISDIR(real.st_mode):
+                os.mkdir(target)
+                os.chmod(target, stat.S_IMODE(real.st_mode))
+            elif key_of(real) in links:
+                os.link(links[key_of(real)], target)
+                continue
+            else:
+                copy2(source, target, follow_symlinks=False)
+                links[key_of(real)] = target
+            stamps.moved(key_of(real), key_of(os.lstat(target)))

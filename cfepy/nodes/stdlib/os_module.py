@@ -13,8 +13,10 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes.files import LISTED, Entries, FileCalls
+from cfepy.nodes.files.stamps import UMASK
 from cfepy.nodes.refused import PROCESS, RefusedError, refusal
 from cfepy.nodes.stdlib.streams import COLUMNS, ROWS, STDIN
+from cfepy.nodes.stdlib.users import identity
 from cfepy.nodes.synth import rebind
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ _PROCESSES = (
 )
 _NO_EFFECT = (
     "nice", "register_at_fork", "sched_setaffinity", "sched_setparam", "sched_setscheduler", "setpriority",
-    "setpgid", "setpgrp", "setsid", "umask",
+    "setpgid", "setpgrp", "setsid",
 )
 # fmt: on
 
@@ -59,6 +61,7 @@ def os_module(universe: Universe) -> ModuleType:
     names.update({name: lambda *args, **options: 0 for name in _NO_EFFECT if hasattr(os, name)})
     names.update(paths(universe))
     names.update(_process(universe))
+    names.update(identity(universe))
     module = rebind(os, **names)
     modules = universe.importer.modules
     modules["os"] = module  # its own path functions import it
@@ -156,7 +159,6 @@ def _process(universe: Universe) -> dict[str, Any]:
         "environ": environ,
         "get_terminal_size": get_terminal_size,
         "getloadavg": lambda: (0.0, 0.0, 0.0),
-        "getlogin": lambda: environ.get("USER", "node"),
         "getpid": lambda: universe.pid,
         "getppid": lambda: 1,
         "getrandom": lambda size, flags=0: universe.rng.randbytes(size),
@@ -167,6 +169,7 @@ def _process(universe: Universe) -> dict[str, Any]:
         "sched_getaffinity": lambda pid=0: {0},
         "sched_yield": lambda: universe.clock.wait(0),
         "times": times,
+        "umask": lambda mask: UMASK,
         "uname": uname,
         "unsetenv": environ.__delitem__,
         "urandom": universe.rng.randbytes,

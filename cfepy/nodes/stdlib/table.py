@@ -51,6 +51,18 @@ def _locale(universe: Universe) -> ModuleType:
     return locale_module(universe)
 
 
+def _grp(universe: Universe) -> ModuleType:
+    from cfepy.nodes.stdlib.users import grp_module
+
+    return grp_module(universe)
+
+
+def _pwd(universe: Universe) -> ModuleType:
+    from cfepy.nodes.stdlib.users import pwd_module
+
+    return pwd_module(universe)
+
+
 def _psutil(universe: Universe) -> ModuleType:
     from cfepy.nodes.stdlib.process_modules import psutil_module
 
@@ -122,6 +134,7 @@ MADE: Mapping[str, Callable[[Universe], ModuleType]] = {
     "fcntl": _fcntl,
     "functools": lookup.functools_module,
     "gc": _gc,
+    "grp": _grp,
     "importlib": sys_module.importlib_module,
     "importlib.util": sys_module.importlib_util_module,
     "inspect": lookup.inspect_module,
@@ -133,6 +146,7 @@ MADE: Mapping[str, Callable[[Universe], ModuleType]] = {
     "resource": _resource,
     "select": _select,
     "psutil": _psutil,
+    "pwd": _pwd,
     "signal": signal_module.signal_module,
     "socket": _socket,
     "sqlite3": _sqlite3,

@@ -1,11 +1,15 @@
-"""Random sequences of file operations give what they give on a real folder, and leave the host's folder as it was."""
+"""Random sequences of file operations give what they give on a real folder, and leave the host's folder as it was.
+
+The real folder is an ordinary user's, who may not do everything, also where root runs the tests.
+"""
 
 from __future__ import annotations
 
 import io
 import os
 import stat
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -27,10 +31,29 @@ operations = st.lists(
         st.tuples(st.sampled_from(("mkdir", "rmdir", "remove", "listdir", "stat", "lstat", "readlink", "walk")), paths),
         st.tuples(st.sampled_from(("rename", "replace", "link", "symlink")), paths, paths),
         st.tuples(st.just("truncate"), paths, st.integers(0, 5)),
-        st.tuples(st.just("chmod"), paths, st.sampled_from((0o644, 0o600, 0o755))),
+        st.tuples(st.just("chmod"), paths, st.sampled_from((0o644, 0o600, 0o755, 0o500, 0o300, 0o000))),
+        st.tuples(st.just("access"), paths, st.sampled_from((os.F_OK, os.R_OK, os.W_OK, os.X_OK, os.R_OK | os.W_OK))),
+        st.tuples(st.just("chown"), paths, st.sampled_from((-1, 0))),
     ),
     max_size=14,
 )
+
+
+NOBODY = 65534
+
+
+@contextmanager
+def ordinary_user() -> Iterator[None]:
+    """Around what a real folder does: it is no root that asks, and files are made as usual."""
+    is_root, mask = hasattr(os, "geteuid") and os.geteuid() == 0, os.umask(0o022)
+    if is_root:
+        os.seteuid(NOBODY)
+    try:
+        yield
+    finally:
+        if is_root:
+            os.seteuid(0)
+        os.umask(mask)
 
 
 def fill(folder: Path) -> None:
@@ -44,12 +67,20 @@ def fill(folder: Path) -> None:
 
 def tree(system: Any, folder: str) -> dict[str, Any]:
     """All that is below a folder: names, kinds, permissions, sizes, targets of links."""
-    found = {}
-    for name in sorted(system.listdir(folder)):
+    found: dict[str, Any] = {}
+    try:
+        names = sorted(system.listdir(folder))
+    except OSError as error:
+        return {"error": error.errno}
+    for name in names:
         path = os.path.join(folder, name)
-        facts = system.lstat(path)
+        try:
+            facts = system.lstat(path)
+        except OSError as error:
+            found[name] = error.errno
+            continue
         if stat.S_ISDIR(facts.st_mode):
-            found[name] = tree(system, path)
+            found[name] = (facts.st_mode, tree(system, path))
         elif stat.S_ISLNK(facts.st_mode):
             found[name] = system.readlink(path)
         else:
@@ -67,6 +98,10 @@ def act(system: Any, opening: Callable[..., Any], folder: str, operation: tuple[
             with opening(path, mode) as file:
                 read = file.read() if mode != "wb" and (mode[0] == "r" or "+" in mode) else None
                 return read, file.write(content) if mode != "rb" else None, file.name.removeprefix(folder)
+        if what == "access":
+            return system.access(path, *rest, effective_ids=os.access in os.supports_effective_ids)
+        if what == "chown":
+            return system.chown(path, *rest, -1)
         if what == "symlink":
             return system.symlink(first, os.path.join(folder, rest[0]))
         if what in ("rename", "replace", "link"):
@@ -87,19 +122,26 @@ def act(system: Any, opening: Callable[..., Any], folder: str, operation: tuple[
         return str(error)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(operations)
 def test_as_on_a_real_folder(script: list[tuple[Any, ...]]) -> None:
     with TemporaryDirectory() as host, TemporaryDirectory() as other, Kernel() as kernel:
+        if hasattr(os, "geteuid") and os.geteuid() == 0:
+            os.chown(other, NOBODY, -1)
         fill(Path(host))
-        fill(Path(other))
+        with ordinary_user():
+            fill(Path(other))
         before = tree(os, host)
         overlay = Overlay()
         universe = Universe(kernel, name="node", overlay=overlay)
         system, opening = universe.importer.load("os"), universe.builtins.open
         for operation in script:
-            theirs = act(os, open, other, operation)
+            with ordinary_user():
+                theirs, their_tree = act(os, open, other, operation), tree(os, other)
             assert act(system, opening, host, operation) == theirs, operation
-            assert tree(system, host) == tree(os, other), operation
+            assert tree(system, host) == their_tree, operation
         assert tree(os, host) == before
         overlay.close()
+        for folder, folders, _ in os.walk(other):
+            for name in folders:
+                os.chmod(os.path.join(folder, name), 0o700)  # so that it can be removed
