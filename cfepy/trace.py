@@ -20,12 +20,14 @@ GET = b"G"  # followed by the queue
 RECEIVE = b"R"  # followed by the pipe
 DROP = b"D"  # followed by the pipe
 NOTE = b"N"  # followed by a text, UTF-8
-UNSENT = b"U"  # followed by a topic, a zero byte, and a message without a subscriber; only in runs that are compared
+UNSENT = b"U"  # followed by a topic, a zero byte and a message that the bus does not carry; a packet has no topic
 
 CALLED = b"C"  # followed by a place in C, a zero byte and the numbers of a call there; only in runs that are compared
-ONLY_COMPARED = (UNSENT, CALLED)
+ONLY_COMPARED = (CALLED,)
 
 BATCH = 4096
+LARGE = 65536
+"""Bytes of a record that is not kept until a batch is full."""
 
 pack_time: Callable[[bytes, int], bytes] = struct.Struct("<cq").pack
 unpack_time = struct.Struct("<xq").unpack
@@ -110,7 +112,12 @@ class Trace:
 
     def flush(self) -> None:
         """Hash what was collected and let it go."""
-        self._hash.update(b"".join(self.records))
+        records = self.records
+        if records and len(records[-1]) > LARGE:  # which is not copied
+            self._hash.update(b"".join(records[:-1]))
+            self._hash.update(records[-1])
+        else:
+            self._hash.update(b"".join(records))
         if self._sink is not None:
             self._sink(self.records)
         self.records.clear()

@@ -75,7 +75,8 @@ class TraceText:
             return f"console {record[1:].decode('utf-8', 'replace')}"
         if kind == tr.UNSENT:
             topic, _, message = record[1:].partition(b"\0")
-            return f"publish {topic.decode()} length {len(message)}, which nobody gets"
+            what = f"publish {topic.decode()} length {len(message)}" if topic else self._packet(message)
+            return f"{what}, not over the bus"
         if kind == tr.CALLED:
             place, _, numbers = record[1:].decode("utf-8", "replace").partition("\0")
             return f"calls from {PurePath(place).name}" + (f" with {numbers}" if numbers else "")

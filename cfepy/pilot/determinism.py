@@ -14,10 +14,8 @@ from dataclasses import dataclass, field
 from itertools import accumulate, pairwise
 from typing import Any, BinaryIO
 
-from cfepy.mission import hearing
 from cfepy.rtos import Kernel
-from cfepy.sb import SoftwareBus
-from cfepy.trace import CALLED, ONLY_COMPARED, UNSENT, Trace
+from cfepy.trace import CALLED, ONLY_COMPARED, Trace
 
 _head = struct.Struct("<II")  # records, and bytes that follow; no records: the bytes are what ends the stream
 _LENGTH = "I"
@@ -34,17 +32,6 @@ class ComparedTrace(Trace):
         if self._sink is not None:
             self._sink(self.records)
         self.records.clear()
-
-
-def comparing(bus: type[SoftwareBus], trace: Trace) -> type[SoftwareBus]:
-    """A class of Software Bus that records what is published without a subscriber, which is never sent.
-
-    Args:
-        bus: the class to begin with.
-        trace: where it is recorded.
-    """
-
-    return hearing(bus, lambda link, message: trace.append(UNSENT + link.name.encode() + b"\0" + message))
 
 
 def hear_calls(kernel: Kernel, trace: Trace) -> None:

@@ -37,11 +37,12 @@ from cfepy.status import (
     OS_ERR_INVALID_ID,
     CfeError,
 )
-from cfepy.trace import BATCH
+from cfepy.trace import BATCH, LARGE, UNSENT
 
 DEFAULT_QOS = 0
 POLL = 0
 SECONDARY_BIT = SECONDARY >> 8
+UNSENT_PACKET = UNSENT + b"\0"
 FIRST_SEGMENT = 0x40  # of the sequence flags in byte 2: a message begins, whole or in segments
 unpack_primary = struct.Struct(">HH").unpack_from
 pack_telemetry = struct.Struct(">HHH6s").pack
@@ -221,8 +222,8 @@ class SubscriptionServices(PipeServices):
 class SoftwareBus(SubscriptionServices):
     """One processor's Software Bus; the arguments are those of `BusCore`.
 
-    On a bus that is watched, `on_unsent` is called with each message that a sender keeps back because it has no
-    subscriber: sender, bytes.
+    A message that no pipe gets is in the trace as well, see `unsent`. On a bus that is watched, `on_unsent` is called
+    with each message that a ROS publisher keeps back because it has no subscriber: sender, bytes.
     """
 
     on_unsent: ClassVar[Callable[[Any, bytes], object] | None] = None
@@ -271,6 +272,8 @@ class SoftwareBus(SubscriptionServices):
         """
         size = len(packet)
         if not 6 < size <= self._max_size:
+            if size > 6:
+                self.unsent(UNSENT_PACKET + packet)
             self.check_header(packet, size)
         msg_id, bits = unpack_primary(packet)
         route = self.routes.get(msg_id)
@@ -360,6 +363,7 @@ class SoftwareBus(SubscriptionServices):
     def _relayed(self, route: Route, packet: bytes | bytearray) -> bytes:
         """A packet from elsewhere, as it is."""
         if (packet[4] << 8 | packet[5]) + 7 != len(packet):
+            self.unsent(UNSENT_PACKET + packet)
             text = f"Send Err:Bad input argument,Arg 0x0,App {self.caller_name()}"
             raise self.send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
         route.relayed += 1
@@ -429,7 +433,20 @@ class SoftwareBus(SubscriptionServices):
 
     # -- what can go wrong -----------------------------------------------------------------------------------------
 
+    def unsent(self, record: bytes) -> None:
+        """Record a message that the bus does not carry: what a program has published is in the digest of its run.
+
+        Args:
+            record: of the kind UNSENT.
+        """
+        if self.kernel.record is None:
+            return
+        self.kernel.record(record)
+        if len(record) > LARGE or len(self._records) > BATCH:
+            self._flush()
+
     def _no_route(self, packet: bytes | bytearray) -> None:
+        self.unsent(UNSENT_PACKET + packet)
         self.check_header(packet, len(packet))
         msg_id = packet[0] << 8 | packet[1]
         self.counters.no_subscribers += 1
@@ -438,6 +455,7 @@ class SoftwareBus(SubscriptionServices):
         self.report_once(ev.SEND_NO_SUBS_EID, ev.INFORMATION, text)
 
     def _no_buffer(self, packet: bytes | bytearray) -> CfeError:
+        self.unsent(UNSENT_PACKET + packet)
         where = f"MsgId 0x{packet[0] << 8 | packet[1]:x},app {self.caller_name()},size {len(packet)}"
         return self.send_error(ev.GET_BUF_ERR_EID, CFE_SB_BUF_ALOC_ERR, f"Send Err:Request for Buffer Failed. {where}")
 

@@ -1,8 +1,8 @@
 """`Link`: the publishing side of one node on one topic, shared by all of its handles (CFE_SB_TransmitMsg).
 
 The hot path is `Link.send`: one serialisation, one call of the bus. A message that does not fit in a packet goes out in
-segments, one without a subscriber is not even serialised. In a run that is recorded the link is a `TappedLink`, which
-shows such messages to the recorder all the same, without virtual time, sequence number or trace record.
+segments. One without a subscriber goes into the trace alone, without virtual time or sequence number; in a run that is
+recorded the link is a `TappedLink`, which shows such messages to the recorder as well.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from cfepy.status import CfeError
+from cfepy.trace import UNSENT
 from rospy_shim.client import connecting
 from rospy_shim.client.exceptions import ROSException, ROSSerializationException
 from rospy_shim.client.leftovers import Leftovers, half_of
@@ -74,6 +75,8 @@ class Link(TopicSide):
         self._routes: dict[int, Route] = bus.routes
         self._transmit = bus.transmit_msg
         self._head = b""
+        self._unsent_head = UNSENT + name.encode() + b"\0"
+        self._unsent: Callable[[bytes], object] = bus.unsent
         self._charge = node.kernel.charge
         self._call_ns = node.call_ns
         self._count_items = getattr(data_class, "_count_items", None) if node.call_ns else None
@@ -184,6 +187,7 @@ class Link(TopicSide):
             self.latch = message
         if connection_override in self.peers:
             payload = self.serialize(message)
+            self._unsent(self._unsent_head + payload)  # the bus does not carry it
             if self.leftovers is None or self.leftovers.goes_to(connection_override, payload):
                 connection_override.deliver(payload, self.header)
 
@@ -199,6 +203,7 @@ class Link(TopicSide):
             self.latch = message
         route = self._routes.get(self.msg_id)
         if route is None or not route.active or (self.expected and not self.get_num_connections()):
+            self._keep_back(message)
             return
         if self._slot_ns:
             self._hold_back()
@@ -218,6 +223,14 @@ class Link(TopicSide):
                 self._transmit(self._head + payload)
         except CfeError as error:
             self.node.logs.logerr("publish on %s: %s", self.name, error)
+
+    def _keep_back(self, message: Any) -> None:
+        """Record a message without a subscriber. As in rospy, a field that its type cannot carry is no error then."""
+        try:
+            payload = self._pack(message)
+        except Exception:  # whatever a generated class raises
+            payload = half_of(message)
+        self._unsent(self._unsent_head + payload)
 
     def _hold_back(self) -> None:
         """On a board with a highest publishing rate: wait for a slot of time in which nothing went out yet."""

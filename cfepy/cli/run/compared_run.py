@@ -23,10 +23,9 @@ from cfepy.ground import dictionary_of, flat, library_of, plain, text_of, topics
 from cfepy.journal import Replay, read_journal, staged
 from cfepy.mission import Mission, MissionSpec
 from cfepy.pilot import RunPlan, fly
-from cfepy.pilot.determinism import ComparedTrace, RecordWriter, comparing, hear_calls
+from cfepy.pilot.determinism import ComparedTrace, RecordWriter, hear_calls
 from cfepy.pilot.determinism_look import Look, LookingTrace, outside_lines
 from cfepy.pilot.open_world import OpenWorld
-from cfepy.sb import SoftwareBus
 from cfepy.status import CfeError, UsageError
 from cfepy.trace import UNSENT
 
@@ -37,7 +36,10 @@ LINES = 6  # records that are shown before the one that is looked at
 def fields_of(record: bytes, mission: Mission) -> dict[str, str]:
     """Name and value of each field; none for a record of another kind, or of a type that is not known."""
     if record[:1] == UNSENT:
-        return _of_message(record, mission)
+        topic, _, message = record[1:].partition(b"\0")
+        if topic:
+            return _of_message(topic.decode(), message, mission)
+        record = message
     if not record or record[0] >= _FIRST_MARK:
         return {}
     dictionary = dictionary_of(mission.spec)
@@ -50,10 +52,9 @@ def fields_of(record: bytes, mission: Mission) -> dict[str, str]:
     return {"sequence": str(decoded.sequence), **time, **_texts(decoded.values)}
 
 
-def _of_message(record: bytes, mission: Mission) -> dict[str, str]:
-    """The facts of a message without a subscriber."""
-    name, _, data = record[1:].partition(b"\0")
-    topic = next((each for each in topics_of(mission) if each.name == name.decode()), None)
+def _of_message(name: str, data: bytes, mission: Mission) -> dict[str, str]:
+    """The facts of a message that the bus does not carry."""
+    topic = next((each for each in topics_of(mission) if each.name == name), None)
     if topic is None or not topic.type:
         return {}
     try:
@@ -117,10 +118,6 @@ class RecordPipe(Recorder):
         """Hear the calls of compiled applications as well."""
         hear_calls(mission.kernel, self.trace)
 
-    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """A bus that also records messages without a subscriber."""
-        return comparing(base, self.trace)
-
 
 class Lookout(Recorder):
     """The recorder of a run that looks at one record, and ends the process then and there.
@@ -143,10 +140,6 @@ class Lookout(Recorder):
     def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         if kind is None:
             self._seen(self._looking.look(b""))
-
-    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `RecordPipe.bus`; the two must make the same records."""
-        return comparing(base, self.trace)
 
     def begin(self, mission: Mission) -> None:
         """Learn the names in this mission."""
