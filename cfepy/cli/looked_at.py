@@ -150,6 +150,10 @@ def _replay(
     warnings: tuple[str, ...] = ()
     if not verdict.same:
         warnings = (f"this is not the run of {arguments.source}: the replay differs", *stage.reasons)
+    elif not verdict.proven:
+        why = "the journal is cut off" if verdict.cut_off else "its first checkpoint comes later"
+        text = f"this may not be the run of {arguments.source}: {why}"
+        warnings = (f"{text}; it was compared up to record {verdict.agreed.records:,}",)
     until = [] if arguments.until is None else ["--until", f"{arguments.until:g}"]
     command = command_line(["cfepy", "replay", arguments.source, *until])
     return LookedAt(flown, command, journal.plan.schedule.text(), stage.notes, warnings)

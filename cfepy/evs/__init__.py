@@ -7,6 +7,7 @@ it finds in its `Ports`.
 
 from __future__ import annotations
 
+from cfepy.evs.core import SentError
 from cfepy.evs.events import (
     CRITICAL,
     DEBUG,
@@ -49,4 +50,5 @@ __all__ = [
     "TELEMETRY",
     "EventLog",
     "EventServices",
+    "SentError",
 ]

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from cfepy.config import PlatformConfig
 from cfepy.console import Console
 from cfepy.evs import packets as pk
@@ -35,6 +37,15 @@ _LONG_HEADER = _primary_header(pk.LONG_EVENT_MSG_MID, pk.LONG_EVENT)
 _SHORT_HEADER = _primary_header(pk.SHORT_EVENT_MSG_MID, pk.SHORT_EVENT)
 
 
+class SentError(NamedTuple):
+    """An ERROR or CRITICAL event: its type and text, when it was sent in virtual ns, and the task that sent it."""
+
+    event_type: int
+    text: str
+    at_ns: int
+    task: str
+
+
 class EventCore:
     """State of Event Services and the way of an event through it; the arguments are those of `EventServices`.
 
@@ -50,6 +61,7 @@ class EventCore:
         unregistered_count: applications that were reported as unregistered, likewise.
         counts: events sent in this run by event type, for reports.
         errors_by_app: ERROR and CRITICAL events sent in this run by application name, for reports.
+        first_errors: the first of them by application name and event id.
     """
 
     def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, console: Console) -> None:
@@ -65,6 +77,7 @@ class EventCore:
         self.sent = self.truncated = self.unregistered_count = 0
         self.counts: dict[int, int] = {}
         self.errors_by_app: dict[str, int] = {}
+        self.first_errors: dict[tuple[str, int], SentError] = {}
         self._console = console
 
     def dispatch(
@@ -145,8 +158,16 @@ class EventCore:
             self._write_ports(clock.text() if time is None else clock.print_(time), app.name, event_id, message)
         if self.format_mode == pk.FORMAT_SHORT:
             packet = b"".join((_SHORT_HEADER, secondary_header, pk.SHORT_EVENT.pack(PacketID=packet_id)))
+        if event_type >= ERROR:
+            self._note_error(app.name, event_id, event_type, message)
         self.ports.sb.transmit_msg(packet)
         self._count(app, event_type, is_cut)
+
+    def _note_error(self, app_name: str, event_id: int, event_type: int, message: bytes) -> None:
+        self.errors_by_app[app_name] = self.errors_by_app.get(app_name, 0) + 1
+        if (app_name, event_id) not in self.first_errors:
+            text, task = message.decode("utf-8", "replace"), self.kernel.current.name
+            self.first_errors[app_name, event_id] = SentError(event_type, text, self.kernel.now, task)
 
     def _fit(self, text: str) -> tuple[bytes, bool]:
         """The bytes of a text as a C string that fits the packet, and whether it had to be cut."""
@@ -169,5 +190,3 @@ class EventCore:
         app.sent = min(U16_MAX, app.sent + 1)
         self.truncated += is_cut
         self.counts[event_type] = self.counts.get(event_type, 0) + 1
-        if event_type >= ERROR:
-            self.errors_by_app[app.name] = self.errors_by_app.get(app.name, 0) + 1

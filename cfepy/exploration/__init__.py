@@ -18,7 +18,6 @@ from cfepy.faces import face
 if TYPE_CHECKING:
     from cfepy.exploration.crews import make_crew
     from cfepy.exploration.expedition import DEFAULT_SEEDS, Expedition, Report, Told
-    from cfepy.exploration.failures import TracebackReader
     from cfepy.exploration.lot import Lot, answers
     from cfepy.exploration.moves import MadeMove
     from cfepy.exploration.progress import make_progress
@@ -70,7 +69,6 @@ __all__ = [
     "TaskLook",
     "Told",
     "TopicNumbers",
-    "TracebackReader",
     "Trial",
     "Tried",
     "Verdict",
@@ -135,7 +133,6 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "Report",
                 "Told",
             ),
-            ".failures": ("TracebackReader",),
             ".moves": ("MadeMove",),
             ".replays": ("GONE", "NOT_POSSIBLE", "STILL_THERE", "ReplayedFailure", "replay_all"),
             ".shrink": (

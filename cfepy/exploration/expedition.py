@@ -135,6 +135,7 @@ class Report:
             "schedules": self.tally.done,
             "failed": self.tally.failed,
             "troubled": self.tally.troubled,
+            "notes": list(self.notes),
             "interrupted": self.tally.interrupted,
             "failures": found,
             "breadth": self.breadth.to_dict(),

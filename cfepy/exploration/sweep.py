@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from cfepy.exploration.lot import Lot
 from cfepy.exploration.shipment import PlanElsewhere
 from cfepy.monitors import Arrivals, TrafficWatch
-from cfepy.pilot import BootError, Results, RunPlan, fly
+from cfepy.pilot import BootError, Results, RunPlan, SentNames, fly
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
@@ -65,6 +65,7 @@ class TopicNumbers:
         held_back: messages that a publisher could send only later, over the whole run.
         delivered_hz: at which rate it took those.
         latency_mean_us, latency_max_us: virtual time from the sending of a message to its taking.
+        hint: the end of a sentence that says that no message came.
     """
 
     name: str
@@ -75,6 +76,7 @@ class TopicNumbers:
     delivered_hz: float
     latency_mean_us: float
     latency_max_us: float
+    hint: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +111,8 @@ class PointNumbers:
         if self.problem or self.trouble:
             return self.problem or self.trouble.splitlines()[-1]
         for topic in self.topics:
+            if not topic.sent:
+                return f"no message was measured of {topic.name}{topic.hint}"
             if topic.lost:
                 return f"{topic.name} lost {topic.lost} of {topic.sent}"
             if rate_hz is not None and topic.delivered_hz < rate_hz * (1 - RATE_TOLERANCE):
@@ -144,7 +148,7 @@ class Sweep(Lot[Point, PointNumbers]):
             round(sum(app.cpu_share for app in results.apps), 9),
             results.memory.peak,
             results.memory.limit,
-            tuple(self._numbers(results, watch)),
+            tuple(self._numbers(results, watch, SentNames(flown.mission))),
             _first_problem(results),
             flown.trace,
         )
@@ -153,7 +157,7 @@ class Sweep(Lot[Point, PointNumbers]):
         """See `Lot.died`."""
         return PointNumbers(board=subject.board or "", problem=f"the process died: {fate}")
 
-    def _numbers(self, results: Results, watch: TrafficWatch) -> Iterator[TopicNumbers]:
+    def _numbers(self, results: Results, watch: TrafficWatch, sent: SentNames) -> Iterator[TopicNumbers]:
         by_name = {topic.name: topic for topic in results.topics}
         if self.topics:
             names = list(self.topics)
@@ -162,7 +166,7 @@ class Sweep(Lot[Point, PointNumbers]):
         for name in names:
             topic = by_name.get(name)
             if topic is None:
-                yield TopicNumbers(name, 0, 0, 0, 0, 0.0, 0.0, 0.0)
+                yield TopicNumbers(name, 0, 0, 0, 0, 0.0, 0.0, 0.0, sent.why_not([name]))
                 continue
             pipes = list(watch.arrivals.get(topic.msg_id, {}).values()) or [Arrivals()]
             count = sum(each.count for each in pipes)
@@ -179,7 +183,7 @@ class Sweep(Lot[Point, PointNumbers]):
 
 
 def _first_problem(results: Results) -> str:
-    return next(iter((*results.script_problems, *results.problems)), "")
+    return next(iter(results.problems), "")
 
 
 class Knee(NamedTuple):

@@ -20,9 +20,9 @@ from cfepy.exploration.result_watch import Result, ResultWatch, differences, dig
 from cfepy.exploration.stuck import Waits, WaitWatch, stuck_for_good
 from cfepy.exploration.verdict import Failure, Verdict
 from cfepy.monitors import InversionWatch, Lack, Limits, LivenessWatch
-from cfepy.pilot import BootError, RunPlan, fly
+from cfepy.pilot import LEAVES_OTHERS_WAITING, BootError, RunPlan, fly
 from cfepy.rtos import ORDER, NotingPolicy, Policy, Schedule
-from cfepy.status import StallError, UsageError
+from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
 MOST_INVERSIONS = 3  # that are told of one failure
@@ -128,11 +128,12 @@ class Trial:
         except Exception:
             return Tried(replace(self._verdict(schedule, recorded, ()), trouble=traceback.format_exc()))
         if flown.stall is not None:
-            return Tried(self._stalled(schedule, recorded, watch, flown.stall), (), flown.notes)
+            told = self._verdict(schedule, recorded, watch.failures(flown.problems))
+            return Tried(replace(told, end_ns=watch.end_ns), (), flown.notes)  # results and digest there are none
         found = results.results()
-        failed = (*watch.failures(flown.outcome), *self._differences(found))
+        failed = (*watch.failures(flown.problems), *self._differences(found))
         failed += tuple(_lack(each) for watched in alive for each in watched.found)
-        if waits and not any(failure.kind in verdict.LEAVES_OTHERS_WAITING for failure in failed):
+        if waits and not any(failure.kind in LEAVES_OTHERS_WAITING for failure in failed):
             lost = {failure.task for failure in failed if failure.kind == verdict.STUCK}
             found_stuck = self._stuck(waits[0].waits, schedule, recorded, watch.end_ns)
             failed += tuple(failure for failure in found_stuck if failure.task not in lost)
@@ -145,14 +146,6 @@ class Trial:
         kernel = flown.mission.kernel
         code = tuple(looks[0].files.items()) if looks else ()
         return Tried(told, found, flown.notes, flown.mission.booted, kernel.tick_ns, kernel.tasks_made, code)
-
-    def _stalled(self, schedule: Schedule, policy: NotingPolicy, watch: FailureWatch, stall: StallError) -> Verdict:
-        """What went wrong until then, and the task that did not give up the CPU; results and digest there are none."""
-        where = f" ({stall.place})" if stall.place else ""
-        text = f"{stall.task} does not give up the CPU{where}"
-        last = Failure(verdict.STALLED, stall.app, text, stall.at_ns, "\n".join(stall.lines), stall.task)
-        told = self._verdict(schedule, policy, (*watch.failures(None), last))
-        return replace(told, end_ns=watch.end_ns)
 
     def _with_coverage(self, told: Verdict, look: CoverageLook, policy: NotingPolicy) -> Verdict:
         assert self.usual is not None

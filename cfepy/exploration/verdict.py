@@ -7,7 +7,6 @@ from each other more often than not, so a run counts for the first of them that 
 
 from __future__ import annotations
 
-import re
 from dataclasses import asdict, dataclass, field, fields
 from itertools import pairwise
 from statistics import median
@@ -15,73 +14,54 @@ from typing import Any
 
 from cfepy.exploration.coverage import Covered, ThingUse, from_plain, to_plain
 from cfepy.exploration.steps import TaskStep
+from cfepy.pilot import Failure, FailureKind
 from cfepy.rtos import Schedule
 from cfepy.status import UsageError
 
-DIED = "died"
-RAISED = "unhandled exception"
-ENDED = "ended with an error"
-RESET = "processor reset"
-DEADLINE = "deadline"
-DEADLOCK = "deadlock"
-RACE = "data race"
-OVERWRITE = "overwritten memory"
-STUCK = "stuck"
-STALLED = "stalled"
-EXPECTATION = "missed expectation"
-INVARIANT = "invariant"
-EVENT = "event"
-PROBLEM = "problem"
-RESULTS = "results differ"
-LONGEST = "longest"
-STARVED = "starved"
-LIVELOCK = "livelock"
+__all__ = [
+    "DEADLINE",
+    "DEADLOCK",
+    "DIED",
+    "ENDED",
+    "EVENT",
+    "EXPECTATION",
+    "INVARIANT",
+    "LIVELOCK",
+    "LONGEST",
+    "OVERWRITE",
+    "PROBLEM",
+    "RACE",
+    "RAISED",
+    "RESET",
+    "RESULTS",
+    "STALLED",
+    "STARVED",
+    "STUCK",
+    "Failure",
+    "Finding",
+    "Findings",
+    "Verdict",
+]
+
+DIED = FailureKind.DIED
+RAISED = FailureKind.RAISED
+ENDED = FailureKind.ENDED
+RESET = FailureKind.RESET
+DEADLINE = FailureKind.DEADLINE
+DEADLOCK = FailureKind.DEADLOCK
+RACE = FailureKind.RACE
+OVERWRITE = FailureKind.OVERWRITE
+STUCK = FailureKind.STUCK
+STALLED = FailureKind.STALLED
+EXPECTATION = FailureKind.EXPECTATION
+INVARIANT = FailureKind.INVARIANT
+EVENT = FailureKind.EVENT
+PROBLEM = FailureKind.PROBLEM
+RESULTS = FailureKind.RESULTS
+LONGEST = FailureKind.LONGEST
+STARVED = FailureKind.STARVED
+LIVELOCK = FailureKind.LIVELOCK
 SIMPLEST = 3  # runs that are kept of each finding, to be shrunk
-LEAVES_OTHERS_WAITING = frozenset([DIED, RAISED, ENDED, RESET, DEADLOCK, STALLED])
-"""What takes a task away, for which others may wait then."""
-_PLACE_OR_VALUE = re.compile(
-    r"(?P<kept>\.\w+:\d+)|0x[0-9A-Fa-f]+|\d+(?:\.\d+)?(?:e[-+]?\d+)?|(?<!\w)'[^']*'|\"[^\"]*\"", re.ASCII
-)
-
-
-@dataclass(frozen=True, slots=True)
-class Failure:
-    """Something that must not be.
-
-    Attributes:
-        kind: DIED, DEADLOCK, INVARIANT and so on.
-        who: the application, invariant, step or result that it is about.
-        text: what was wrong, one line.
-        at_ns: virtual time at which it was; None when it is the state at the end.
-        detail: more lines, such as a traceback; may be empty.
-        task: the task in which it showed; empty when that is not known.
-        cause: what tells causes of this kind apart, such as the id of an event; empty where it is the text.
-        span_ns: of a deadline, how long before `at_ns` the time began in which it should have been; None of others.
-    """
-
-    kind: str
-    who: str
-    text: str
-    at_ns: int | None = None
-    detail: str = ""
-    task: str = ""
-    cause: str = ""
-    span_ns: int | None = None
-
-    @property
-    def group(self) -> str:
-        """What failures of one cause have in common.
-
-        Of a text that is all but numbers and quoted texts, which differ from schedule to schedule. Numbers of source
-        lines stay (`checks.py:12`), since they tell causes apart.
-        """
-        cause = self.cause or _PLACE_OR_VALUE.sub(lambda found: found["kept"] or "#", self.text)
-        return f"{self.kind}|{self.who}|{cause}"
-
-    @property
-    def title(self) -> str:
-        """Kind, who and text for a person, in one line."""
-        return f"{self.kind}: {self.who}: {self.text}" if self.who else f"{self.kind}: {self.text}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,9 @@ from cfepy.exploration.shrink import Shrinker, Shrunk
 from cfepy.exploration.timeline import Story, story_of
 from cfepy.exploration.trial import Trial, Tried
 from cfepy.exploration.verdict import LONGEST, Failure, Verdict
-from cfepy.monitors import LongestWatch, Measure, time_text
+from cfepy.mission import Mission
+from cfepy.monitors import RESPONSE, WAIT, LongestWatch, Measure, time_text
+from cfepy.pilot import SentNames, no_such_app
 from cfepy.rtos import NotingPolicy, Policy, Schedule
 
 FROM_SEEDS = 40  # schedules before the first generation
@@ -62,7 +64,17 @@ class MeasuredTrial(Trial):
                 text = f"took {time_text(longest.time_ns)} {longest.where}"
                 found = Failure(LONGEST, self.measure.text, text, longest.at_ns, task=longest.task, cause=LONGEST)
                 verdict = replace(verdict, failures=(*verdict.failures, found))
+        if longest is None and tried.booted_ns is not None:
+            text = f"nothing was measured of {self.measure.text}"
+            tried = tried._replace(notes=(*tried.notes, f"{text}{_why_nothing(self.measure, watch.mission)}"))
         return tried._replace(verdict=verdict)
+
+
+def _why_nothing(measure: Measure, mission: Mission) -> str:
+    """The end of a sentence about a measure that a run had nothing of."""
+    if measure.kind == RESPONSE:
+        return no_such_app(mission, measure.name)
+    return "" if measure.kind == WAIT else SentNames(mission).why_not(filter(None, (measure.name, measure.effect)))
 
 
 class WorstSearch(Generations):

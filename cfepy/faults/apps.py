@@ -14,7 +14,7 @@ from typing import Any
 from cfepy.faults.plan import Fault
 from cfepy.faults.report import FaultReport
 from cfepy.faults.timing import Gate
-from cfepy.mission import Processor
+from cfepy.mission import FailedCode, Processor
 from cfepy.rtos import FOREVER, InjectedCrash, Kernel, Task, WaitList, wrapping
 from cfepy.sb import Pipe
 from cfepy.status import CfeError
@@ -72,6 +72,7 @@ class Crash(AppFault):
             self.report.missed(self.fault, f"the main task of {self.app_name} does not run")
             return
         self._happened(f"crashes {self.app_name}")
+        processor.machine.record.part(FailedCode).crashed.add(self.app_name)
         processor.machine.kernel.interrupt(record.task, InjectedCrash(f"fault {self.fault.name}"))
 
 

@@ -17,7 +17,7 @@ from cfepy.faults.messages import damaged
 from cfepy.faults.plan import Fault
 from cfepy.faults.report import FaultReport
 from cfepy.faults.timing import Gate
-from cfepy.mission import Processor
+from cfepy.mission import FailedCode, Processor
 from cfepy.osal import OsTime
 from cfepy.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.rtos import InjectedCrash, Kernel
@@ -173,6 +173,7 @@ class ProcessorFault:
             self._report.missed(self._fault, f"{VICTIM} does not run yet")
             return
         self._report.happened(self._fault, f"lets an exception come out of {VICTIM}")
+        processor.machine.record.part(FailedCode).crashed.add(VICTIM)
         processor.machine.kernel.interrupt(record.task, InjectedCrash(f"fault {self._fault.name}"))
 
 

@@ -14,14 +14,13 @@ from typing import Any
 
 from cfepy.es import STATE_NAMES
 from cfepy.escapes import visible
-from cfepy.exploration import TracebackReader
 from cfepy.flight.log import FlightLog, Packet
 from cfepy.flight.message_library import library_near
 from cfepy.flight.notebook import Picture, page_of_run, picture
 from cfepy.ground import DecodedEvent, Dictionary, Series, SeriesSet
-from cfepy.mission import Mission
+from cfepy.mission import Mission, endless_waits
 from cfepy.monitors import Heard
-from cfepy.pilot import AppResult, Flown, Results, RunPlan, TopicResult, mark
+from cfepy.pilot import AppResult, Flown, Results, RunPlan, TopicResult, mark, problems_of
 from cfepy.units import NS_PER_S
 
 __tracebackhide__ = True  # pytest shows the line of the test
@@ -226,21 +225,10 @@ class Run:
 
     @property
     def problems(self) -> list[str]:
-        """A line for all that is wrong until now: what a run's report tells, exceptions in nodes, endless waits.
-
-        An exception that ends only a thread, or that rospy catches behind a callback, is not in a run's report.
-        """
+        """A line for each thing that went wrong until now, as a run's report tells it; a run without one went well."""
         if self._flown is not None:
-            return [*self._flown.results.problems, *self._raised(), *self._flown.results.endless_waits]
-        results = Results.of(self.mission, mark(self.mission, 0), "")
-        return [*results.problems, *self._raised(), *results.endless_waits]
-
-    def _raised(self) -> list[str]:
-        """The exceptions whose tracebacks nodes have printed."""
-        reader = TracebackReader()
-        for line in self.log.lines:
-            reader.take(line, 0)
-        return list(dict.fromkeys(failure.title for failure in reader.found))
+            return self._flown.results.problems
+        return [problem.text for problem in problems_of(self.mission, endless_waits(self.mission))]
 
     def message_class(self, kind: str) -> Any:
         """The class of a ROS message type, such as "std_msgs/Float64", also of the mission's own packages.

@@ -126,6 +126,7 @@ FRAMES: dict[str, dict[str, Check]] = {
         "trace": _text,
         "results": _text,
         "outcome": _table(_text, _any),
+        "beside": _list(_text),
     },
 }
 PLAN: dict[str, Check] = {

@@ -30,7 +30,17 @@ HEADER, FILE, FOLDER, LOOK, PAUSE = "header", "file", "folder", "look", "pause"
 ANSWER, CHECK, END = "answer", "check", "end"
 MARK = b"cfepy journal\r\n\x1a"
 _head = struct.Struct("<II")
-_NOT_OF_THE_RUN = ("wall_s", "speed", "tasks", "why_tasks", "trace", "ros_peers", "viewer_peers", "beside")
+_NOT_OF_THE_RUN = (
+    "wall_s",
+    "speed",
+    "tasks",
+    "why_tasks",
+    "trace",
+    "ros_peers",
+    "viewer_peers",
+    "beside",
+    "missed_steps",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +119,7 @@ class End:
         trace: the digest of the trace.
         results: the digest of the numbers of its report.
         outcome: how many steps of its script have passed and failed; empty without one.
+        beside: what went wrong in the missions that flew beside it, which a replay does without.
     """
 
     reason: str
@@ -119,6 +130,7 @@ class End:
     trace: str
     results: str
     outcome: dict[str, Any] = field(default_factory=dict)
+    beside: list[str] = field(default_factory=list)
 
 
 @dataclass(slots=True)
@@ -325,6 +337,11 @@ def read_frames(path: str | Path) -> Iterator[tuple[str, dict[str, Any]]]:
             yield kind, body
 
 
+def beside_problems(results: Results) -> list[str]:
+    """What went wrong in the missions that flew beside it, as its problems tell it."""
+    return [f"{row['mission']}: {line}" for row in results.beside for line in row["problems"]]
+
+
 def digest_of(results: Results, root: str = "") -> str:
     """32 hexadecimal digits that stand for the numbers of a report, wall-clock time aside.
 
@@ -333,6 +350,8 @@ def digest_of(results: Results, root: str = "") -> str:
         root: folder that paths begin with, and that does not count.
     """
     plain = results.to_dict()
+    elsewhere = (*beside_problems(results), *results.missed_steps)  # steps are told with the path of their script
+    plain["problems"] = [line for line in results.problems if line not in elsewhere]
     for name in _NOT_OF_THE_RUN:
         del plain[name]
     text = json.dumps(plain, sort_keys=True)

@@ -27,6 +27,7 @@ from cfepy.journal.journal import (
     PAUSE,
     FrameWriter,
     Header,
+    beside_problems,
     check_paths,
     digest_of,
     is_journal,
@@ -144,6 +145,7 @@ class JournalRecorder(Attachment):
             "trace": flown.trace,
             "results": digest_of(flown.results),
             "outcome": {} if flown.outcome is None else flown.outcome.to_dict(),
+            "beside": beside_problems(flown.results),
         }
         self._write(END, body)
 

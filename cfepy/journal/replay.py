@@ -22,7 +22,6 @@ from cfepy.osal import Place, Stream
 from cfepy.pilot import SUDDEN, Course, Flown, Host, Results, fly
 from cfepy.rtos import Policy
 from cfepy.script import ScriptRun
-from cfepy.status import StallError
 from cfepy.trace import ONLY_COMPARED, TimedRecords, Trace
 
 Describe = Callable[[TimedRecords], list[str]]
@@ -120,11 +119,11 @@ class Replay:
         checker: compares the records.
         attachments: what a mission needs to be a replay.
         verdict: whether it was the same run; set by `compare`.
-        stall: the task that did not give up the CPU; None when each did.
+        problems: what went wrong in it, as `Results.problems`; steps of a script count at the end of the run only.
     """
 
     verdict: ReplayVerdict
-    stall: StallError | None = None
+    problems: Sequence[str] = ()
 
     def __init__(
         self,
@@ -193,9 +192,14 @@ class Replay:
             make_course=self.make_course,
             host=host,
         )
-        self.stall = flown.stall
+        found = [each.text for each in flown.problems if self.is_whole or not each.is_step]
+        self.problems = [*found, *self._beside()]
         self.compare(flown.results)
         return flown
+
+    def _beside(self) -> list[str]:
+        """What went wrong in the missions that flew beside the recorded run."""
+        return self.journal.end.beside if self.is_whole and self.journal.end is not None else []
 
     def make_course(self, mission: Mission, seconds: float | None, script: ScriptRun | None) -> ReplayCourse:
         """The course to fly."""
@@ -220,7 +224,7 @@ class Replay:
         is_other = False
         if self.is_whole and difference is None and end is not None:
             is_other = digest_of(results, self.stage.root) != end.results
-        self.verdict = ReplayVerdict(difference, self.checker.agreed, self.is_whole, is_other)
+        self.verdict = ReplayVerdict(difference, self.checker.agreed, self.is_whole, is_other, end is None)
         return self.verdict
 
     @property
@@ -248,17 +252,29 @@ class ReplayVerdict:
         agreed: how far the records are known to agree.
         whole: the run was compared to its end.
         other_results: the trace is the same, and yet the report's numbers are not.
+        cut_off: the journal has no end, so what it does not have cannot be compared.
     """
 
     difference: Difference | None
     agreed: Checkpoint
     whole: bool
     other_results: bool = False
+    cut_off: bool = False
+
+    @property
+    def compared(self) -> bool:
+        """Whether anything of the run was compared at all."""
+        return self.whole or self.agreed.records > 0
 
     @property
     def same(self) -> bool:
-        """Whether nothing differs."""
+        """Whether nothing differs of what was compared."""
         return self.difference is None and not self.other_results
+
+    @property
+    def proven(self) -> bool:
+        """Whether it is known to be the run: nothing differs, something was compared, and the journal has an end."""
+        return self.same and self.compared and not self.cut_off
 
 
 @dataclass(frozen=True, slots=True)

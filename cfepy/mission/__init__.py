@@ -19,6 +19,7 @@ from cfepy.mission.cpp_nodes import (
     CppNodesError,
 )
 from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, endless_waits
+from cfepy.mission.failed_code import FailedCode, RaisedError, TracebackReader
 from cfepy.mission.finding import (
     LOCK_FILE,
     STARTUP_SCRIPT,
@@ -92,6 +93,7 @@ __all__ = [
     "DataRace",
     "EndlessWait",
     "EndlessWaits",
+    "FailedCode",
     "HostCall",
     "Mission",
     "MissionSections",
@@ -101,12 +103,14 @@ __all__ = [
     "PacketWatch",
     "PieceLength",
     "Processor",
+    "RaisedError",
     "Reset",
     "Seen",
     "StackUse",
     "SweepConfig",
     "TopicMessage",
     "TopicWatch",
+    "TracebackReader",
     "Traffic",
     "app_traceback",
     "built_programs",

@@ -20,6 +20,7 @@ from cfepy.app import Cfe
 from cfepy.attachment import Attachment
 from cfepy.console import Console
 from cfepy.mission.acts import HostActs
+from cfepy.mission.failed_code import FailedCode
 from cfepy.mission.finding import read_mission
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.outside import Outside
@@ -64,6 +65,16 @@ def _while_there_is_one(method: Callable[P, T], otherwise: T) -> Callable[P, T]:
         return otherwise if bound is None else bound(*args, **kwargs)
 
     return call
+
+
+def _noting_lines(trace: Trace, kernel: Kernel, failed: FailedCode) -> Callable[[str], None]:
+    """What the console gives its lines to: the trace, and what reads tracebacks in them."""
+
+    def note(line: str) -> None:
+        trace.note(line)
+        failed.printed.take(line, kernel.now, kernel.current.name)
+
+    return note
 
 
 class Mission:
@@ -115,7 +126,6 @@ class Mission:
         self.config = replace(limits, cfe_version=self.spec.cfe_version, given=tuple(ids)).with_limits(ids)
         self.console = console if console is not None else Console()
         self.trace = Trace() if trace is None else trace
-        self.console.record = self.trace.note
         self.record = RunRecord()
         self.files = FileSystem(self.spec.folder)
         self.network = Network()
@@ -124,6 +134,7 @@ class Mission:
         tick_ns = self.board.tick_ns
         self.kernel = kernel = make_kernel(kind.name, self.trace, policy, tick_ns, switch_ns, seed, self._kernel_class)
         self.trace.take_times(lambda: kernel.now)
+        self.console.record = _noting_lines(self.trace, kernel, self.record.part(FailedCode))
         self.outside = Outside(self.kernel, self.network, self.trace)
         self.outside.do = HostActs(self).do
         self.kernel.on_task_error = _while_there_is_one(self._task_failed, False)
@@ -359,6 +370,7 @@ class Mission:
 
     def _task_failed(self, task: Task, error: BaseException) -> bool:
         """An exception came out of a task: say so, and let ES act as the startup script asks."""
+        self.record.part(FailedCode).take(task, error, self.kernel.now)
         if task.owner is None or isinstance(error, PanicError):
             return False
         self.console.write(f"{task.owner.name}: task {task.name} died of an exception")

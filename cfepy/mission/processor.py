@@ -215,6 +215,7 @@ class Processor:
         time.clock.on_jump = sb.forget_time
         record = machine.record
         es.history, evs.counts, evs.errors_by_app = record.history, record.event_counts, record.errors_by_app
+        evs.first_errors = record.first_errors
         return Cfe(es, sb, evs, time, tbl, self.osal, self.psp, fs, ConfigServices(config, machine.spec.name))
 
     def _build_text(self) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from cfepy.es import AppHistory
+from cfepy.evs import SentError
 from cfepy.mission.tracebacks import described
 from cfepy.sb import SoftwareBus
 
@@ -89,16 +90,18 @@ class RunRecord:
     """Everything that outlives a reset for the sake of the report.
 
     Attachments keep what they have to tell in a part of their own. `history` is by application name, `event_counts` by
-    event type, `errors_by_app` counts ERROR and CRITICAL events: the services of each processor write into these three
-    themselves. `topics` has rows of ROS topics by MsgId. `tables` gives further rows for the report, by their title
-    there; an attachment that has some puts a function here. `data_races` are those that were found, `overwrites` what
-    the guard found in its memory. `stack_use` is by application and task, of tasks that have ended.
+    event type, `errors_by_app` counts ERROR and CRITICAL events, `first_errors` has the first of them by application
+    and event id: the services of each processor write into these four themselves. `topics` has rows of ROS topics by
+    MsgId. `tables` gives further rows for the report, by their title there; an attachment that has some puts a function
+    here. `data_races` are those that were found, `overwrites` what the guard found in its memory. `stack_use` is by
+    application and task, of tasks that have ended.
     """
 
     resets: list[Reset] = field(default_factory=list)
     history: dict[str, AppHistory] = field(default_factory=dict)
     event_counts: dict[int, int] = field(default_factory=dict)
     errors_by_app: dict[str, int] = field(default_factory=dict)
+    first_errors: dict[tuple[str, int], SentError] = field(default_factory=dict)
     topics: dict[int, TopicRow] = field(default_factory=dict)
     tables: dict[str, Callable[[], list[dict[str, Any]]]] = field(default_factory=dict)
     data_races: list[DataRace] = field(default_factory=list)

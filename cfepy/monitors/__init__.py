@@ -17,19 +17,27 @@ if TYPE_CHECKING:
     from cfepy.monitors.demands import Demands, demands_of, judges_of, read_demands
     from cfepy.monitors.inversions import InversionWatch
     from cfepy.monitors.liveness import Lack, Limits, LivenessWatch
-    from cfepy.monitors.measures import LongestWatch, Measure
+    from cfepy.monitors.measures import RESPONSE, WAIT, LongestWatch, Measure
     from cfepy.monitors.messages import Heard, MessageWatch
     from cfepy.monitors.observer import Observer, Sent, app_of
     from cfepy.monitors.predicate import Predicate, short, shortened
     from cfepy.monitors.race_watch import RaceWatch
+    from cfepy.monitors.record import DeadlineRecord, InvariantRecords
+    from cfepy.monitors.selected_results import FILE, OUTPUT, SelectedResult
     from cfepy.monitors.traffic_watch import Arrivals, TrafficWatch
 
 __all__ = [
+    "FILE",
+    "OUTPUT",
+    "RESPONSE",
+    "WAIT",
     "Arrivals",
     "Check",
+    "DeadlineRecord",
     "DeadlineResult",
     "Demands",
     "Heard",
+    "InvariantRecords",
     "InversionWatch",
     "Lack",
     "Limits",
@@ -41,6 +49,7 @@ __all__ = [
     "Overrun",
     "Predicate",
     "RaceWatch",
+    "SelectedResult",
     "Sent",
     "TrafficWatch",
     "app_of",
@@ -69,9 +78,13 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "LivenessWatch",
             ),
             ".measures": (
+                "RESPONSE",
+                "WAIT",
                 "LongestWatch",
                 "Measure",
             ),
+            ".record": ("DeadlineRecord", "InvariantRecords"),
+            ".selected_results": ("FILE", "OUTPUT", "SelectedResult"),
             ".race_watch": ("RaceWatch",),
             ".messages": (
                 "Heard",

@@ -85,6 +85,11 @@ class Invariant:
         return tuple(each for each in (self.when, self.holds, self.eventually, of_answer) if each is not None)
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """The topics, patterns and packets of the messages that it is about, without answers."""
+        return (*self.selection.topics, *self.selection.packets)
+
+    @property
     def packets(self) -> tuple[str, ...]:
         """The names of all packets that it is about."""
         return self.selection.packets + (() if self.answer is None else self.answer.selection.packets)

@@ -8,27 +8,19 @@ from __future__ import annotations
 
 from cfepy.pilot.company import boot_of
 from cfepy.pilot.course import BOOT_S, DEFAULT_S, STALLED, SUDDEN, Course
+from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
+from cfepy.pilot.never_judged import SentNames, no_such_app
 from cfepy.pilot.pilot import BootError, Flown, Host, LiveRun, booting, fly, takeoff
 from cfepy.pilot.plan import LAUNCH, NODE, RUN, RunPlan, builder, built_node
-from cfepy.pilot.results import (
-    ENDED,
-    NOT_STARTED,
-    AppResult,
-    Results,
-    RunProblem,
-    TopicResult,
-    end_of,
-    ended_badly,
-    mark,
-    never_happened,
-    problems_in,
-)
+from cfepy.pilot.problems import RunProblem, failures_of, problems_of, problems_so_far
+from cfepy.pilot.results import ENDED, NOT_STARTED, AppResult, Results, TopicResult, mark, never_happened
 
 __all__ = [
     "BOOT_S",
     "DEFAULT_S",
     "ENDED",
     "LAUNCH",
+    "LEAVES_OTHERS_WAITING",
     "NODE",
     "NOT_STARTED",
     "RUN",
@@ -37,22 +29,26 @@ __all__ = [
     "AppResult",
     "BootError",
     "Course",
+    "Failure",
+    "FailureKind",
     "Flown",
     "Host",
     "LiveRun",
     "Results",
     "RunPlan",
     "RunProblem",
+    "SentNames",
     "TopicResult",
     "boot_of",
     "booting",
     "builder",
     "built_node",
-    "end_of",
-    "ended_badly",
+    "failures_of",
     "fly",
     "mark",
     "never_happened",
-    "problems_in",
+    "no_such_app",
+    "problems_of",
+    "problems_so_far",
     "takeoff",
 ]

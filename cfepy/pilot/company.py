@@ -41,6 +41,7 @@ class Companion:
         mission: it.
         begins_ns: virtual time of the first mission at which this one begins.
         run_until: lets it go on to a virtual time of its own, in ns.
+        problems: tells what went wrong in it, a line each.
         sent, taken, lost: datagrams that it sent to the others, that came in, that found no room or no socket any more.
     """
 
@@ -48,6 +49,7 @@ class Companion:
     mission: Mission
     begins_ns: int
     run_until: Callable[[int], object]
+    problems: Callable[[], list[str]]
     sent: int = 0
     taken: int = 0
     lost: int = 0
@@ -55,7 +57,6 @@ class Companion:
     def row(self) -> dict[str, Any]:
         """Its row of the report."""
         mission = self.mission
-        deaths = mission.record.deaths()
         return {
             "mission": self.name,
             "booted_s": None if mission.booted is None else (mission.booted + self.begins_ns) / NS_PER_S,
@@ -63,7 +64,8 @@ class Companion:
             "taken": self.taken,
             "lost": self.lost,
             "resets": len(mission.record.resets),
-            "died": "; ".join(deaths),
+            "died": "; ".join(mission.record.deaths()),
+            "problems": self.problems(),
             "trace": mission.trace.digest(),
         }
 

@@ -20,10 +20,11 @@ from typing import TYPE_CHECKING, TypedDict, Unpack
 from cfepy.attachment import Attachment
 from cfepy.cached import CachedProperty
 from cfepy.console import Console
-from cfepy.mission import Mission, MissionSpec
+from cfepy.mission import Mission, MissionSpec, endless_waits
 from cfepy.pilot.company import Companion, Company
 from cfepy.pilot.course import BROKEN_OFF, INTERRUPTED, OVER, STALLED, Course
 from cfepy.pilot.plan import RunPlan
+from cfepy.pilot.problems import RunProblem, problems_of
 from cfepy.pilot.results import Mark, Results, never_happened
 from cfepy.rtos import LastResort, Policy
 from cfepy.status import CfeError, StallError, UsageError
@@ -104,7 +105,12 @@ class Flown:
     @CachedProperty
     def results(self) -> Results:
         """Its numbers: a search that flies thousands of times does not want them of each run."""
-        return Results.of(self.mission, self.at, self.trace)
+        return Results.of(self.mission, self.at, self.trace, self.problems)
+
+    @CachedProperty
+    def problems(self) -> list[RunProblem]:
+        """What went wrong in it; without one it went well."""
+        return problems_of(self.mission, self.at.endless, self.outcome)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -132,6 +138,7 @@ class LiveRun:
         script: what happens on the way; None for nothing.
         host: the host's side.
         notes: what its user should know.
+        beside: the runs of the missions that fly beside it.
     """
 
     def __init__(
@@ -142,6 +149,7 @@ class LiveRun:
         script: ScriptRun | None,
         host: Host,
         notes: tuple[str, ...] = (),
+        beside: Sequence[LiveRun] = (),
     ) -> None:
         self.plan = plan
         self.mission = mission
@@ -150,6 +158,7 @@ class LiveRun:
         self.notes = notes
         self.reason = OVER
         self._host = host
+        self._beside = beside
         self._is_concluded = False
         self._digest: str | None = None
 
@@ -210,6 +219,13 @@ class LiveRun:
         if not self._is_concluded:
             self._is_concluded = True
             self.course.end(wall_ns)
+            for each in self._beside:
+                each._conclude(0)
+
+    def problems(self) -> list[str]:
+        """What went wrong in it until now, or until its time was over, a line each."""
+        endless = self.course.at.endless if self._is_concluded else endless_waits(self.mission)
+        return [problem.text for problem in problems_of(self.mission, endless, self.course.outcome)]
 
     def _break_off(self, reason: str) -> None:
         """The run ended in the middle of something: what its trace has come to is no digest of a run."""
@@ -301,8 +317,8 @@ def takeoff(
     if plan.seconds is None and script is None and host.longest_s is not None:
         seconds = host.longest_s
     course = make_course(mission, seconds, script)
-    with mission, _company(plan, spec, mission, course):
-        run = LiveRun(plan, mission, course, script, host, (*spec.notes, *problems))
+    with mission, _company(plan, spec, mission, course) as beside:
+        run = LiveRun(plan, mission, course, script, host, (*spec.notes, *problems), beside)
         host.begin(run)
         try:
             with booting(spec.script):
@@ -328,19 +344,21 @@ def booting(script: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _company(plan: RunPlan, spec: MissionSpec, mission: Mission, course: Course) -> Iterator[None]:
-    """Around a run: the missions that fly beside it."""
+def _company(plan: RunPlan, spec: MissionSpec, mission: Mission, course: Course) -> Iterator[list[LiveRun]]:
+    """Around a run: the runs of the missions that fly beside it."""
+    runs: list[LiveRun] = []
     if not plan.beside or not course.takes_company:
-        yield
+        yield runs
         return
-    members = [Companion("", mission, 0, mission.run_until)]
+    members = [Companion("", mission, 0, mission.run_until, list)]
     with ExitStack() as flights:
         for (text, other, begins_ns), other_spec in zip(plan.companions(), spec.beside, strict=True):
             console = _beside(mission.console, other.words[0])
             run = flights.enter_context(takeoff(other, spec=other_spec, console=console))
-            members.append(Companion(text, run.mission, begins_ns, run.run_until))
+            runs.append(run)
+            members.append(Companion(text, run.mission, begins_ns, run.run_until, run.problems))
         mission.meet = Company(members).advance
-        yield
+        yield runs
 
 
 def _beside(console: Console, name: str) -> Console:

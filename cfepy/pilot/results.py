@@ -6,14 +6,17 @@ mission was closed, when every task has ended and its CPU time is known.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-from cfepy.es import APP_ERROR, CFE_APP, CFE_LIB, STATE_NAMES, BadLine, StartupEntry, parse
+from cfepy.es import STATE_NAMES
 from cfepy.evs import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.ground import kind_of, names_in
-from cfepy.mission import CORE_APPS, Mission, Reset, Traffic, described, endless_waits
+from cfepy.mission import CORE_APPS, EndlessWaits, Mission, Reset, Traffic, described, endless_waits
 from cfepy.monitors.record import DeadlineRecord, InvariantRecord, InvariantRecords, InversionRecord
+from cfepy.pilot.never_judged import never_judged
+from cfepy.pilot.problems import RunProblem, not_started, own_errors, problems_of, startup_problems
 from cfepy.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.rtos import TaskKind
 from cfepy.units import NS_PER_S
@@ -148,8 +151,7 @@ class Mark:
     pipes: list[PipeResult]
     memory: MemoryResult
     sb: dict[str, int]
-    deadlocks: list[str]
-    endless_waits: list[str]
+    endless: EndlessWaits
 
 
 def mark(mission: Mission, wall_ns: int) -> Mark:
@@ -169,8 +171,7 @@ def mark(mission: Mission, wall_ns: int) -> Mark:
         [PipeResult(pipe.name, pipe.app_name, pipe.depth, pipe.peak, pipe.dropped) for pipe in sb.pipes],
         MemoryResult(memory.used, memory.peak, memory.limit, memory.by_owner()),
         mission.processor.sb_task.housekeeping(),
-        ["; ".join(map(str, circle)) for circle in mission.kernel.deadlocked()],
-        [wait.text for wait in endless_waits(mission).alone],
+        endless_waits(mission),
     )
 
 
@@ -180,13 +181,14 @@ class Results:
 
     `booted_s` is of the first boot, `resets` are in order; pipes, memory and `sb` are of the processor since the last
     one. `own_errors` counts ERROR and CRITICAL events of the mission's own applications. `problems` says, a line each,
-    why the run did not end well, `faults` has a row for each fault that was to happen, `deadlines` one for each of the
-    mission file, `inversions` one for each lock that a task waited for while a third one held up its holder,
-    `ros_peers` one for each ROS node outside that the run was joined to, `viewer_peers` one for what went each way
-    between each viewer and each topic, `beside` one for each mission that flew beside this one, `script_problems` what
-    of the startup script could not be started, `endless_waits` a line for each task that nobody can wake any more,
-    `missed_moves` which moves of the schedule were not possible, `why_tasks` why tasks are threads where
-    nobody asked for them and greenlets are installed.
+    all that went wrong: a run without one went well. `faults` has a row for each fault that was to happen, `deadlines`
+    one for each of the mission file, `inversions` one for each lock that a task waited for while a third one held up
+    its holder, `ros_peers` one for each ROS node outside that the run was joined to, `viewer_peers` one for what went
+    each way between each viewer and each topic, `beside` one for each mission that flew beside this one,
+    `script_problems` what of the startup script could not be started, `endless_waits` a line for each task that nobody
+    can wake any more, `missed_steps` those of the script that did not go well, `never_judged` which demands of the
+    mission file the run had nothing of, `missed_moves` which moves of the schedule were not possible, `why_tasks` why
+    tasks are threads where nobody asked for them and greenlets are installed.
     """
 
     mission: str
@@ -217,20 +219,24 @@ class Results:
     script_problems: list[str]
     endless_waits: list[str]
     missed_moves: list[str]
+    missed_steps: list[str]
+    never_judged: list[str]
     invariants: list[InvariantResult]
     problems: list[str]
 
     @classmethod
-    def of(cls, mission: Mission, at: Mark, trace: str) -> Results:
+    def of(cls, mission: Mission, at: Mark, trace: str, problems: Sequence[RunProblem] | None = None) -> Results:
         """The results of a mission that is closed.
 
         Args:
             mission: the mission.
             at: what `mark` took down.
             trace: the digest of the run, from before the tasks were ended.
+            problems: what went wrong in it; None looks for it.
         """
         virtual_s, wall_s = at.now_ns / NS_PER_S, at.wall_ns / NS_PER_S
         record = mission.record
+        problems = problems_of(mission, at.endless) if problems is None else problems
         apps = _apps(mission, at)
         return cls(
             mission=mission.spec.name,
@@ -248,7 +254,7 @@ class Results:
             topics=_topics(mission, at),
             apps=apps,
             events={name: record.event_counts.get(kind, 0) for kind, name in EVENT_TYPES.items()},
-            own_errors=_own_errors(mission),
+            own_errors=own_errors(mission),
             sb=at.sb,
             pipes=at.pipes,
             memory=at.memory,
@@ -258,14 +264,13 @@ class Results:
             ros_peers=record.rows("ros_peers"),
             viewer_peers=record.rows("viewer_peers"),
             beside=record.rows("beside"),
-            script_problems=_script_problems(mission, apps),
-            endless_waits=at.endless_waits,
+            script_problems=startup_problems(mission),
+            endless_waits=[wait.text for wait in at.endless.alone],
             missed_moves=_missed_moves(mission),
+            never_judged=never_judged(mission),
+            missed_steps=[each.text for each in problems if each.is_step],
             invariants=[_invariant(each) for each in record.part(InvariantRecords).values()],
-            problems=[
-                *(problem.text for problem in problems_in(mission)),
-                *(f"deadlock: {circle}" for circle in at.deadlocks),
-            ],
+            problems=[each.text for each in problems],
         )
 
     @property
@@ -275,8 +280,8 @@ class Results:
 
     @property
     def never_happened(self) -> list[str]:
-        """What of the plan never happened in the run: a line for each such fault, and for moves of the schedule."""
-        return _never_happened(self.faults, self.missed_moves)
+        """What was asked for and never happened: faults, moves of the schedule, and what judges had nothing of."""
+        return [*_never_happened(self.faults, self.missed_moves), *self.never_judged]
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dicts, lists, numbers and text."""
@@ -285,7 +290,7 @@ class Results:
 
 def never_happened(mission: Mission) -> list[str]:
     """See `Results.never_happened`; of a mission that may still fly."""
-    return _never_happened(mission.record.rows("faults"), _missed_moves(mission))
+    return [*_never_happened(mission.record.rows("faults"), _missed_moves(mission)), *never_judged(mission)]
 
 
 def _never_happened(rows: list[dict[str, Any]], missed_moves: list[str]) -> list[str]:
@@ -362,96 +367,4 @@ def _apps(mission: Mission, at: Mark) -> list[AppResult]:
                 core=history.name in CORE_APPS,
             )
         )
-    known = {app.name for app in found}
-    for entry in mission.spec.entries:
-        if entry.kind == CFE_APP and entry.name not in known:
-            known.add(entry.name)
-            found.append(AppResult(entry.name, NOT_STARTED, 0.0, 0, 0, None, False))
-    return found
-
-
-def _script_problems(mission: Mission, apps: list[AppResult]) -> list[str]:
-    if mission.booted is None:
-        return []  # the startup script was not read to its end
-    script = mission.spec.script
-    bad = (line for line in parse(mission.spec.startup_script) if isinstance(line, BadLine))
-    loaded = {library.name for library in mission.cfe.es.libs}
-    if mission.processor.booted is None:  # it was reset, and has not come to them again
-        loaded.update(each.name for each in _libraries(mission))
-    return [
-        *(f"{script}:{line.line}: {line.explanation}" for line in bad),
-        *(f"library {each.name} could not be loaded" for each in _libraries(mission) if each.name not in loaded),
-        *(f"{app.name} could not be started" for app in apps if app.state == NOT_STARTED),
-    ]
-
-
-class RunProblem(NamedTuple):
-    """A line about what went wrong, and when in virtual ns; None when it has no time of its own."""
-
-    text: str
-    at_ns: int | None
-
-
-def problems_in(mission: Mission) -> list[RunProblem]:
-    """What went wrong in a run, but for deadlocks and what the startup script could not start."""
-    history = mission.record.history
-    stall = mission.stall
-    found = [] if stall is None else [RunProblem(str(stall), stall.at_ns)]
-    found += [RunProblem(text, history[name].failed_ns) for name, text in mission.record.deaths_by_app().items()]
-    for name in ended_badly(mission):
-        found.append(RunProblem(f"{name} ended with {end_of(mission, name)}", history[name].failed_ns))
-    for name, count in _own_errors(mission).items():
-        found.append(RunProblem(f"{name} sent {count} ERROR or CRITICAL event{'s' if count > 1 else ''}", None))
-    for reset in mission.record.resets:
-        if reset.fault:
-            text = f"the processor was reset at {reset.at_ns / NS_PER_S:g} s: {reset.reason}"
-            found.append(RunProblem(text, reset.at_ns))
-    for each in mission.record.part(InvariantRecords).values():
-        if each.first is not None:
-            at_ns = each.first.at_ns
-            text = f"invariant {each.name!r} ({each.place}) at {at_ns / NS_PER_S:g} s: {each.first.text}"
-            found.append(RunProblem(text, at_ns))
-    for check in mission.record.part(DeadlineRecord).checks:
-        result = check.result()
-        if result.problem is not None:
-            first_s = result.first_at_s
-            found.append(RunProblem(result.problem, None if first_s is None else round(first_s * NS_PER_S)))
-    found += _races(mission)
-    found += [RunProblem(f"overwritten memory: {each}", each.at_ns) for each in mission.record.overwrites]
-    return found
-
-
-def _races(mission: Mission) -> list[RunProblem]:
-    """Data races of compiled code, which are looked for under a given schedule, with the calls on either side."""
-    found = []
-    for race in mission.record.data_races:
-        lines = (race.text, *race.detail.splitlines()[1:])
-        found.append(RunProblem(f"data race at {race.at_ns / NS_PER_S:g} s: " + "\n    ".join(lines), race.at_ns))
-    return found
-
-
-def _own_errors(mission: Mission) -> dict[str, int]:
-    """ERROR and CRITICAL events of the mission's own applications."""
-    return {name: count for name, count in sorted(mission.record.errors_by_app.items()) if name not in CORE_APPS}
-
-
-def end_of(mission: Mission, name: str) -> str:
-    """What an application has ended with: of a node, its program's exit status."""
-    end = None if mission.ros is None else mission.ros.ended.get(name)
-    if end is None or not end.status:
-        return "CFE_ES_RunStatus_APP_ERROR"
-    return f"exit status {end.status} (node /{end.name})"
-
-
-def ended_badly(mission: Mission) -> list[str]:
-    """Applications that ended themselves because of an error."""
-    es = mission.cfe.es
-    ended = [history.name for history in es.history.values() if history.error_exits]
-    ending = [app.name for app in es.apps if app.control_request == APP_ERROR]
-    built = {} if mission.ros is None else {app: mission.ros.ended.get(app) for app in mission.spec.built}
-    ending += [app for app, end in built.items() if end is not None and end.status]  # also where the run ended with it
-    return list(dict.fromkeys(ended + ending))
-
-
-def _libraries(mission: Mission) -> list[StartupEntry]:
-    return [entry for entry in mission.spec.entries if entry.kind == CFE_LIB]
+    return [*found, *(AppResult(each.name, NOT_STARTED, 0.0, 0, 0, None, False) for each in not_started(mission))]

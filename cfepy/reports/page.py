@@ -20,7 +20,7 @@ from cfepy import __version__
 from cfepy.ground import SeriesSet, graph_svg
 from cfepy.markup import element, escaped
 from cfepy.monitors import time_text
-from cfepy.pilot import Flown, Results, RunProblem, problems_in
+from cfepy.pilot import FailureKind, Flown, Results, RunProblem
 from cfepy.reports.bins import Histogram
 from cfepy.reports.collector import MOST, MOST_OF_A_KIND, SWITCH, Collector
 from cfepy.reports.html_text import Numbers, PageSection, TableCell, json_text, meter, section, table
@@ -152,6 +152,7 @@ def _header(flown: Flown, numbers: Numbers, about: About, collector: Collector) 
     command = element("dt", "The same run again") + element("dd", element("code", escaped(about.command)))
     warnings = "".join(element("p", escaped(text), class_="banner bad", role="note") for text in about.warnings)
     title = element("h1", escaped(results.mission)) + warnings + _problems(flown, collector, about.story)
+    title += _silent(results)
     return element("header", title + element("dl", listed + element("div", command, class_="wide"), class_="facts"))
 
 
@@ -225,19 +226,17 @@ def _problems(flown: Flown, collector: Collector, story: PageStory | None) -> st
     return element("div", title + items, class_="banner bad", role="note")
 
 
+def _silent(results: Results) -> str:
+    """What the mission file asks for and the run had nothing of; nothing when there was something of all."""
+    items = "".join(element("li", escaped(text)) for text in results.never_judged)
+    return element("ul", items, class_="silent") if items else ""
+
+
 def _found(flown: Flown, collector: Collector) -> Iterator[RunProblem]:
     """All problems of a run; a deadlock is there until its end."""
-    results = flown.results
-    times = {problem.text: problem.at_ns for problem in problems_in(flown.mission)}
-    for name, at_ns in collector.first_errors.items():
-        times |= {text: at_ns for text in results.problems if text.startswith(f"{name} sent ")}
-    yield from (RunProblem(text, None) for text in results.script_problems)
-    yield from (RunProblem(text, times.get(text, collector.end_ns)) for text in results.problems)
-    outcome = flown.outcome
-    for verdict in () if outcome is None else outcome.verdicts:
-        if outcome is not None and not verdict.ok:
-            text = f"step {outcome.file}:{verdict.line} failed: {verdict.step}: {verdict.detail}"
-            yield RunProblem(text.removesuffix(": "), round(verdict.at_s * NS_PER_S))
+    for problem in flown.problems:
+        is_at_end = any(failure.kind in (FailureKind.DEADLOCK, FailureKind.STUCK) for failure in problem.failures)
+        yield problem._replace(at_ns=collector.end_ns) if problem.at_ns is None and is_at_end else problem
 
 
 def _item(problem: RunProblem, kind: str = "") -> str:

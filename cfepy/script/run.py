@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from cfepy.ground import dictionary_of
+from cfepy.ground import EVENT_IDS, DecodedEvent, dictionary_of
 from cfepy.mission import Mission, MissionSpec, PacketWatch, Seen
 from cfepy.rtos import ENDLESS
 from cfepy.script.conditions import Collected, Condition, ResetCondition, Scene, Since, seen_text
@@ -36,6 +36,11 @@ class StepVerdict:
     at_s: float
     detail: str = ""
 
+    @property
+    def follows(self) -> bool:
+        """Whether it failed only because the run was over before it was reached."""
+        return not self.ok and self.detail == OVER
+
     @classmethod
     def of(cls, step: Step, ok: bool, at_ns: int, detail: str = "") -> StepVerdict:
         """The verdict on a step."""
@@ -44,10 +49,17 @@ class StepVerdict:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """The verdicts of a script, in the order of its lines."""
+    """The verdicts of a script, in the order of its lines.
+
+    Attributes:
+        file: the script.
+        verdicts: one for each step.
+        expected_events: application and id of the events that its steps have waited for.
+    """
 
     file: str
     verdicts: tuple[StepVerdict, ...]
+    expected_events: frozenset[tuple[str, int]] = frozenset()
 
     @property
     def ok(self) -> bool:
@@ -81,10 +93,14 @@ class Expectation:
         condition: the step's condition.
         since: from where on things count.
         deadline_ns: virtual time at which it is decided; None for the end of the script.
+
+    Attributes:
+        event: application and id of the event that has met it; None as long as there is none.
     """
 
     def __init__(self, step: Step, condition: Condition, since: Since, deadline_ns: int | None) -> None:
         self.deadline_ns = deadline_ns
+        self.event: tuple[str, int] | None = None
         self._step = step
         self._condition = condition
         self._since = self._looked = since
@@ -110,7 +126,11 @@ class Expectation:
         if self._step.must_not:
             return self._decide_against(scene, now_ns, met, is_due, is_over)
         if met is not None:
-            return StepVerdict.of(self._step, True, met[0])
+            at_ns, packet = met
+            if packet is not None and packet.msg_id in EVENT_IDS:
+                event = DecodedEvent.of(packet)
+                self.event = (event.app, event.event_id)
+            return StepVerdict.of(self._step, True, at_ns)
         if is_due or is_over:
             return StepVerdict.of(self._step, False, now_ns, self._condition.instead(scene, self._since))
         return None
@@ -168,6 +188,7 @@ class ScriptRun(PacketWatch):
         self._stands = stands
         self._packets = Collected()
         self._verdicts: dict[int, StepVerdict] = {}
+        self._expected_events: set[tuple[str, int]] = set()
         self._guards: dict[int, Expectation] = {}
         self._waiting: Expectation | None = None
         self._next = 0
@@ -224,12 +245,13 @@ class ScriptRun(PacketWatch):
     def end(self) -> Outcome:
         """The run is over: what is undecided is decided now."""
         if self._waiting is not None:
-            self._settle(self._next, self._waiting.decide(self._scene, is_over=True))
+            self._settle(self._next, self._decided(self._waiting, is_over=True))
         for number, guard in self._guards.items():
             self._settle(number, guard.decide(self._scene, is_over=True))
         for number, step in enumerate(self.script.steps):
             self._verdicts.setdefault(number, StepVerdict.of(step, False, self._now, OVER))
-        return Outcome(self.script.file, tuple(self._verdicts[number] for number in sorted(self._verdicts)))
+        verdicts = tuple(self._verdicts[number] for number in sorted(self._verdicts))
+        return Outcome(self.script.file, verdicts, frozenset(self._expected_events))
 
     @property
     def _now(self) -> int:
@@ -238,7 +260,7 @@ class ScriptRun(PacketWatch):
     def _go_on(self) -> int | None:
         """Go one step further; the time to come back when that has to wait."""
         if self._waiting is not None:
-            verdict = self._waiting.decide(self._scene)
+            verdict = self._decided(self._waiting)
             if verdict is None:
                 return self._waiting.wake_ns(self._now)
             self._waiting = None
@@ -249,6 +271,13 @@ class ScriptRun(PacketWatch):
         else:
             return self._begin(self.script.steps[self._next])
         return None
+
+    def _decided(self, waiting: Expectation, is_over: bool = False) -> StepVerdict | None:
+        """The verdict on what is waited for; None when it is still open."""
+        verdict = waiting.decide(self._scene, is_over)
+        if waiting.event is not None:
+            self._expected_events.add(waiting.event)
+        return verdict
 
     def _begin(self, step: Step) -> int | None:
         """Begin the next step; the time to come back when it is not time for it yet."""

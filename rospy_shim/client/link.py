@@ -1,8 +1,8 @@
 """`Link`: the publishing side of one node on one topic, shared by all of its handles (CFE_SB_TransmitMsg).
 
 The hot path is `Link.send`: one serialisation, one call of the bus. A message that does not fit in a packet goes out in
-segments. One without a subscriber goes into the trace alone, without virtual time or sequence number, and to what
-records the run.
+segments. One without a subscriber goes into the trace alone, without virtual time or sequence number; in a run that is
+recorded the link is a `TappedLink`, which shows such messages to the recorder as well.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from rospy_shim.client import connecting
 from rospy_shim.client.exceptions import ROSException, ROSSerializationException
 from rospy_shim.client.leftovers import Leftovers, half_of
 from rospy_shim.client.message import packer, serialized
-from rospy_shim.client.topic_side import OUTBOUND, TopicConnection, TopicSide
+from rospy_shim.client.topic_side import OUTBOUND, TopicConnection, TopicSide, bus_of
 from rospy_shim.client.transport import HEADER_BYTES, segments, whole_header
 from rospy_shim.genpy import SerializationError
 
@@ -77,8 +77,6 @@ class Link(TopicSide):
         self._head = b""
         self._unsent_head = UNSENT + name.encode() + b"\0"
         self._unsent: Callable[[bytes], object] = bus.unsent
-        on_unsent: Any = bus.on_unsent  # a static method, which binds no bus
-        self._on_unsent: Callable[[Link, bytes], object] | None = on_unsent
         self._charge = node.kernel.charge
         self._call_ns = node.call_ns
         self._count_items = getattr(data_class, "_count_items", None) if node.call_ns else None
@@ -231,11 +229,8 @@ class Link(TopicSide):
         try:
             payload = self._pack(message)
         except Exception:  # whatever a generated class raises
-            self._unsent(self._unsent_head + half_of(message))
-            return
+            payload = half_of(message)
         self._unsent(self._unsent_head + payload)
-        if self._on_unsent is not None and self.topic is not None:
-            self._on_unsent(self, payload)
 
     def _hold_back(self) -> None:
         """On a board with a highest publishing rate: wait for a slot of time in which nothing went out yet."""
@@ -418,3 +413,26 @@ class Link(TopicSide):
         for listener in self.subscriber_listeners:
             body = lambda each=listener: each.peer_unsubscribe(self.name, remaining)  # noqa: E731
             self.node.start_task(self.name, body)
+
+
+class TappedLink(Link):
+    """A link that shows messages without a subscriber to `on_unsent` of the bus."""
+
+    def __init__(self, node: Node, name: str, data_class: MessageClass) -> None:
+        super().__init__(node, name, data_class)
+        on_unsent: Any = bus_of(node).on_unsent  # a static method, which binds no bus
+        self._on_unsent: Callable[[Link, bytes], object] | None = on_unsent
+
+    def send(self, message: Any) -> None:
+        """See `Link.send`."""
+        if self.topic is not None and self._on_unsent is not None and not self.get_num_connections():
+            try:
+                self._on_unsent(self, self._pack(message))
+            except Exception:  # whatever a generated class raises
+                pass  # as `Link.send`, which does not look at a message without a subscriber
+        super().send(message)
+
+
+def link_class(node: Node) -> type[Link]:
+    """The class of a node's links."""
+    return Link if bus_of(node).on_unsent is None else TappedLink

@@ -94,8 +94,10 @@ def test_a_node_is_replayed_with_its_own_exit_of_the_command(
     assert main(["node", "paths.py", "--record", "../node.cfepy", "--", "x"]) == 1
     first = capsys.readouterr().out
     assert "as asked" in first
-    assert main(["replay", "../node.cfepy"]) == 0
-    assert capsys.readouterr().out == first
+    assert main(["replay", "../node.cfepy"]) == 1  # as the run; it is the same nevertheless
+    again = capsys.readouterr()
+    assert again.out == first
+    assert "the same run as ../node.cfepy" in again.err
 
 
 def test_a_paced_run_that_ctrl_c_ended_is_replayed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -142,8 +144,10 @@ def test_a_journal_without_an_end_says_so(tmp_path: Path, capsys: pytest.Capture
     main(["run", "capture", "--for", "2", "--quiet", "--record", "a.cfepy"])
     data = Path("a.cfepy").read_bytes()
     Path("a.cfepy").write_bytes(data[:-300])
-    assert main(["replay", "a.cfepy", "--quiet"]) == 0
-    assert "the journal has no end" in capsys.readouterr().err
+    assert main(["replay", "a.cfepy", "--quiet"]) == 1
+    said = capsys.readouterr().err
+    assert "the journal has no end" in said
+    assert "the journal is cut off, and the rest of the run is not known" in said
 
 
 @pytest.mark.parametrize("command", [["replay", "x"], ["diff", "x", "x"], ["replay", "startup.scr"]])

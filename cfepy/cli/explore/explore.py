@@ -45,6 +45,8 @@ def show(report: Report, stream: TextIO) -> None:
         print(f"an error in cfepy itself, under {trouble.schedule}; please report it:", file=stream)
         print(trouble.trouble, file=stream)
     print(summary(report), file=stream)
+    for note in report.notes:
+        print(f"  {note}", file=stream)
     if report.is_steady and (not report.findings or report.breadth.seen is not None):
         for line in report.breadth.lines():
             print(f"  {line}", file=stream)
@@ -178,7 +180,7 @@ def _show_leak(plan: RunPlan, schedule: Schedule) -> None:
     from cfepy.cli.run.check_determinism import compare
 
     print(f"\nnot deterministic: two runs under {schedule} differ, so not the schedule alone decides", flush=True)
-    if compare(replace(plan, schedule=schedule), RUNS_THAT_ARE_COMPARED) == ENDED_WELL:
+    if compare(replace(plan, schedule=schedule), RUNS_THAT_ARE_COMPARED) is not None:
         print("in processes of their own such runs do not differ: addresses of objects decide, or what a run leaves")
         print("behind in its process")
 

@@ -102,7 +102,7 @@ def _fly(plan: RunPlan, dictionary: Dictionary, declared: Command, packet: bytes
     with takeoff(replace(plan, seconds=LONGEST_S), attachments=[trial]) as run:
         tell(run.notes)
         trial.run(run.run_until, seconds, _patience(plan))
-        problems = run.mission.record.deaths()
+        problems = run.problems()
         unstruck = never_happened(run.mission)
     print(f"{trial.sent_ns / NS_PER_S:.3f} {declared.name} sent to {', '.join(trial.receivers) or 'nobody'}")
     _say_what_followed(trial, dictionary)

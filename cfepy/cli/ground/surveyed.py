@@ -32,6 +32,6 @@ def surveyed(plan: RunPlan, spec: MissionSpec, attachments: Sequence[Attachment]
     with takeoff(plan, spec=spec, attachments=attachments) as run:
         tell(run.notes)
         run.run_until(run.course.until_ns)
-        problems = [*run.mission.record.deaths(), *never_happened(run.mission)]
+        problems = [*run.problems(), *never_happened(run.mission)]
         yield run.mission
     tell(problems)

@@ -276,7 +276,7 @@ def _fly(plan: RunPlan, names: list[str], arguments: argparse.Namespace) -> int:
         tell(run.notes)
         shown = _show_flight(run, seen, output, dictionary, arguments.count)
         problems, end_s = (
-            [*run.mission.record.deaths(), *never_happened(run.mission)],
+            [*run.problems(), *never_happened(run.mission)],
             run.mission.kernel.now / NS_PER_S,
         )
     tell(problems)

@@ -101,10 +101,10 @@ def _in_other_processes(replay: Replay, flights: Callable[[Keepers], tuple[int, 
     os.waitpid(child, 0)
     if not answer:
         raise UsageError("the process of the run ended by itself", field="--back")
-    status, verdict, stall, error = pickle.loads(answer)
+    status, verdict, problems, error = pickle.loads(answer)
     if error is not None:
         raise UsageError(error)
-    replay.verdict, replay.stall = verdict, stall
+    replay.verdict, replay.problems = verdict, problems
     return status, replay
 
 
@@ -113,7 +113,7 @@ def _tell_parent(writer: int, flights: Callable[[Keepers], tuple[int, Replay]]) 
     keepers = Keepers()
     try:
         status, last = flights(keepers)
-        answer: tuple[Any, ...] = (status, last.verdict, last.stall, None)
+        answer: tuple[Any, ...] = (status, last.verdict, last.problems, None)
     except UsageError as error:
         answer = (0, None, None, str(error))
     keepers.dismiss()

@@ -17,6 +17,7 @@ from cfepy.cli.run.compared_run import ComparedRun
 from cfepy.cli.run.compared_runs import FirstDifference, facts_of, failure, show_sides, started
 from cfepy.input_files import open_input
 from cfepy.journal import Journal, differences, is_journal, read_journal
+from cfepy.pilot import SUDDEN
 from cfepy.pilot.determinism import RunEndedError, first_parting
 from cfepy.pilot.determinism_look import Look
 from cfepy.status import UsageError
@@ -51,6 +52,9 @@ def compare_texts(one: str, other: str, before: int, stream: TextIO) -> bool:
                 latest.append(mine)
     except UnicodeDecodeError:
         raise UsageError("one of the two is neither a journal nor a trace", file=f"{one}, {other}") from None
+    if not count:
+        print("nothing was compared: both are empty", file=stream)
+        return False
     print(f"the same run: all {count:,} lines are alike", file=stream)
     return True
 
@@ -107,12 +111,16 @@ class _Comparison:
         one, other = self._journals
         for line in differences(one, other):
             print(line)
-        if one.end is not None and other.end is not None and one.end.trace == other.end.trace:
-            print(f"the same run: all {one.end.records:,} records are alike\ntrace: {one.end.trace}")
-            return ENDED_WELL
+        if one.end is not None and other.end is not None and one.end.trace == other.end.trace != "":
+            is_same = one.end.results == other.end.results and one.end.beside == other.end.beside
+            what = "the same run" if is_same else "the same trace"
+            print(f"{what}: all {one.end.records:,} records are alike\ntrace: {one.end.trace}")
+            if not is_same:
+                print("and yet the numbers of the report are others: compare them (cfepy replay --json)")
+            return ENDED_WELL if is_same else FOUND_PROBLEMS
         index, agreed = self._first_difference()
         if index is None:
-            print(f"all {agreed:,} records that can be replayed are alike")
+            print(f"all {agreed:,} records that can be replayed are alike" if agreed else "nothing was compared")
             return self._without_difference()
         facts = [self._facts(each, index) for each in self._journals]
         looks = (Look.from_dict(facts[0]), Look.from_dict(facts[1]))
@@ -137,9 +145,13 @@ class _Comparison:
 
     def _without_difference(self) -> int:
         """The replays are alike: then the journals are, or one of the replays is not what was recorded."""
-        ends = [journal.end for journal in self._journals]
-        if None in ends:
-            return ENDED_WELL
+        cut_off = [journal.path for journal in self._journals if journal.end is None]
+        if cut_off:  # what the replays do beyond their ends is not what was recorded
+            text = "is cut off: its run" if len(cut_off) == 1 else "are cut off: their runs"
+            print(f"{' and '.join(cut_off)} {text} may have gone on otherwise")
+            return FOUND_PROBLEMS
+        if all(journal.end is not None and journal.end.reason in SUDDEN for journal in self._journals):
+            return ENDED_WELL  # in the middle of something, after which there is nothing to compare
         print("and yet the recorded runs were not: a replay is not what was recorded; `cfepy replay` says where")
         return FOUND_PROBLEMS
 

@@ -11,6 +11,7 @@ from itertools import islice
 from typing import TextIO
 
 from cfepy.attachment import Attachment
+from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.ros.node import NodeView
 from cfepy.cli.ros.view import NodesView
@@ -91,10 +92,12 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"cfepy: {text}", file=sys.stderr)
     with replaying(arguments, journal) as replay:
         status, replay = _fly(arguments, replay)
+        if journal.end is not None and replay.verdict.whole:
+            tell(journal.end.beside)
         _tell(replay, sys.stderr)
     if status == INTERRUPTED:
         return INTERRUPTED
-    return ENDED_WELL if replay.verdict.same and replay.stall is None else FOUND_PROBLEMS
+    return ENDED_WELL if replay.verdict.proven and not replay.problems else FOUND_PROBLEMS
 
 
 @contextlib.contextmanager
@@ -186,12 +189,16 @@ def _tell(replay: Replay, stream: TextIO) -> None:
 
 
 def _same(journal: Journal, verdict: ReplayVerdict) -> str:
+    if not verdict.compared:
+        why = "it is cut off before its first checkpoint" if verdict.cut_off else "its first checkpoint comes later"
+        return f"nothing was compared with {journal.path}: {why}"
     if verdict.whole and not verdict.other_results:
         return f"the same run as {journal.path}"
     if verdict.whole:
         return f"the same trace as {journal.path}"
     where = f"record {verdict.agreed.records:,} at {_seconds(verdict.agreed.now_ns)}"
-    return f"the same run as {journal.path} up to {where}, where it was compared for the last time"
+    rest = "; the journal is cut off, and the rest of the run is not known" if verdict.cut_off else ""
+    return f"the same run as {journal.path} up to {where}, where it was compared for the last time{rest}"
 
 
 def _seconds(time_ns: int) -> str:

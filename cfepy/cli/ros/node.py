@@ -15,7 +15,7 @@ from cfepy.cli.run.outputs import Outputs
 from cfepy.cli.run.run import View, fly_and_tell
 from cfepy.escapes import node_text, raw
 from cfepy.mission import Mission
-from cfepy.pilot import BOOT_S, ENDED, NODE, Flown
+from cfepy.pilot import BOOT_S, ENDED, NODE, FailureKind, Flown
 
 FAULT = "cfepy fault "  # how lines about faults begin
 _OWN_LINE = re.compile(r"\[[\w/]+\] (.*)", re.DOTALL)  # as the console has what nodes print
@@ -67,13 +67,6 @@ class NodeView(View):
         tell(flown.results.never_happened)
         if flown.outcome is not None:
             print(flown.outcome.text())
-        tell([] if flown.stall is None else [flown.stall])
-        if flown.interrupted:
-            return INTERRUPTED
-        if flown.stall is not None:
-            return FOUND_PROBLEMS
-        if flown.outcome is not None:
-            return ENDED_WELL if flown.outcome.ok else FOUND_PROBLEMS
         return _status(flown, longer)
 
 
@@ -90,16 +83,24 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _status(flown: Flown, longer: str) -> int:
-    """The node's exit status; what went wrong apart from the node is printed."""
+    """The node's exit status, unless it is 0 and something went wrong nevertheless, which is printed."""
     mission, results = flown.mission, flown.results
     app = next(iter((*mission.spec.ros.nodes, *mission.spec.built)), "")
     statuses = {} if mission.ros is None else mission.ros.monitor.statuses
-    if app in statuses:
-        return int(statuses[app]) & 0xFF
-    tell((*results.script_problems, *results.problems, *results.endless_waits))
-    if results.script_problems or results.problems:
+    end = int(statuses.get(app, 0)) & 0xFF
+    is_end = [FailureKind.ENDED, FailureKind.RAISED]  # of which the node's own output and status tell
+    tell(
+        problem.text
+        for problem in flown.problems
+        if not problem.is_step and not (end and all(each.kind in is_end for each in problem.failures))
+    )
+    if flown.interrupted:
+        return INTERRUPTED
+    if end and flown.outcome is None and flown.stall is None:
+        return end
+    if results.problems:
         return FOUND_PROBLEMS
-    if any(each.name in mission.spec.built and each.state == ENDED for each in results.apps):
-        return ENDED_WELL
-    tell([f"the node still runs after {results.virtual_s - BOOT_S:g} virtual seconds; {longer}"])
+    is_over = app in statuses or any(each.name in mission.spec.built and each.state == ENDED for each in results.apps)
+    if flown.outcome is None and not is_over:
+        tell([f"the node still runs after {results.virtual_s - BOOT_S:g} virtual seconds; {longer}"])
     return ENDED_WELL

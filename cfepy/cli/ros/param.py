@@ -49,7 +49,7 @@ def _parameters(arguments: argparse.Namespace) -> Parameters:
         with takeoff(plan) as run:
             tell(run.notes)
             run.run_until(run.course.until_ns)
-            tell(never_happened(run.mission))
+            tell([*run.problems(), *never_happened(run.mission)])
             return present(run.mission)
     refuse_run_options(arguments, "is for a mission that flies; say how long, such as --for 5", but=["launch_args"])
     unknown: list[str] = []

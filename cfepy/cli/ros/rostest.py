@@ -256,7 +256,15 @@ class _Runner:
         return NodesDisplay(PlainDisplay(sys.stdout)) if self._arguments.text else SilentDisplay()
 
     def _judged(self, test: PlannedTest, node: NodeConfig, suite: str, flown: Flown) -> TestResults:
-        """What the test wrote; without that, why it wrote nothing."""
+        """What the test wrote, or why it wrote nothing; of a test that passed, what went wrong besides in its run."""
+        results = self._own_results(test, node, suite, flown)
+        if results.passed:
+            for text in flown.results.problems:
+                results.add(broken(suite, "nodes", text))
+        return results
+
+    def _own_results(self, test: PlannedTest, node: NodeConfig, suite: str, flown: Flown) -> TestResults:
+        """What the test itself came to."""
         ros = flown.mission.ros
         died = [each for each in flown.results.problems if each.startswith(f"{node.app} died")]
         if died:  # a node in C++; one in Python ends with an exit status

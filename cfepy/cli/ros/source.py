@@ -135,7 +135,7 @@ class FlightSource:
     ) -> None:
         if self._run is None:
             return
-        problems = [*self.mission.record.deaths(), *never_happened(self.mission)]
+        problems = [*self._run.problems(), *never_happened(self.mission)]
         self._flight.__exit__(kind, error, where)
         tell(problems)
 

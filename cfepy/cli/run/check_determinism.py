@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.run.compared_run import ComparedRun
 from cfepy.cli.run.compared_runs import FirstDifference, RunInProcess, facts_of, failure, show, started
@@ -54,7 +55,7 @@ def check(arguments: argparse.Namespace, plan: RunPlan) -> int:
         plan: what is run.
 
     Returns:
-        The exit status: 0 when all runs made one trace, 1 otherwise.
+        The exit status: 0 when all runs made one trace and nothing went wrong in them, 1 otherwise.
 
     Raises:
         UsageError: the mission cannot run, or an option does not go with this one.
@@ -65,11 +66,16 @@ def check(arguments: argparse.Namespace, plan: RunPlan) -> int:
     for name in _NOT_TOGETHER:
         if getattr(arguments, name) is not None:
             raise UsageError("does not go with --check-determinism", field=f"--{name.replace('_', '-')}")
-    return compare(plan, arguments.check_determinism)
+    problems = compare(plan, arguments.check_determinism)
+    tell(problems or ())
+    return ENDED_WELL if problems == [] else FOUND_PROBLEMS
 
 
-def compare(plan: RunPlan, count: int) -> int:
-    """Run a plan so many times and show the first difference; the exit status is that of `check`.
+def compare(plan: RunPlan, count: int) -> list[str] | None:
+    """Run a plan so many times and show the first difference.
+
+    Returns:
+        What went wrong in each of the runs; None when they differ.
 
     Raises:
         UsageError: the mission cannot run.
@@ -82,15 +88,15 @@ def compare(plan: RunPlan, count: int) -> int:
         if found is None:
             _tell_contacts(facts.get("contacts", []))
             print(f"all made the same {facts['records']} records\ntrace: {facts['digest']}")
-            return ENDED_WELL
+            return list(facts["problems"])
         one, other, index = found
         looks = (runs.look(one, index), runs.look(other, index))
         if _is_first_difference(*looks):
             show(FirstDifference((str(one), str(other)), index, looks), runs.cause(one, other), sys.stdout)
-            return FOUND_PROBLEMS
+            return None
     print(f"not deterministic: record {index} differs, but never in the same way twice; something outside the runs")
     print("decides: a file that changes, an address (id()), a C library")
-    return FOUND_PROBLEMS
+    return None
 
 
 def _tell_contacts(contacts: Sequence[str]) -> None:

@@ -102,17 +102,22 @@ class ComparedRun:
 
 
 class RecordPipe(Recorder):
-    """The recorder of a run that writes all records, and at last what it did past the simulated computer."""
+    """The recorder of a run that writes all records, and at last what it did past the simulated computer.
+
+    Attributes:
+        problems: what went wrong in it, for whoever compares; set when it is over.
+    """
 
     def __init__(self, writer: RecordWriter, world: OpenWorld) -> None:
         self.trace = ComparedTrace(writer.write)
+        self.problems: list[str] = []
         self._writer = writer
         self._world = world
 
     def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         if kind is None:
             contacts = [*self._world.contacts, *outside_lines()]
-            self._writer.end({"digest": self.trace.digest(), "contacts": contacts})
+            self._writer.end({"digest": self.trace.digest(), "contacts": contacts, "problems": self.problems})
 
     def begin(self, mission: Mission) -> None:
         """Hear the calls of compiled applications as well."""
@@ -175,7 +180,10 @@ def run(asked: ComparedRun) -> None:
         _recorder(asked, world) as recorder,
         WatchedHost(interrupts) as host,
     ):
-        fly(asked.plan, spec=spec, attachments=[recorder], console=host.console, trace=recorder.trace, host=host)
+        trace, console = recorder.trace, host.console
+        flown = fly(asked.plan, spec=spec, attachments=[recorder], console=console, trace=trace, host=host)
+        if isinstance(recorder, RecordPipe):
+            recorder.problems = flown.results.problems
 
 
 def _run_again(asked: ComparedRun) -> None:

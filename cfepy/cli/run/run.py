@@ -59,7 +59,7 @@ class View:
         _explain(flown, longer)
         outputs.save_files(flown)
         print(f"trace: {flown.trace or 'none, since the run was broken off'}", flush=True)
-        return _status(flown)
+        return status_of(flown)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -160,8 +160,7 @@ def _nothing() -> None:
 
 def _explain(flown: Flown, longer: str) -> None:
     results, mission = flown.results, flown.mission
-    tell(_deaths_beside(flown))
-    tell((*results.script_problems, *results.problems, *results.endless_waits, *results.never_happened))
+    tell((*told_problems(flown), *results.never_happened))
     if results.script_problems:
         script = mission.spec.script
         tell([f'the console says why, and "cfepy check {script}" what can be seen without running it'])
@@ -171,19 +170,16 @@ def _explain(flown: Flown, longer: str) -> None:
         tell([f"not OPERATIONAL after {results.virtual_s:g} virtual seconds; {longer}"])
 
 
-def _deaths_beside(flown: Flown) -> list[str]:
-    """What died in the missions that flew beside it, a line each."""
-    return [f"{row['mission']}: {row['died']}" for row in flown.results.beside if row["died"]]
+def told_problems(flown: Flown) -> list[str]:
+    """What went wrong, a line each, but for steps of the script, which have a report of their own."""
+    return [problem.text for problem in flown.problems if not problem.is_step]
 
 
-def _status(flown: Flown) -> int:
-    results = flown.results
+def status_of(flown: Flown) -> int:
+    """The exit status of a command that flew a mission: that of its problems, if it has any."""
     if flown.interrupted:
         return INTERRUPTED
-    if flown.stall is not None:
+    if flown.results.problems:
         return FOUND_PROBLEMS
-    if flown.outcome is not None:
-        return ENDED_WELL if flown.outcome.ok else FOUND_PROBLEMS
-    if results.script_problems or results.problems or _deaths_beside(flown):
-        return FOUND_PROBLEMS
-    return ENDED_WELL if results.booted_s is not None or flown.mission.over else BAD_USAGE
+    is_flown = flown.results.booted_s is not None or flown.mission.over or flown.outcome is not None
+    return ENDED_WELL if is_flown else BAD_USAGE

@@ -23,6 +23,7 @@ from cfepy.cli.ground.target import RemoteHost, host_of
 from cfepy.cli.host import Interrupts
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of, refuse_run_options
+from cfepy.cli.run.run import told_problems
 from cfepy.cli.viewers import FOXGLOVE, ORIGIN, ROSBRIDGE, TOKEN, Viewers
 from cfepy.ground import CI_PORT, TO_PORT, dictionary_of, packet_of
 from cfepy.io import TypedLines, own_address, send
@@ -117,14 +118,13 @@ class Opening:
         end_ns = craft.stands_ns
         session.end()
         flown = craft.land()
-        results = flown.results
         lines = []
         if self._arguments.save_script is not None:
             lines.append(f"again: {self._save(session, plan, end_ns)}")
         lines.append(f"trace: {flown.trace}")
         return Ended(
             lines,
-            [*results.script_problems, *results.problems, *results.endless_waits, *results.never_happened],
+            [*told_problems(flown), *flown.results.never_happened],
             self._status(session, flown),
         )
 
@@ -139,8 +139,8 @@ class Opening:
     def _status(self, session: ConsoleSession, flown: Flown | None) -> int:
         if self._interrupts.asked:
             return INTERRUPTED
-        died = flown is not None and flown.mission.record.deaths()
-        return FOUND_PROBLEMS if session.failed or died else ENDED_WELL
+        went_wrong = flown is not None and flown.results.problems
+        return FOUND_PROBLEMS if session.failed or went_wrong else ENDED_WELL
 
     # -- a computer elsewhere ------------------------------------------------------------------------------------------
 

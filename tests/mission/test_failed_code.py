@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import rospy_shim
-from cfepy.exploration.failures import TracebackReader
-from cfepy.exploration.verdict import RAISED, Failure
+from cfepy.mission import RaisedError, TracebackReader
+from cfepy.pilot import Failure, FailureKind
 
 ONE = """
 Traceback (most recent call last):
@@ -22,33 +22,38 @@ KeyError: 'x'
 """
 
 
-def read(text: str, node: str = "arm") -> list[Failure]:
+def read(text: str, node: str = "arm") -> list[RaisedError]:
     reader = TracebackReader()
     for line in text.strip().splitlines():
         reader.take(f"[{node}] {line}", 5)
     return reader.found
 
 
+def group_of(text: str) -> str:
+    (error,) = read(text)
+    return Failure(FailureKind.RAISED, error.who, error.text, cause=error.cause).group
+
+
 def test_the_place_is_the_innermost_line_that_is_no_library() -> None:
-    (failure,) = read(ONE)
-    assert (failure.kind, failure.who, failure.text, failure.at_ns) == (RAISED, "arm", "ValueError: no (arm.py:12)", 5)
-    assert failure.detail.splitlines()[0] == "Traceback (most recent call last):"
+    (error,) = read(ONE)
+    assert (error.who, error.text, error.at_ns) == ("arm", "ValueError: no (arm.py:12)", 5)
+    assert error.detail.splitlines()[0] == "Traceback (most recent call last):"
 
 
 def test_an_exception_is_told_by_type_and_line() -> None:
-    (failure,) = read(ONE)
-    assert [each.group == failure.group for each in read(ONE.replace(": no", ": not left"))] == [True]
-    assert [each.group == failure.group for each in read(ONE.replace("ValueError", "KeyError"))] == [False]
-    assert [each.group == failure.group for each in read(ONE.replace("line 12", "line 13"))] == [False]
+    group = group_of(ONE)
+    assert group_of(ONE.replace(": no", ": not left")) == group
+    assert group_of(ONE.replace("ValueError", "KeyError")) != group
+    assert group_of(ONE.replace("line 12", "line 13")) != group
 
 
 def test_rospy_is_a_library_too() -> None:
     text = ONE.replace("ValueError: no", f'  File "{rospy_shim.__file__}", line 7, in call\n    raise\nValueError: no')
-    assert [failure.text for failure in read(text)] == ["ValueError: no (arm.py:12)"]
+    assert [error.text for error in read(text)] == ["ValueError: no (arm.py:12)"]
 
 
 def test_of_a_chain_the_last_counts() -> None:
-    assert [failure.text for failure in read(CHAIN)] == ["KeyError: 'x' (arm.py:14)"]
+    assert [error.text for error in read(CHAIN)] == ["KeyError: 'x' (arm.py:14)"]
 
 
 def test_lines_of_two_nodes_may_be_mixed() -> None:
@@ -56,8 +61,12 @@ def test_lines_of_two_nodes_may_be_mixed() -> None:
     for line in ONE.strip().splitlines():
         for node in ("one", "two"):
             reader.take(f"[{node}] {line}", 0)
-    assert [failure.who for failure in reader.found] == ["one", "two"]
+    assert [error.who for error in reader.found] == ["one", "two"]
 
 
 def test_other_lines_are_no_tracebacks() -> None:
     assert read("all is well\nValueError: no") == []
+
+
+def test_ctrl_c_that_ends_a_node_is_no_error() -> None:
+    assert read(ONE.replace("ValueError: no", "KeyboardInterrupt")) == []

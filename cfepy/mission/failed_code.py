@@ -1,0 +1,145 @@
+"""What shows in the mission's own code that it failed: exceptions out of tasks, and tracebacks on the console.
+
+What kills one thread of a node, or is swallowed by rospy after a callback, shows only as a traceback that the node
+prints: a `TracebackReader` finds it on the console.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from pathlib import PurePath
+from typing import NamedTuple
+
+from cfepy.mission.tracebacks import app_traceback, reason
+from cfepy.own_code import is_own_code
+from cfepy.rtos import DeadlockError, InjectedCrash, Task
+
+_LINE = re.compile(r"\[(?P<node>[^\]\s]+)\] ?(?P<text>.*)")
+_FRAME = re.compile(r'\s+File "(?P<file>.+)", line (?P<line>\d+)')
+_PLACE_AT_END = re.compile(r"\([^\s()]+:\d+\)$")
+_BEGIN = "Traceback (most recent call last):"
+_ASKED_TO_END = "KeyboardInterrupt"  # Ctrl-C, by which nodes are ended; it is no error
+_CHAINED = ("During handling of the above exception", "The above exception was the direct cause")
+
+
+class RaisedError(NamedTuple):
+    """An exception that came out of a task, or whose traceback a node printed.
+
+    Attributes:
+        who: the application, or the node that printed it.
+        text: type, text and place, one line: `ValueError: no such joint (arm.py:12)`.
+        at_ns: virtual time.
+        detail: the traceback.
+        task: in which it was raised.
+        cause: what tells exceptions apart: the type and the place, `ValueError (arm.py:12)`; empty without a place.
+        circle: of a mutex that was not given since tasks would have waited for each other: their waits, as text.
+        circle_apps: whose tasks those are.
+    """
+
+    who: str
+    text: str
+    at_ns: int
+    detail: str
+    task: str
+    cause: str = ""
+    circle: str = ""
+    circle_apps: tuple[str, ...] = ()
+
+
+def raised_in(task: Task, error: BaseException, at_ns: int) -> RaisedError:
+    """An exception that came out of a task of an application."""
+    detail, text = app_traceback(error), reason(error)
+    if isinstance(error, DeadlockError) and error.circle:
+        where = detail.partition(f"\n{type(error).__module__}")[0]
+        apps = tuple(dict.fromkeys(wait.task.owner.name for wait in error.circle if wait.task.owner is not None))
+        circle = "; ".join(map(str, error.circle))
+        return RaisedError(task.owner.name, text, at_ns, where, task.name, circle=circle, circle_apps=apps)
+    return RaisedError(task.owner.name, text, at_ns, detail, task.name, cause_of(type(error).__name__, text))
+
+
+def cause_of(kind: str, text: str) -> str:
+    """What tells exceptions apart: the type, and the line where one came out, `KeyError (arm.py:12)`."""
+    place = _PLACE_AT_END.search(text)
+    return f"{kind} {place[0]}" if place is not None else ""
+
+
+class _Reading:
+    """The traceback that a node is printing."""
+
+    def __init__(self) -> None:
+        self.lines = [_BEGIN]
+        self.place = ""
+
+
+class TracebackReader:
+    """Reads the console of a mission.
+
+    Attributes:
+        found: an error for each traceback so far; of a chain of exceptions, the last.
+    """
+
+    def __init__(self) -> None:
+        self.found: list[RaisedError] = []
+        self._reading: dict[str, _Reading] = {}
+
+    def take(self, line: str, now_ns: int, task: str = "") -> None:
+        """Take a line of the console, the virtual time at which it was written, and the task that wrote it."""
+        if line[:1] != "[":
+            return
+        match = _LINE.fullmatch(line)
+        if match is None:
+            return
+        node, text = match["node"], match["text"]
+        if text.endswith(_BEGIN):
+            self._reading[node] = _Reading()
+        elif node in self._reading:
+            self._go_on(node, text, now_ns, task)
+        elif text.startswith(_CHAINED):
+            self._forget_last(node)
+
+    def _go_on(self, node: str, text: str, now_ns: int, task: str) -> None:
+        reading = self._reading[node]
+        reading.lines.append(text)
+        frame = _FRAME.match(text)
+        if frame is not None and reading.place and not is_own_code(frame["file"]):
+            return
+        if frame is not None:
+            reading.place = f"{PurePath(frame['file']).name}:{frame['line']}"
+        elif not text.startswith(" "):
+            del self._reading[node]
+            if text.startswith(_ASKED_TO_END):
+                return
+            what = f"{text} ({reading.place})" if reading.place else text
+            cause = cause_of(text.partition(":")[0], what)
+            self.found.append(RaisedError(node, what, now_ns, "\n".join(reading.lines), task, cause))
+
+    def _forget_last(self, node: str) -> None:
+        """Drop the exception read last: its handler raised the one that follows, which is the error."""
+        mine = [at for at, error in enumerate(self.found) if error.who == node]
+        if mine:
+            del self.found[mine[-1]]
+
+
+@dataclass(slots=True)
+class FailedCode:
+    """What has failed in a run; a part of its record.
+
+    Attributes:
+        died: exceptions that came out of tasks of applications, but for crashes that a fault plan asks for.
+        crashed: applications that a fault plan let crash.
+        printed: reads the tracebacks that nodes print.
+    """
+
+    died: list[RaisedError] = field(default_factory=list)
+    crashed: set[str] = field(default_factory=set)
+    printed: TracebackReader = field(default_factory=TracebackReader)
+
+    def take(self, task: Task, error: BaseException, at_ns: int) -> None:
+        """An exception came out of a task."""
+        if task.owner is None:
+            return
+        if isinstance(error, InjectedCrash):
+            self.crashed.add(task.owner.name)
+        else:
+            self.died.append(raised_in(task, error, at_ns))

@@ -1,0 +1,108 @@
+"""What a mission file asks of a run, and the run had nothing of: such a demand is kept by no one, and broken by no one.
+
+An invariant that was never judged, a deadline that was never measured, or a result that never came is often a name with
+a mistake in it. It is no problem of the run, and its user should know.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING
+
+from cfepy.ground import names_in
+from cfepy.mission import Mission
+from cfepy.monitors import DeadlineRecord, InvariantRecords
+from cfepy.status import OsalError
+from cfepy.suggestions import did_you_mean
+
+if TYPE_CHECKING:
+    from cfepy.monitors import SelectedResult
+
+OF_APPS = ("response", "period")  # deadlines of applications; others are of messages
+
+
+class SentNames:
+    """What could be heard in a run.
+
+    Args:
+        mission: that has flown.
+
+    Attributes:
+        names: topics that have a publisher, and whatever was sent over the bus, by name and by MsgId.
+    """
+
+    def __init__(self, mission: Mission) -> None:
+        rows = [*mission.record.topics.values(), *mission.processor.topics()]
+        by_id = names_in(mission) | {row.msg_id: row.name for row in rows}
+        sent = [msg_id for msg_id, count in mission.record.traffic(mission.cfe.sb, ()).items() if count.sent]
+        named = [by_id[msg_id] for msg_id in sent if msg_id in by_id]
+        self.names = list(dict.fromkeys([*(row.name for row in rows if row.publishers), *named]))
+        self._ids = {f"0x{msg_id:04x}" for msg_id in sent}
+
+    def has(self, name: str) -> bool:
+        """Whether there was anything of a name, a pattern or a MsgId."""
+        return name.casefold() in self._ids or any(fnmatchcase(each, name) for each in self.names)
+
+    def why_not(self, names: Iterable[str]) -> str:
+        """The end of a sentence about names of which nothing came; empty when there was something of each."""
+        missing = [name for name in names if not self.has(name)]
+        if not missing:
+            return ""
+        hint = did_you_mean(missing[0], self.names, before="; ")
+        return f": nothing came of {', '.join(missing)}{hint}"
+
+
+def never_judged(mission: Mission) -> list[str]:
+    """A line for each demand of the mission file that a run had nothing of; none before the mission is OPERATIONAL."""
+    if mission.booted is None or not mission.spec.demands:
+        return []
+    from cfepy.monitors import demands_of
+
+    demands, sent = demands_of(mission.spec), SentNames(mission)
+    names = {each.name: each.names for each in demands.invariants}
+    return [
+        *_invariants(mission, names, sent),
+        *_deadlines(mission, sent),
+        *_results(mission, demands.results, sent),
+    ]
+
+
+def _invariants(mission: Mission, names: dict[str, tuple[str, ...]], sent: SentNames) -> Iterator[str]:
+    for each in mission.record.part(InvariantRecords).values():
+        if not each.judged and not each.violated:
+            yield f"invariant {each.name!r} ({each.place}) was never judged{sent.why_not(names.get(each.name, ()))}"
+
+
+def no_such_app(mission: Mission, name: str) -> str:
+    """The end of a sentence about an application that never ran; empty for one that did."""
+    apps = mission.record.history
+    return "" if name in apps else f": there is no application {name}{did_you_mean(name, apps, before='; ')}"
+
+
+def _deadlines(mission: Mission, sent: SentNames) -> Iterator[str]:
+    for each in mission.record.part(DeadlineRecord).checks:
+        why = no_such_app(mission, each.owner) if each.kind in OF_APPS else sent.why_not([each.owner])
+        if why or not each.checked:
+            yield f"the deadline {each.kind} of {each.owner} was never measured{why}"
+
+
+def _results(mission: Mission, results: Sequence[SelectedResult], sent: SentNames) -> Iterator[str]:
+    from cfepy.monitors import FILE, OUTPUT
+
+    for each in results:
+        if each.compare == FILE:
+            why = "" if _is_file(mission, each.name) else ": there is no such file"
+        elif each.compare == OUTPUT:
+            why = no_such_app(mission, each.name)
+        else:
+            why = sent.why_not([each.name])
+        if why:
+            yield f"the result {each.name} ({each.compare}) never came{why}"
+
+
+def _is_file(mission: Mission, path: str) -> bool:
+    try:
+        return mission.files.find(path) is not None
+    except OsalError:
+        return False

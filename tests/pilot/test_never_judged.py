@@ -1,0 +1,108 @@
+"""Invariants, deadlines, results and measures of which a run had nothing: told, with the name that was meant."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from cfepy.markup import escaped
+from cfepy.pilot import RunPlan, fly
+from tests.mission.flights import write_mission
+
+STARTUP = "CFE_APP, talker.py, __main__, TALKER, 100, 16384, 0x0, 0;\n!"
+TALKER = """
+    import rospy
+    from std_msgs.msg import Float64
+
+    rospy.init_node("talker")
+    energy = rospy.Publisher("energy", Float64, queue_size=1)
+    while not rospy.is_shutdown():
+        energy.publish(1.0)
+        rospy.sleep(0.1)
+"""
+DEMANDS = {
+    "invariants: {few: {topic: /enrgy, holds: msg.data < 3}}": "invariant 'few' (mission.yaml:1) was never judged: "
+    "nothing came of /enrgy; did you mean /energy?",
+    "invariants: {few: {topic: /energy, holds: msg.data < 3, when: msg.data > 9}}": "invariant 'few' (mission.yaml:1) "
+    "was never judged",
+    "deadlines: {topics: {/enrgy: {latency: 1 ms}}}": "the deadline latency of /enrgy was never measured: "
+    "nothing came of /enrgy; did you mean /energy?",
+    "deadlines: {topics: {/energy: {latency: 1 ms}}}": "the deadline latency of /energy was never measured",
+    "deadlines: {topics: {'0x0895': {at_most_every: 1 Hz}}}": "the deadline at_most_every of 0x0895 was never "
+    "measured: nothing came of 0x0895",
+    "deadlines: {apps: {TALKR: {response: 1 ms}}}": "the deadline response of TALKR was never measured: "
+    "there is no application TALKR; did you mean TALKER?",
+    "results: {/enrgy: last}": "the result /enrgy (last) never came: nothing came of /enrgy; did you mean /energy?",
+    "results: {/ram/x.txt: file}": "the result /ram/x.txt (file) never came: there is no such file",
+    "results: {TALKR: output}": "the result TALKR (output) never came: there is no application TALKR; "
+    "did you mean TALKER?",
+    "results: {/energy: last}": "",
+    "invariants: {few: {topic: /energy, holds: msg.data < 3}}": "",
+}
+
+
+def mission(folder: Path, demands: str) -> Path:
+    write_mission(folder, STARTUP, talker=TALKER, mission_yaml=demands + "\n")
+    return folder
+
+
+@pytest.mark.parametrize("demands", list(DEMANDS))
+def test_demand_without_anything_to_judge_is_told(tmp_path: Path, demands: str) -> None:
+    flown = fly(RunPlan((str(mission(tmp_path, demands)),), seconds=2))
+    told = [DEMANDS[demands]] if DEMANDS[demands] else []
+    assert flown.results.never_judged == told
+    assert flown.results.never_happened == told
+    assert list(flown.notes) == told
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["run", "--quiet"],
+        ["explore", "--seeds", "1", "--jobs", "1", "--quiet"],
+        ["mids"],
+        ["topic", "echo", "/energy", "-n", "1"],
+        ["tlm"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_commands_tell_of_an_invariant_that_was_never_judged(
+    tmp_path: Path, command: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    demands = next(iter(DEMANDS))
+    words = [str(mission(tmp_path, demands)), "--for", "2"]
+    if command[0] == "topic":
+        words = [words[0], *command[2:], "--for", "2"]
+        main(["topic", "echo", *words])
+    else:
+        main([command[0], words[0], *command[1:], *words[1:]])
+    shown = capsys.readouterr()
+    assert DEMANDS[demands] in shown.err
+    if command[0] == "explore":
+        assert f"no failure\n  {DEMANDS[demands]}" in shown.out
+
+
+@pytest.mark.slow
+def test_explore_tells_of_a_measure_that_measured_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = str(mission(tmp_path, ""))
+    main(["explore", folder, "--for", "1.5", "--seeds", "1", "--jobs", "1", "--quiet", "--worst", "age:/enrgy"])
+    told = "nothing was measured of age:/enrgy: nothing came of /enrgy; did you mean /energy?"
+    assert told in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_sweep_is_not_clean_when_its_topic_never_came(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = str(mission(tmp_path, ""))
+    words = ["--for", "1.5", "--board", "linux", "--measure", "/enrgy", "--jobs", "1", "--quiet", "--csv", "-"]
+    main(["sweep", folder, *words])
+    assert "no message was measured of /enrgy: nothing came of /enrgy; did you mean /energy?" in capsys.readouterr().out
+
+
+def test_page_tells_of_an_invariant_that_was_never_judged(tmp_path: Path) -> None:
+    demands, page = next(iter(DEMANDS)), tmp_path / "page.html"
+    main(["report", str(mission(tmp_path, demands)), "--for", "1.5", "-o", str(page)])
+    text = page.read_text()
+    assert "No problems" in text
+    assert f"<li>{escaped(DEMANDS[demands])}</li>" in text
