@@ -22,10 +22,10 @@ import os as _os
 import sys as _sys
 
 if _os.path.basename((_sys.argv or [""])[0]).startswith(("cfepy", "-m")):  # perhaps the command
-    from cfepy.early_end import is_command, leave_on_interrupt
+    import cfepy.early_end as _early_end
 
-    if is_command():
-        leave_on_interrupt()  # before any other import, in which Python would answer Ctrl-C with a traceback
+    if _early_end.is_command():
+        _early_end.leave_on_interrupt()  # before any other import, in which Ctrl-C would give its traceback
 
 from typing import TYPE_CHECKING
 
