@@ -365,6 +365,7 @@ class RosRuntime:
             topic.held_back,
             topic.definition,
             topic.latched,
+            topic.unsent,
         )
 
 

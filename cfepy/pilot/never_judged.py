@@ -29,15 +29,18 @@ class SentNames:
         mission: that has flown.
 
     Attributes:
-        names: topics that have a publisher, and whatever was sent over the bus, by name and by MsgId.
+        names: what there were messages of, by name.
+        known: the topics that have a publisher besides.
     """
 
     def __init__(self, mission: Mission) -> None:
         rows = [*mission.record.topics.values(), *mission.processor.topics()]
         by_id = names_in(mission) | {row.msg_id: row.name for row in rows}
         sent = [msg_id for msg_id, count in mission.record.traffic(mission.cfe.sb, ()).items() if count.sent]
-        named = [by_id[msg_id] for msg_id in sent if msg_id in by_id]
-        self.names = list(dict.fromkeys([*(row.name for row in rows if row.publishers), *named]))
+        built = {program.name for program in mission.spec.built.values()}  # nobody counts what those keep back
+        heard = [row.name for row in rows if row.unsent or row.latched or built.intersection(row.publishers)]
+        self.names = list(dict.fromkeys([*heard, *(by_id[msg_id] for msg_id in sent if msg_id in by_id)]))
+        self.known = list(dict.fromkeys([*self.names, *(row.name for row in rows if row.publishers)]))
         self._ids = {f"0x{msg_id:04x}" for msg_id in sent}
 
     def has(self, name: str) -> bool:
@@ -49,7 +52,7 @@ class SentNames:
         missing = [name for name in names if not self.has(name)]
         if not missing:
             return ""
-        hint = did_you_mean(missing[0], self.names, before="; ")
+        hint = "" if missing[0] in self.known else did_you_mean(missing[0], self.known, before="; ")
         return f": nothing came of {', '.join(missing)}{hint}"
 
 

@@ -231,6 +231,8 @@ class Link(TopicSide):
         except Exception:  # whatever a generated class raises
             payload = half_of(message)
         self._unsent(self._unsent_head + payload)
+        if self.topic is not None:
+            self.topic.unsent = True
 
     def _hold_back(self) -> None:
         """On a board with a highest publishing rate: wait for a slot of time in which nothing went out yet."""

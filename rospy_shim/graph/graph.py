@@ -37,7 +37,8 @@ class TopicRow(NamedTuple):
 
     `dropped` counts long messages that lost a segment in a full pipe; the bus itself counts the other losses.
     `held_back` counts messages that had to wait because the board publishes no faster. `definition` is the type's full
-    text. `latched` counts messages that were given to one new subscriber alone.
+    text. `latched` counts messages that were given to one new subscriber alone, `unsent` says that there were some
+    without a subscriber.
     """
 
     name: str
@@ -49,6 +50,7 @@ class TopicRow(NamedTuple):
     held_back: int = 0
     definition: str = ""
     latched: int = 0
+    unsent: bool = False
 
 
 class TopicEntry:
@@ -72,6 +74,7 @@ class TopicEntry:
         self._shared = False  # there were two publishers at a time; packets of one that left may still wait in pipes
         self.latching = False
         self.latched = 0  # messages that one new subscriber got, which came after they were published
+        self.unsent = False  # whether there were messages without a subscriber
         self.held_back = 0  # messages that waited for the board's publishing rate
         self.lost = 0  # long messages of which a segment is missing, once per subscriber
         self.notes: dict[int, tuple[Header, int]] = {}  # by sequence count: publisher, and number of the segment

@@ -17,6 +17,7 @@ TALKER = """
     from std_msgs.msg import Float64
 
     rospy.init_node("talker")
+    silent = rospy.Publisher("silent", Float64, queue_size=1)
     energy = rospy.Publisher("energy", Float64, queue_size=1)
     while not rospy.is_shutdown():
         energy.publish(1.0)
@@ -39,6 +40,7 @@ DEMANDS = {
     "results: {TALKR: output}": "the result TALKR (output) never came: there is no application TALKR; "
     "did you mean TALKER?",
     "results: {/energy: last}": "",
+    "results: {/silent: last}": "the result /silent (last) never came: nothing came of /silent",
     "invariants: {few: {topic: /energy, holds: msg.data < 3}}": "",
 }
 
