@@ -11,7 +11,10 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-pytest.register_assert_rewrite("tests")  # what tests share says as much when it fails, and is not left out by python -O
+# What tests share says as much when it fails, and is not left out by python -O.
+pytest.register_assert_rewrite(
+    *(f"tests.{each.stem}" for each in Path(__file__).parent.iterdir() if each.stem.isidentifier())
+)
 
 from tests import quick  # noqa: E402
 

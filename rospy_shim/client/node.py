@@ -16,7 +16,7 @@ from cfepy.status import CfeError
 from rospy_shim.client.client import Client
 from rospy_shim.client.exceptions import ROSInitException
 from rospy_shim.client.life import Life
-from rospy_shim.client.link import Link
+from rospy_shim.client.link import Link, link_class
 from rospy_shim.client.logs import Logs
 from rospy_shim.client.names import Names, is_legal_name, refusal
 from rospy_shim.client.params import Params
@@ -154,7 +154,7 @@ class Node:
         """The publishing side of a topic, made when first asked for."""
         link = self.links.get(name)
         if link is None or link.data_class._md5sum != data_class._md5sum:
-            link = self.links[name] = Link(self, name, data_class)
+            link = self.links[name] = link_class(self)(self, name, data_class)
             if self.initialized:
                 link.connect()
         return link

@@ -33,7 +33,7 @@ def violations(folder: Path, invariant: str, seconds: float = 2.0) -> list[str]:
 @pytest.mark.parametrize(
     ("invariant", "told"),
     [
-        ("{topic: /beat, again: 0.2 s, after: 0.5 s}", ["1.550009 s: nothing within 0.2 s again (/beat)"]),
+        ("{topic: /beat, again: 0.2 s, after: 0.5 s}", ["1.550008 s: nothing within 0.2 s again (/beat)"]),
         ("{topic: /beat, again: 1 s, after: 0.5 s}", []),
         ("{topic: /beat, again: 0.15 s, when: msg.data % 2, after: 0.7 s}", None),
         ("{topic: /beat, eventually: msg.data == 7}", []),
