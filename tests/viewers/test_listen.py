@@ -85,8 +85,12 @@ def test_pages_of_this_computer_and_programs_are_welcome_others_are_not() -> Non
     for origin in (None, "http://localhost:8000", "http://127.0.0.1:1", "https://[::1]:3000"):
         assert here.welcomes(origin)
     strange = ("null", "", "file://", "https://example.org", "http://localhost.example.org", "http://127.0.0.1.nip.io")
-    for origin in (*strange, "http://127.0.0.1@example.org", "http://[", "javascript://localhost"):
-        assert not here.welcomes(origin)
+    odd = ("http://127.0.0.1@example.org", "http://[", "javascript://localhost", "chrome-extension://abc", "http://")
+    addresses = ("http://127.0.0.999", "http://127.1.1.256:80", "http://0127.0.0.1", "http://localhost:99999")
+    for origin in (*strange, *odd, *addresses):
+        assert not here.welcomes(origin), origin
+    assert not listen_place_of("127.0.0.999:1").is_loopback, "everybody needs the token there"
+    assert listen_place_of("127.8.9.10:1").is_loopback
 
 
 def test_origins_that_were_named_are_welcome() -> None:

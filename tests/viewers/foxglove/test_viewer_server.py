@@ -34,11 +34,20 @@ def test_pages_of_strangers_are_refused_and_foxglove_is_not(tmp_path: Path) -> N
     with shown(spec_of(tmp_path, {})) as run:
         for origin in (None, "https://app.foxglove.dev", "http://localhost:8080", "file://", "app://lichtblick"):
             assert refused(run, origin=origin) == 101, origin
-        for origin in ("https://example.org", "null", "https://app.foxglove.dev.example.org"):
+        others = ("https://example.org", "null", "https://app.foxglove.dev.example.org", "http://127.0.0.999")
+        extensions = ("chrome-extension://abcdefghijklmnop", "moz-extension://0-1", "safari-web-extension://x")
+        for origin in (
+            *extensions,
+            "file://server/share",
+            "ftp://example.org",
+            "data:",
+            *others,
+            "https://example.org",
+        ):
             assert refused(run, origin=origin) == 403, origin
         run.viewer.close()
         row = run.rows()["(connections)", "out"]
-        assert (row["connections"], row["refused"]) == (5, 3)
+        assert (row["connections"], row["refused"]) == (5, 11)
         assert "example.org" in row["why"]
 
 
