@@ -205,6 +205,7 @@ class _Collector:
         self._ours = ours
         self._read: dict[str, CppPackage] = {program.package.name: program.package}
         self._taken: set[tuple[str, str]] = set()
+        self._outside = dict.fromkeys(program.outside)
 
     def take(self, package: CppPackage, target: CppTarget) -> None:
         """A target, with all that it is linked with.
@@ -219,6 +220,7 @@ class _Collector:
                 open_at.pop()
             else:
                 open_at.append(self._taking(*inner))
+        self._program.outside = list(self._outside)
 
     def _taking(self, package: CppPackage, target: CppTarget) -> Iterator[tuple[CppPackage, CppTarget]]:
         """Take a target; gives what is to be taken before the next thing of it."""
@@ -236,7 +238,7 @@ class _Collector:
             if inner is not None:
                 yield package, inner
             elif name not in _SYSTEM_LIBRARIES and not name.startswith(("-", "/")):
-                _add(program.outside, [name])
+                self._outside[name] = None
         for name in package.depends:
             yield from self._dependency(name)
 
@@ -370,8 +372,13 @@ class _CatkinReader(CMakeScript):
         self._definitions += [each[2:] for each in flags if each.startswith("-D")]
         for target in self._made:
             self.budget.spend(_EACH * (len(self._includes) + len(self._definitions)))
-            _add(target.includes, self._includes)
-            _add(target.definitions, self._definitions)
+            self._grow(target.includes, self._includes)
+            self._grow(target.definitions, self._definitions)
+
+    def _grow(self, found: list[T], more: Iterable[T]) -> None:
+        """Add what a list has not; to look through it takes time."""
+        self.budget.spend(len(found))
+        _add(found, more)
 
     def command(self, name: str, words: list[str]) -> None:
         """See `CMakeScript.command`."""
@@ -394,7 +401,7 @@ class _CatkinReader(CMakeScript):
                 reader = _CatkinReader(self._package, self.folder / inner, self.variables, self.budget)
                 reader.read(self.folder / inner / FILE)
             case "include_directories", folders:
-                _add(self._includes, self._folders(folders))
+                self._grow(self._includes, self._folders(folders))
             case "add_definitions" | "add_compile_options" | "add_compile_definitions", flags:
                 self._definitions += _definitions(flags, plain=name == "add_compile_definitions")
             case _:
@@ -413,9 +420,9 @@ class _CatkinReader(CMakeScript):
         rest = [each for each in words[1:] if each not in _KEYWORDS]
         match name, rest:
             case "target_link_libraries", libraries:
-                _add(target.links, libraries)
+                self._grow(target.links, libraries)
             case "target_include_directories", folders:
-                _add(target.includes, self._folders(folders))
+                self._grow(target.includes, self._folders(folders))
             case "target_compile_definitions", flags:
                 target.definitions += _definitions(flags, plain=True)
             case "target_compile_options" | "rosbuild_add_compile_flags", flags:
@@ -441,7 +448,7 @@ class _CatkinReader(CMakeScript):
         """Something to be found on the computer: its libraries go by its name, its headers are where they are."""
         if is_package and name == "catkin":
             marks = ("REQUIRED", "COMPONENTS", "QUIET", "EXACT")
-            _add(self._package.depends, (each for each in rest if each not in marks and each[:1].isalpha()))
+            self._grow(self._package.depends, (each for each in rest if each not in marks and each[:1].isalpha()))
         if "REQUIRED" not in rest and name not in _FOUND_ANYWAY:
             return
         names = [name] if is_package else [each for each in rest if each not in ("REQUIRED", "QUIET")]
@@ -461,9 +468,9 @@ class _CatkinReader(CMakeScript):
             else:
                 said.setdefault(section, []).append(each)
         headers = [EIGEN] if {"EIGEN3", "EIGEN", "Eigen3", "Eigen"}.intersection(said.get("DEPENDS", [])) else []
-        _add(self._package.includes, self._folders([*said.get("INCLUDE_DIRS", []), *headers]))
-        _add(self._package.exported, said.get("LIBRARIES", []))
-        _add(self._package.depends, said.get("CATKIN_DEPENDS", []))
+        self._grow(self._package.includes, self._folders([*said.get("INCLUDE_DIRS", []), *headers]))
+        self._grow(self._package.exported, said.get("LIBRARIES", []))
+        self._grow(self._package.depends, said.get("CATKIN_DEPENDS", []))
 
 
 def _definitions(flags: Iterable[str], plain: bool = False) -> list[str]:

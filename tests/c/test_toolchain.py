@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import textwrap
 from pathlib import Path
 
@@ -338,3 +340,17 @@ def test_a_name_that_leads_out_is_refused(name: str, app: Path) -> None:
 def test_a_header_that_a_mission_makes_stays_where_it_is_written(app: Path) -> None:
     write(app, {"mission_build.cmake": "set(PROBE_PLATFORM_FILE_LIST ../../../victim.h /victim.h good.h)\n"})
     assert set(find_sources(app).chosen) == {"good.h", "probe_msgids.h"}
+
+
+def test_a_compiler_is_called_where_the_process_itself_is_bound(tmp_path: Path) -> None:
+    (tmp_path / "a.c").write_text("int a;\n")
+    program = (
+        "import resource, sys\n"
+        "from pathlib import Path\n"
+        "from cfepy.c.toolchain.compiler import compile_file\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))\n"
+        "resource.setrlimit(resource.RLIMIT_CPU, (60, 60))\n"
+        "compile_file(Path(sys.argv[1]), Path(sys.argv[2]), [])\n"
+    )
+    subprocess.run([sys.executable, "-c", program, str(tmp_path / "a.c"), str(tmp_path / "a.o")], check=True)
+    assert (tmp_path / "a.o").is_file()

@@ -142,9 +142,13 @@ def call_bounded(command: Sequence[str]) -> tuple[int, str]:
 def _bound() -> None:
     import resource
 
-    resource.setrlimit(resource.RLIMIT_CPU, (COMPILER_SECONDS, COMPILER_SECONDS))
-    resource.setrlimit(resource.RLIMIT_AS, (COMPILER_BYTES, COMPILER_BYTES))
-    resource.setrlimit(resource.RLIMIT_FSIZE, (OBJECT_BYTES, OBJECT_BYTES))
+    for what, most in (
+        (resource.RLIMIT_CPU, COMPILER_SECONDS),
+        (resource.RLIMIT_AS, COMPILER_BYTES),
+        (resource.RLIMIT_FSIZE, OBJECT_BYTES),
+    ):
+        held = min([each for each in resource.getrlimit(what) if each != resource.RLIM_INFINITY], default=most)
+        resource.setrlimit(what, (min(most, held),) * 2)  # this process may be held to less already, as by `ulimit`
 
 
 def _family(pid: int) -> dict[int, tuple[str, int]]:
