@@ -37,6 +37,8 @@ GIVING = frozenset(
     }
 )
 """Calls that let go of a lock, a table or a message."""
+RECORDS = frozenset({"unsent"})
+"""What only writes into the trace, and is no call of an application."""
 
 
 class _Pointed:
@@ -47,7 +49,7 @@ class _Pointed:
 
     def __getattr__(self, name: str) -> Any:
         value = getattr(self._service, name)
-        if getattr(value, "__self__", None) is not self._service or not isroutine(value):
+        if name in RECORDS or getattr(value, "__self__", None) is not self._service or not isroutine(value):
             return value
         wrap = _giving if name in GIVING else _pointed
         call = vars(self)[name] = wrap(self._service, name, self._kernel)

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from cfepy.attachment import Attachment
-from cfepy.mission import TopicWatch
+from cfepy.mission import Processor, TopicWatch
+from cfepy.mission.call_points import handle_for_apps
 from cfepy.pilot import RunPlan, fly
-from cfepy.rtos import GREENLET, THREAD, has_greenlets
+from cfepy.rtos import GREENLET, THREAD, Schedule, has_greenlets
 from cfepy.sb import SoftwareBus
 from cfepy.trace import Trace
 from tests.mission.flights import write_mission
@@ -135,3 +136,18 @@ def test_large_unsent_messages_are_hashed_at_once(tmp_path: Path) -> None:
     fly(RunPlan((str(tmp_path),), seconds=1), attachments=[Look()], trace=trace)
     assert len(waiting) == 50
     assert max(waiting) < 70000
+
+
+def test_unsent_message_is_no_scheduling_point(tmp_path: Path) -> None:
+    write_mission(tmp_path, NODE, talker=HEAD)
+    found: list[tuple[bool, bool]] = []
+
+    class Look(Attachment):
+        def power_up(self, processor: Processor) -> None:
+            bus = processor.cfe.sb
+            handle = handle_for_apps(processor.cfe, processor.machine.kernel).sb
+            found.append((handle.unsent == bus.unsent, handle.transmit_msg == bus.transmit_msg))
+
+    plan = RunPlan((str(tmp_path),), seconds=1, schedule=Schedule.parse("random:1"))
+    fly(plan, attachments=[Look()])
+    assert found == [(True, False)]
