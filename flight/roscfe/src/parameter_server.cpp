@@ -60,10 +60,10 @@ bool value_of(ParameterCall what, const std::string &name, XmlRpcValue &value)
 }
 
 // Whether one name is that of the other, or of a namespace around it.
-bool is_about(const std::string &one, const std::string &other)
+bool is_about(std::string_view one, std::string_view other)
 {
-    const std::string &shorter = one.size() < other.size() ? one : other;
-    const std::string &longer  = one.size() < other.size() ? other : one;
+    const std::string_view shorter = one.size() < other.size() ? one : other;
+    const std::string_view longer  = one.size() < other.size() ? other : one;
     return longer.compare(0, shorter.size(), shorter) == 0 &&
            (shorter.size() <= 1 || longer.size() == shorter.size() || longer[shorter.size()] == '/');
 }
@@ -92,7 +92,7 @@ bool get_cached(const std::string &name, XmlRpcValue &value)
     return cached.is_there;
 }
 
-void forget_cached(const std::string &name)
+void forget_cached(std::string_view name)
 {
     for (auto &each : kept())
     {
