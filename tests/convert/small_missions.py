@@ -12,6 +12,8 @@ from cfepy.convert import build_for_flight
 from cfepy.mission import Mission, read_mission
 
 PACKAGE = "small"
+ARENA_BYTES = 1 << 22
+"""Enough for a buffer of transforms and a few topics."""
 MANIFEST = f"""<package format="2"><name>{PACKAGE}</name><version>1.0.0</version><description>small</description>
 <maintainer email="a@b.c">a</maintainer><license>Apache-2.0</license><depend>roscpp</depend>
 <depend>std_msgs</depend><depend>std_srvs</depend></package>
@@ -49,7 +51,8 @@ def small_mission(folder: Path, sources: Mapping[str, str], launch: str, profile
     write_package(folder, sources)
     (folder / "startup.scr").write_text("!\n")
     (folder / "all.launch").write_text(f"<launch>{launch}</launch>\n")
-    (folder / "mission.yaml").write_text(f"launch: [all.launch]\ncpp_nodes:\n  profile: {profile}\n")
+    cpp = f"  profile: {profile}\n  arena_bytes: {ARENA_BYTES}\n"
+    (folder / "mission.yaml").write_text(f"launch: [all.launch]\ncpp_nodes:\n{cpp}")
     with patch.dict(os.environ, {"ROS_PACKAGE_PATH": str(folder)}):
         spec = read_mission(str(folder), build=build_for_flight)
     assert not spec.notes, spec.notes
