@@ -50,6 +50,7 @@ int main(int argc, char **argv)
   kept.publish(text);
   double value = 0.0;
   bool worked = true;
+  nh.getParamCached("/value", value); // which takes memory for the name
   ros::spinOnce();
   for (int i = 1; ros::ok(); ++i)
   {

@@ -15,6 +15,8 @@ using XmlRpc::XmlRpcValue;
 namespace
 {
 
+constexpr std::size_t kAnswerAtOnce = 256; // bytes of an answer, before memory is needed for more
+
 // A parameter that the node has asked for with getParamCached.
 struct Cached
 {
@@ -32,7 +34,12 @@ std::map<std::string, Cached> &kept()
 // the memory of both is used again.
 bool ask(ParameterCall what, const std::string &name, const std::string &text, std::string &told)
 {
-    static std::vector<std::uint8_t> answer;
+    // The memory of two answers is used in turns: a number is asked for again, after a notice, without any more.
+    static std::vector<std::uint8_t> answer = [] {
+        std::vector<std::uint8_t> made;
+        made.reserve(kAnswerAtOnce);
+        return made;
+    }();
     if (!call_master(static_cast<std::uint8_t>(what), name, text.c_str(), "", "", answer) || answer.empty() ||
         answer[0] == 0)
     {
