@@ -187,6 +187,7 @@ class RosRuntime:
         self.monitor = ProcessMonitor(config, console, kernel.stop)
         self._pids = ProcessNumbers({MASTER_PORT})
         compiled = CompiledNodes(self.graph, cfe.sb, self._compiled_ended, self._pids)
+        self.compiled_sender = compiled.sender
         self.parameters = ParameterApp(cfe, self.graph.params, compiled)
         self._started: dict[str, NodeConfig] = {}
         self._running: list[Node] = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from cfepy.app import Cfe
 from cfepy.c.arena import PAGE, Arena
@@ -24,6 +24,9 @@ from cfepy.c.unwinding import Unwinder
 from cfepy.console import Console
 from cfepy.rtos import ExploringKernel, Kernel, Race
 from cfepy.status import CfeError, OsalError
+
+if TYPE_CHECKING:
+    from cfepy.c.api.unsent import PublicationWatch
 
 HEAP = 1 << 30
 """Bytes of address space for malloc, and as many for messages."""
@@ -48,6 +51,7 @@ class CRuntime:
         on_overwrite: gets the application and a text for what was written past a block, where no call is at fault.
         on_stack: gets application and task, how many bytes of its stack the task has used, and how many it has.
         nodes: names of ROS nodes by the names of their applications: what they print shows them.
+        publication_watch: looks on at what ROS nodes publish; None in a run that is not watched.
 
     Attributes:
         arena, memory, constants, packets: the parts of the memory.
@@ -73,6 +77,7 @@ class CRuntime:
         on_overwrite: Callable[[str, str], object] = lambda app, text: None,
         on_stack: Callable[[str, str, int, int], object] = lambda app, task, used, size: None,
         nodes: Mapping[str, str] | None = None,
+        publication_watch: PublicationWatch | None = None,
     ) -> None:
         from cfepy.c.api import declare
         from cfepy.c.api.streams import Streams
@@ -85,6 +90,7 @@ class CRuntime:
         self.polling_ns = polling_ns
         self.console = console
         self.omit_deprecated = omit_deprecated
+        self.publication_watch = publication_watch
         self._limit_s = stall_s
         self.arena = Arena()
         self.memory = CMemory()

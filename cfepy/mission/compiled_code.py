@@ -8,17 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from cfepy.es import StartupEntry
 from cfepy.input_files import beginning_of, read_limited
 from cfepy.input_limits import OBJECT_BYTES
 from cfepy.mission.loader import NODE_SYMBOL, Code, Finder
 from cfepy.osal import FileSystem
+from cfepy.sb import SoftwareBus
 from cfepy.status import OsalError
 
 if TYPE_CHECKING:
     from cfepy.c import CompiledLoader, CRuntime
+    from rospy_shim.graph.compiled import CompiledSender
+    from rospy_shim.runtime import RosRuntime
 
 ELF = b"\x7fELF"
 FILES = "/cf/"
@@ -35,6 +38,46 @@ def find_compiled(file: str, folder: Path) -> Path | None:
         return None
     found = folder / file.removeprefix(FILES)
     return found if beginning_of(found, len(ELF)) == ELF else None
+
+
+class CompiledWatch:
+    """Shows messages of compiled nodes that reach no subscriber to the watches of the bus (`SoftwareBus.on_unsent`).
+
+    Args:
+        show: gets the publishing side and the message.
+        ros: the ROS side of the processor, once there is one.
+    """
+
+    def __init__(self, show: Callable[[Any, bytes], object], ros: Callable[[], RosRuntime | None]) -> None:
+        self._show = show
+        self._ros = ros
+
+    def unsent(self, app: str, msg_id: int, message: bytes) -> None:
+        """See `cfepy.c.api.unsent.PublicationWatch`."""
+        sender = self._sender(app, msg_id)
+        if sender is not None:
+            self._show(sender, message)
+
+    def latches(self, app: str, msg_id: int) -> None:
+        """See `cfepy.c.api.unsent.PublicationWatch`."""
+        sender = self._sender(app, msg_id)
+        if sender is not None:
+            sender.latch()
+
+    def _sender(self, app: str, msg_id: int) -> CompiledSender | None:
+        ros = self._ros()
+        return None if ros is None else ros.compiled_sender(app, msg_id)
+
+
+def compiled_watch(bus: SoftwareBus, ros: Callable[[], RosRuntime | None]) -> CompiledWatch | None:
+    """What shows messages of compiled nodes; None on a bus that is not watched.
+
+    Args:
+        bus: the Software Bus.
+        ros: see `CompiledWatch`.
+    """
+    show: Any = bus.on_unsent  # a static method, which binds no bus
+    return None if show is None else CompiledWatch(show, ros)
 
 
 class CompiledFiles(Finder):

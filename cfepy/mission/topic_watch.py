@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 RAW_TYPE = "std_msgs/UInt8MultiArray"
 CLOCK_BYTES = 8
+ADDRESSEE = slice(12, 16)
+"""Bytes of a topic's packet that are 0 if it is for all subscribers."""
 
 
 class TopicMessage:
@@ -96,13 +98,15 @@ class TopicWatch(PacketWatch):
     def take_packet(self, seen: Seen) -> None:
         """A packet was sent; for what watches all packets itself, and so does not let this watch do it too."""
         topic = self._topic(seen.msg_id)
-        if topic is None:
-            return
+        if topic is None or (not topic.raw and any(seen.packet[ADDRESSEE])):
+            return  # a repetition of a message for one subscriber, which is no new message
         data = seen.packet if topic.raw else self._whole(seen)
         if data is not None:
             links = [link for link in topic.links if link.node.config.app == seen.sender]
             header = links[0].header if len(links) == 1 else topic.sender_of(seen.packet) if links else None
-            self._show(topic, header or _header_of(topic, seen.sender), data, seen.at_ns)
+            header = header or _header_of(topic, seen.sender)
+            shown = _as_bytes_message(header, data) if topic.raw else (header, data)
+            self._show(topic, *shown, seen.at_ns)
 
     def _whole(self, seen: Seen) -> bytes | None:
         """The message in a packet, or the one that ends with it; None when there is more to come."""
@@ -118,11 +122,10 @@ class TopicWatch(PacketWatch):
 
     def _take_unsent(self, link: Link, data: bytes) -> None:
         if link.topic is not None and self._is_wanted(link.msg_id):
-            self._show(link.topic, link.header, data, link.node.kernel.now)
+            header = _header_of_bytes(link.header) if link.topic.raw else link.header
+            self._show(link.topic, header, data, link.node.kernel.now)
 
     def _show(self, topic: TopicEntry, header: dict[str, str], data: bytes, at_ns: int) -> None:
-        if topic.raw:
-            header, data = _as_bytes_message(header, data)
         if topic.name == "/clock" and len(data) == CLOCK_BYTES:
             self._clock_ns = int.from_bytes(data[:4], "little") * NS_PER_S + int.from_bytes(data[4:], "little")
         if matches(topic.name, self._patterns) and "md5sum" in header:
@@ -141,17 +144,29 @@ def matches(topic: str, patterns: Sequence[str]) -> bool:
 
 
 def _header_of(topic: TopicEntry, sender: str) -> dict[str, str]:
-    """A connection header for a cFE application that sends to a topic; empty as long as its type is not known."""
+    """A connection header for an application that sends to a topic and is no Python node.
+
+    It is empty as long as the type of the topic is not known.
+    """
+    compiled = next((node for node in topic.compiled_publishers if node.config.app == sender), None)
+    if compiled is not None:
+        return topic.compiled_header(compiled)
     if not topic.md5sum:
         return {}
     about = {"md5sum": topic.md5sum, "message_definition": topic.definition, "topic": topic.name, "type": topic.type}
     return {"callerid": f"/{sender}", "latching": "0", **about}
 
 
+def _header_of_bytes(header: dict[str, str]) -> dict[str, str]:
+    """The connection header of a raw topic, whose messages have a whole packet as their data."""
+    from rospy_shim.msgs import message_class
+
+    kind = message_class(RAW_TYPE)
+    return {**header, "type": RAW_TYPE, "md5sum": kind._md5sum, "message_definition": kind._full_text}
+
+
 def _as_bytes_message(header: dict[str, str], packet: bytes) -> tuple[dict[str, str], bytes]:
     """A raw topic: nodes get the whole packet as the data of a message; so does the bag."""
     from rospy_shim.msgs import message_class
 
-    kind = message_class(RAW_TYPE)
-    about = {"type": RAW_TYPE, "md5sum": kind._md5sum, "message_definition": kind._full_text}
-    return {**header, **about}, kind(data=packet)._pack()
+    return _header_of_bytes(header), message_class(RAW_TYPE)(data=packet)._pack()

@@ -13,7 +13,7 @@ from cfepy.sb.bus import POLL, SoftwareBus
 from cfepy.sb.message_buffer import MessageBuffer
 from cfepy.sb.outlet import Outlet
 from cfepy.sb.packet_listener import listened
-from cfepy.sb.packets import COMMANDS, ONESUB_TLM, TELEMETRY, UNSUBSCRIPTION
+from cfepy.sb.packets import COMMANDS, ONESUB_TLM, SUBSCRIPTION, TELEMETRY, UNSUBSCRIPTION
 from cfepy.sb.pipe import NOBODY_HEARD, Pipe
 from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE
 from cfepy.sb.routing import Destination, PutHook, Route
@@ -27,6 +27,7 @@ __all__ = [
     "PEND_FOREVER",
     "PIPEOPTS_IGNOREMINE",
     "POLL",
+    "SUBSCRIPTION",
     "TELEMETRY",
     "UNSUBSCRIPTION",
     "Destination",

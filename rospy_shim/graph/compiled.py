@@ -13,7 +13,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.nodes import ProcessNumbers, process_number
-from cfepy.sb import ONESUB_TLM, UNSUBSCRIPTION
+from cfepy.sb import ONESUB_TLM
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_MS
 from rospy_shim.client.exceptions import ServiceException
@@ -21,12 +21,16 @@ from rospy_shim.client.names import ANYTYPE
 from rospy_shim.client.service import REQUEST_LEAD, Pieces, answer_packets, call_of_request, room_of
 from rospy_shim.client.transport import HEADER_BYTES, addressed, segments, whole_header
 from rospy_shim.graph.compiled_params import CompiledParams
+from rospy_shim.graph.msg_ids import COMMAND_BIT
 from rospy_shim.parameters.table import MASTER_TLM_MID
 
 if TYPE_CHECKING:
     from cfepy.sb import SoftwareBus
     from rospy_shim.client.link import Link
-    from rospy_shim.graph.graph import Graph, TopicEntry
+    from rospy_shim.graph.graph import Graph, Header, TopicEntry
+
+
+PIPE_ID_MASK = 0xFFFFFFFF
 
 
 class Concern(IntEnum):
@@ -48,7 +52,7 @@ class Enrolled(NamedTuple):
     msg_id: int
     raw: bool = False
     latched: bool = False
-    pipes: tuple[int, ...] = ()  # that hear it, for a publisher
+    pipes: tuple[int, ...] = ()  # that hear the topic, or the requests of the service
 
     def packed(self) -> bytes:
         """Its bytes: the MsgId, a byte of flags, and the pipes."""
@@ -102,6 +106,10 @@ class _Names(NamedTuple):
     name: str
 
 
+class _Config(NamedTuple):
+    app: str
+
+
 class _Client(NamedTuple):
     uri: str
 
@@ -118,21 +126,56 @@ class CompiledNode:
         pipe: through which it hears everything.
         bus: the Software Bus.
         pid: the number that stands for its process, and the port in its URIs.
+
+    Attributes:
+        config: with the name of its application.
+        published, subscribed: types by topic.
+        latched: topics of which a publisher latches, in a run that is watched.
     """
 
     def __init__(self, name: str, pipe: int, bus: SoftwareBus, pid: int) -> None:
+        owned = bus.find_pipe(pipe)
         self.names = _Names(name)
+        self.config = _Config("" if owned is None else owned.app_name)
+        self.kernel = bus.kernel
         self.client = _Client(f"http://cfepy:{pid}/")
         self.pid = pid
         self.pipe = pipe
         self.bus = bus
-        self.published: dict[str, str] = {}  # types by topic
+        self.published: dict[str, str] = {}
         self.subscribed: dict[str, str] = {}
+        self.latched: set[str] = set()
 
     @property
     def is_alive(self) -> bool:
         """Whether its application still runs."""
         return self.bus.find_pipe(self.pipe) is not None
+
+
+class CompiledSender(NamedTuple):
+    """The publishing side of a compiled node on a topic, as watches of the bus see it; a `Link` in their terms."""
+
+    node: CompiledNode
+    topic: TopicEntry
+
+    @property
+    def name(self) -> str:
+        """The topic's name."""
+        return self.topic.name
+
+    @property
+    def msg_id(self) -> int:
+        """The topic's MsgId."""
+        return self.topic.msg_id
+
+    @property
+    def header(self) -> Header:
+        """A connection header."""
+        return self.topic.compiled_header(self.node)
+
+    def latch(self) -> None:
+        """A publisher latches."""
+        self.node.latched.add(self.topic.name)
 
 
 class CompiledNodes:
@@ -166,6 +209,16 @@ class CompiledNodes:
         except (UsageError, ServiceException, struct.error, ValueError) as error:
             good, body = False, str(error).encode()
         return answer_packets(MASTER_TLM_MID, number, good, body, self._bus.config.sb_max_msg_size)
+
+    def sender(self, app: str, msg_id: int) -> CompiledSender | None:
+        """The publishing side of an application on the topic with a MsgId; None if it has none."""
+        for node in self._graph.compiled.values():
+            if node.config.app == app:
+                topics = (self._graph.topics[name] for name in node.published if name in self._graph.topics)
+                found = next((topic for topic in topics if topic.msg_id == msg_id), None)
+                if found is not None:
+                    return CompiledSender(node, found)
+        return None
 
     def forget_ended(self) -> None:
         """Nodes whose applications have ended leave the graph."""
@@ -240,9 +293,12 @@ class CompiledNodes:
         topic = self._topic(node, name, declared)
         node.published[name] = declared._type
         topic.add_compiled_publisher(node)
-        route = self._bus.routes.get(topic.msg_id)
-        pipes = () if route is None else tuple(each.pipe.pipe_id for each in route.destinations)
-        return Enrolled(topic.msg_id, topic.raw, pipes=pipes)
+        return Enrolled(topic.msg_id, topic.raw, pipes=self._pipes_on(topic.msg_id))
+
+    def _pipes_on(self, msg_id: int) -> tuple[int, ...]:
+        """The ids of all pipes that hear a MsgId; those of outlets are told as packets have them."""
+        route = self._bus.routes.get(msg_id)
+        return () if route is None else tuple(each.pipe.pipe_id & PIPE_ID_MASK for each in route.destinations)
 
     def _publish_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
         topic = self._graph.topic(name)
@@ -277,7 +333,8 @@ class CompiledNodes:
         return Enrolled(0)
 
     def _call(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
-        return Enrolled(self._graph.ids.of_service(name))
+        answer_id = self._graph.ids.of_service(name)
+        return Enrolled(answer_id, pipes=self._pipes_on(answer_id | COMMAND_BIT))
 
     def _give_latched(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
         """Python nodes' latched messages, for the one subscription that has just come."""
@@ -297,16 +354,17 @@ class CompiledNodes:
             yield addressed(packet, pipe, number)
 
 
-def tell_gone(bus: SoftwareBus, msg_id: int, pipe: int) -> None:
-    """Let compiled publishers know that a subscription has ended, which the Software Bus reports of none.
+def tell_subscription(bus: SoftwareBus, msg_id: int, pipe: int, kind: int) -> None:
+    """Let compiled publishers know of a subscription that the Software Bus does not report.
 
     Args:
         bus: the Software Bus.
         msg_id: of the topic.
-        pipe: that heard it.
+        pipe: that hears it, or heard it; also an outlet's.
+        kind: SUBSCRIPTION or UNSUBSCRIPTION: the bus reports no end of a subscription, and nothing of outlets.
     """
     if bus.reporting:
-        bus.transmit_msg(ONESUB_TLM.packet(SubType=UNSUBSCRIPTION, MsgId=msg_id, Pipe=pipe))
+        bus.transmit_msg(ONESUB_TLM.packet(SubType=kind, MsgId=msg_id, Pipe=pipe & PIPE_ID_MASK))
 
 
 def _texts(body: bytes, count: int) -> list[str]:

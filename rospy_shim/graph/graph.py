@@ -8,9 +8,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.cached import CachedProperty
+from cfepy.sb import SUBSCRIPTION, UNSUBSCRIPTION
 from rospy_shim.client.exceptions import ServiceException
 from rospy_shim.client.transport import sequence_of
-from rospy_shim.graph.compiled import CompiledNode, CompiledService, DeclaredType, tell_gone
+from rospy_shim.graph.compiled import CompiledNode, CompiledService, DeclaredType, tell_subscription
 from rospy_shim.graph.msg_ids import COMMAND_BIT, MsgIds
 from rospy_shim.parameters.tree import ParameterTree
 
@@ -148,7 +149,17 @@ class TopicEntry:
     def tell_left(self, bus: SoftwareBus, pipe: int) -> None:
         """A subscriber's pipe hears the topic no more; compiled publishers are told."""
         if self.compiled_publishers:
-            tell_gone(bus, self.msg_id, pipe)
+            tell_subscription(bus, self.msg_id, pipe, UNSUBSCRIPTION)
+
+    def tell_came(self, bus: SoftwareBus, pipe: int) -> None:
+        """A subscriber outside hears the topic from now on; compiled publishers are told."""
+        if self.compiled_publishers:
+            tell_subscription(bus, self.msg_id, pipe, SUBSCRIPTION)
+
+    def compiled_header(self, node: CompiledNode) -> Header:
+        """The connection header of a compiled publisher."""
+        about = {"md5sum": self.md5sum, "message_definition": self.definition, "topic": self.name, "type": self.type}
+        return {"callerid": node.names.name, "latching": str(int(self.name in node.latched)), **about}
 
     def _refresh(self) -> None:
         self._shared = shared = self._shared or len(self.links) > 1

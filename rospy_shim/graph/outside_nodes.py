@@ -20,6 +20,7 @@ from rospy_shim.client.transport import (
     SPARE_AT,
     WHOLE,
     Assembler,
+    is_for_another,
     segments,
     sequence_of,
     whole_header,
@@ -185,6 +186,7 @@ class OutsideSubscription(Subscription):
         self._together = Assembler()
         self._outlet = Outlet(node.cfe.sb, topic.msg_id, f"{node.names.name}{topic.name}", self._take)
         topic.add_subscription(self)
+        topic.tell_came(node.cfe.sb, self._outlet.pipe_id)
 
     def expect_segments(self, count: int) -> None:
         """Nothing waits here."""
@@ -206,6 +208,7 @@ class OutsideSubscription(Subscription):
         if self.topic is not None:
             self.topic.remove_subscription(self)
             self.topic.leave()
+            self.topic.tell_left(self.node.cfe.sb, self._outlet.pipe_id)
             self.topic = None
             self._outlet.close()
 
@@ -216,7 +219,7 @@ class OutsideSubscription(Subscription):
         if self._raw:
             self._out(topic.sender_of(packet)["callerid"], bytes(8) + len(packet).to_bytes(4, "little") + packet)
             return
-        if packet[SPARE_AT:HEADER_BYTES] != EVERYBODY:
+        if packet[SPARE_AT:HEADER_BYTES] != EVERYBODY and is_for_another(packet, self._outlet.pipe_id):
             return
         whole: bytes | None = packet
         if packet[2] < WHOLE:

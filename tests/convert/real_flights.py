@@ -7,6 +7,8 @@ TREE is a mission tree of cFS 7.0.0 (`tests.convert.mission_tree`), for `arm` wi
 ping    a package with a launch file, a library and a nodelet: its nodes hear each other (--profile host, pool)
 strict  nodes in the profile strict say there what they say on cfepy; one that allocates after its start ends
 lives   two nodes of one program share nothing, and one that is restarted begins anew
+hostile packets that end before what they say, on MsgIds that a node hears, leave it and the others at work
+ends    a call returns whose server is ended meanwhile, and the service is known to be gone
 arm     examples/arm: two nodes close a loop at 1 kHz beside HK, which collects from them and is commanded by a third
 """
 
@@ -21,10 +23,14 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 import cfepy
-from cfepy.es.packets import RESTART_APP
+from cfepy.es.packets import RESTART_APP, STOP_APP
 from tests.convert.mission_tree import CI_LAB, MissionTree, said
 from tests.convert.node_flights import NODES
 from tests.convert.ping import ping_package
+from tests.convert.small_missions import write_package
+from tests.convert.test_hostile_packets import ALLSUBS, EMPTY_LIST, LAUNCH, ONESUB, SOURCES, packet_of
+from tests.convert.test_service_ends import LAUNCH as ENDING_LAUNCH
+from tests.convert.test_service_ends import SOURCES as ENDING
 from tests.convert.twin_flights import TWINS
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -105,6 +111,41 @@ def lives(tree: Path, scratch: Path, profile: str) -> list[str]:
     return [f"/one: {again} texts, then {len(one) - again} anew; /two: {len(two)} texts", *one[again - 1 : again + 1]]
 
 
+def hostile(tree: Path, scratch: Path, profile: str) -> list[str]:
+    """A node hears packets of a stranger, and works on; what it said."""
+    write_package(scratch, SOURCES)
+    (scratch / "all.launch").write_text(f"<launch>{LAUNCH}</launch>\n", encoding="utf-8")
+    os.environ["ROS_PACKAGE_PATH"] = str(scratch)
+    mission = MissionTree(tree, scratch)
+    apps = mission.convert([str(scratch / "all.launch")], profile=profile)
+    mission.build()
+    with mission.booted(scratch / "run", apps, [CI_LAB]) as cfe:
+        cfe.wait(lambda: "alive 2," in said(cfe), "nodes", LIMIT_S)
+        for packet in (EMPTY_LIST, packet_of(ONESUB, b"\xff" * 4), packet_of(ALLSUBS, b"\xff" * 30)):
+            cfe.send(packet)
+        cfe.wait(lambda: "ignored 28 bytes on 0x080D" in said(cfe), "event", LIMIT_S)
+        cfe.wait(lambda: "alive 6," in said(cfe), "nodes that work on", LIMIT_S)
+        found = said(cfe)
+    if "process ended" in found or cfe.boots() != 1:
+        raise SystemExit(found[-3000:])
+    return [line for line in found.splitlines() if "alive 6," in line or "ignored" in line]
+
+
+def ends(tree: Path, scratch: Path, profile: str) -> list[str]:
+    """The server of a call is ended; what the caller said."""
+    write_package(scratch, ENDING)
+    (scratch / "all.launch").write_text(f"<launch>{ENDING_LAUNCH}</launch>\n", encoding="utf-8")
+    os.environ["ROS_PACKAGE_PATH"] = str(scratch)
+    mission = MissionTree(tree, scratch)
+    apps = mission.convert([str(scratch / "all.launch")], profile=profile)
+    mission.build()
+    with mission.booted(scratch / "run", apps, [CI_LAB]) as cfe:
+        cfe.wait(lambda: "calls" in said(cfe), "call", LIMIT_S)
+        cfe.send(STOP_APP.packet(Application="SERVER"))
+        cfe.wait(lambda: "service there 0" in said(cfe), "end of the call", LIMIT_S)
+        return [line for line in said(cfe).splitlines() if NODE_LINE.match(line)]
+
+
 def spoken(lines: Iterable[str]) -> list[str]:
     """What nodes logged, with their names and without the times, by node."""
     found = (NODE_LINE.match(line) for line in lines)
@@ -115,6 +156,8 @@ FLIGHTS: Mapping[str, Callable[[Path, Path, str], list[str]]] = {
     "ping": ping,
     "strict": strict,
     "lives": lives,
+    "hostile": hostile,
+    "ends": ends,
     "arm": arm,
 }
 

@@ -41,6 +41,7 @@ from cfepy.c.api import (
     tbl,
     text,
     time,
+    unsent,
 )
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ _OSAL = (
     *(osal_sockets, osal_select, osal_modules, osal_objects, osal_system),
 )
 _PSP = (psp, psp_memory, psp_iodriver)
-_TOOLS = (streams, sorting, cpp, pthread, gcov)
+_TOOLS = (streams, sorting, cpp, pthread, gcov, unsent)
 _CORE = (text, es, memory_pools, cds, evs, sb, tbl, time, fs, config, resource_ids)
 _MODULES = (*_CORE, *_TOOLS, *_OSAL, *_PSP)
 

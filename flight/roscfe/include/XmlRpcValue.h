@@ -155,7 +155,12 @@ class XmlRpcValue
             case TypeInt:
                 return stream << as<int>();
             case TypeDouble:
-                return stream << as<double>();
+            {
+                const std::streamsize before = stream.precision(16);
+                stream << as<double>();
+                stream.precision(before);
+                return stream;
+            }
             case TypeString:
                 return stream << as<std::string>();
             case TypeDateTime:

@@ -1,4 +1,4 @@
-// The node's pipe: what comes through it, who else listens, and packets that go out (CFE_SB).
+// The node's pipe: what comes through it, and packets that go out (CFE_SB).
 #include <algorithm>
 #include <cstring>
 
@@ -16,21 +16,7 @@ static_assert(kTelemetryHeader == 16, "topics have packets with a header of 16 b
 
 constexpr std::size_t   kSpare           = 12;   // of a telemetry header: whom a repetition is for
 constexpr std::uint8_t  kAddressed       = 0x01; // in its last byte; above it stands which subscription is meant
-constexpr std::size_t   kKnownAtOnce     = 512;  // subscriptions of the whole processor, before memory is needed for more
-constexpr std::int64_t  kReportTimeout   = kSecond;
 constexpr std::int32_t  kLongestWaitMs   = 100000;
-
-// A subscription of any application, as the Software Bus reports it: with its pipe when it is new. The list of those that
-// there were before tells no pipes (0), and a MsgId once however many pipes have subscribed to it.
-struct Known
-{
-    std::uint16_t   msg_id;
-    CFE_SB_PipeId_t pipe;
-    osal_id_t       queue; // of the pipe; OSAL tells whether it is there without an event
-};
-std::vector<Known> g_known;
-bool               g_reports_end = false; // the last packet of the list of those that there were came
-std::uint16_t      g_list_begins = 0;     // the first MsgId of that list
 
 // A long message that comes in several packets.
 struct Assembly
@@ -47,95 +33,6 @@ std::uint32_t pipe_number(CFE_SB_PipeId_t pipe)
     return static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(pipe)) & 0x00FFFFFF;
 }
 
-bool same_pipe(CFE_SB_PipeId_t one, CFE_SB_PipeId_t other)
-{
-    return CFE_RESOURCEID_TO_ULONG(one) == CFE_RESOURCEID_TO_ULONG(other);
-}
-
-bool is_there(const Known &known)
-{
-    if (CFE_RESOURCEID_TO_ULONG(known.pipe) == 0)
-    {
-        return true; // nobody can say
-    }
-    if (!OS_ObjectIdDefined(known.queue)) // pipes are no queues of OSAL here, as on cfepy
-    {
-        char name[OS_MAX_API_NAME];
-        return CFE_SB_GetPipeName(name, sizeof name, known.pipe) == CFE_SUCCESS;
-    }
-    OS_queue_prop_t properties;
-    return OS_QueueGetInfo(known.queue, &properties) == OS_SUCCESS;
-}
-
-void know(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
-{
-    for (const Known &known : g_known)
-    {
-        if (known.msg_id == msg_id && same_pipe(known.pipe, pipe))
-        {
-            return;
-        }
-    }
-    char      name[OS_MAX_API_NAME];
-    osal_id_t queue = OS_OBJECT_ID_UNDEFINED;
-    if (CFE_SB_GetPipeName(name, sizeof name, pipe) != CFE_SUCCESS)
-    {
-        return; // gone already
-    }
-    if (OS_QueueGetIdByName(&queue, name) != OS_SUCCESS)
-    {
-        queue = OS_OBJECT_ID_UNDEFINED;
-    }
-    g_known.push_back({msg_id, pipe, queue});
-    publication_has_subscriber(msg_id, pipe);
-}
-
-void forget(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
-{
-    g_known.erase(std::remove_if(g_known.begin(), g_known.end(),
-                                 [&](const Known &known) {
-                                     return known.msg_id == msg_id && same_pipe(known.pipe, pipe);
-                                 }),
-                  g_known.end());
-    publication_lost_subscriber(msg_id, pipe);
-}
-
-void read_report(const CFE_SB_Buffer_t *buffer, std::uint16_t msg_id)
-{
-    if (msg_id == CFE_SB_ONESUB_TLM_MID)
-    {
-        const auto &report = reinterpret_cast<const CFE_SB_SingleSubscriptionTlm_t *>(buffer)->Payload;
-        const auto  id     = static_cast<std::uint16_t>(CFE_SB_MsgIdToValue(report.MsgId));
-        if (report.SubType != CFE_SB_SUBSCRIPTION)
-        {
-            forget(id, report.Pipe);
-        }
-        else if (report.Qos.Priority == 0)
-        {
-            know(id, report.Pipe);
-        }
-        else if (!same_pipe(report.Pipe, g_node.pipe))
-        {
-            publication_has_another(id, report.Pipe, report.Qos.Priority);
-        }
-        return;
-    }
-    const auto &report = reinterpret_cast<const CFE_SB_AllSubscriptionsTlm_t *>(buffer)->Payload;
-    for (std::uint32_t i = 0; i < report.Entries; ++i)
-    {
-        // Other nodes ask for the list, too; it tells nothing of a MsgId that is known already.
-        const auto id = static_cast<std::uint16_t>(CFE_SB_MsgIdToValue(report.Entry[i].MsgId));
-        if (pipes_on(id) == 0)
-        {
-            g_known.push_back({id, report.Entry[i].Pipe, OS_OBJECT_ID_UNDEFINED});
-        }
-    }
-    // A packet with room is the last one. A full one may be: the list that begins anew says so.
-    const auto first = static_cast<std::uint16_t>(CFE_SB_MsgIdToValue(report.Entry[0].MsgId));
-    g_reports_end    = g_reports_end || report.Entries < CFE_MISSION_SB_SUB_ENTRIES_PER_PKT || first == g_list_begins;
-    g_list_begins    = g_list_begins != 0 ? g_list_begins : first;
-}
-
 constexpr std::size_t     kRawLead = 12; // of std_msgs/UInt8MultiArray: no dimensions, no offset, the length of the data
 std::vector<std::uint8_t> g_raw;         // the message of a raw packet
 
@@ -146,7 +43,7 @@ bool has_room(const std::vector<std::uint8_t> &in, std::size_t size)
     return size <= in.capacity();
 #else
     (void)in;
-    return size <= in.max_size();
+    return size <= kLongestMessage;
 #endif
 }
 
@@ -273,12 +170,8 @@ void dispatch(const CFE_SB_Buffer_t *buffer)
     CFE_MSG_GetSegmentationFlag(&buffer->Msg, &flag);
     const auto          msg_id = static_cast<std::uint16_t>(CFE_SB_MsgIdToValue(id));
     const std::uint8_t *packet = reinterpret_cast<const std::uint8_t *>(buffer);
-    if (msg_id == CFE_SB_ONESUB_TLM_MID || msg_id == CFE_SB_ALLSUBS_TLM_MID)
-    {
-        read_report(buffer, msg_id);
-        return;
-    }
-    if (take_request(msg_id, packet, size) || take_answer(msg_id, packet, size))
+    if (take_report(msg_id, buffer, size) || take_request(msg_id, packet, size) ||
+        take_answer(msg_id, packet, size))
     {
         return;
     }
@@ -312,23 +205,6 @@ void address(std::uint8_t *packet, std::uint32_t pipe, std::uint8_t number)
     packet[kSpare + 3] = static_cast<std::uint8_t>(number << 1 | kAddressed);
 }
 
-// A report as the Software Bus makes one when a pipe subscribes.
-void report(std::uint16_t msg_id, std::uint8_t kind, std::uint8_t number)
-{
-    CFE_SB_Buffer_t *buffer = CFE_SB_AllocateMessageBuffer(sizeof(CFE_SB_SingleSubscriptionTlm_t));
-    if (buffer != nullptr)
-    {
-        CFE_MSG_Init(&buffer->Msg, CFE_SB_ValueToMsgId(CFE_SB_ONESUB_TLM_MID), sizeof(CFE_SB_SingleSubscriptionTlm_t));
-        auto &told           = reinterpret_cast<CFE_SB_SingleSubscriptionTlm_t *>(buffer)->Payload;
-        told.SubType         = kind;
-        told.MsgId           = CFE_SB_ValueToMsgId(msg_id);
-        told.Qos.Priority    = number;
-        told.Qos.Reliability = 0;
-        told.Pipe            = g_node.pipe;
-        send_packet(buffer);
-    }
-}
-
 // What waits in the pipe, and timers that are due, in this order; true when there were packets.
 bool take_over()
 {
@@ -341,17 +217,6 @@ bool take_over()
     }
     queue_due_timers(now_ns());
     return came;
-}
-
-void ask_for_reports(CFE_MSG_FcnCode_t code)
-{
-    CFE_SB_Buffer_t *buffer = CFE_SB_AllocateMessageBuffer(kCommandHeader);
-    if (buffer != nullptr)
-    {
-        CFE_MSG_Init(&buffer->Msg, CFE_SB_ValueToMsgId(CFE_SB_SUB_RPT_CTRL_MID), kCommandHeader);
-        CFE_MSG_SetFcnCode(&buffer->Msg, code);
-        send_packet(buffer);
-    }
 }
 
 std::uint32_t g_addressee = 0; // of what is sent at the moment; 0 is everybody
@@ -369,27 +234,7 @@ void open_bus()
         refuse("CFE_SB_CreatePipe failed", pipe_name);
     }
     g_node.has_pipe = true;
-    g_known.reserve(kKnownAtOnce);
-    // As SBN does it: the Software Bus tells who subscribes, and who has. Without, every message is sent.
-    if (!listen(CFE_SB_ONESUB_TLM_MID) || !listen(CFE_SB_ALLSUBS_TLM_MID))
-    {
-        return;
-    }
-    // In this order no subscription is missed: what is not in the list comes after it, and is reported.
-    ask_for_reports(CFE_SB_ENABLE_SUB_REPORTING_CC);
-    ask_for_reports(CFE_SB_SEND_PREV_SUBS_CC);
-    bool               again = false;
-    const std::int64_t until = now_ns() + kReportTimeout;
-    while (!g_reports_end && pump(until))
-    {
-        if (g_list_begins != 0 && !g_reports_end && !again)
-        {
-            again = true;
-            ask_for_reports(CFE_SB_SEND_PREV_SUBS_CC);
-        }
-    }
-    g_node.knows_subscribers = !g_known.empty();
-    g_node.has_master        = pipes_on(kMasterMsgId | kCommandBit) > 0;
+    open_subscribers();
 }
 
 void set_aside(const Subscription &subscription)
@@ -404,77 +249,23 @@ void set_aside(const Subscription &subscription)
     }
 }
 
+void tell_ignored(Ignored what, std::uint16_t msg_id, std::size_t size)
+{
+    static const char *const kWhat[] = {"report of subscriptions", "request of a service", "answer of a service"};
+    static bool              is_told[sizeof kWhat / sizeof *kWhat];
+    const auto               number = static_cast<std::size_t>(what);
+    if (!is_told[number])
+    {
+        is_told[number] = true;
+        CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s: ignored %lu bytes on 0x%04X: no %s; told once",
+                          g_node.name.c_str(), static_cast<unsigned long>(size), msg_id, kWhat[number]);
+    }
+}
+
 bool listen(std::uint16_t msg_id)
 {
     return CFE_SB_SubscribeEx(CFE_SB_ValueToMsgId(msg_id), g_node.pipe, CFE_SB_DEFAULT_QOS,
                               g_node.description->pipe_depth) == CFE_SUCCESS;
-}
-
-void listen_no_more(std::uint16_t msg_id)
-{
-    CFE_SB_Unsubscribe(CFE_SB_ValueToMsgId(msg_id), g_node.pipe);
-    if (!g_node.knows_subscribers)
-    {
-        return;
-    }
-    // The Software Bus reports no subscription that ends; publishers are to know all the same.
-    report(msg_id, CFE_SB_UNSUBSCRIPTION, 0);
-}
-
-void ask_for_repetition(std::uint16_t msg_id, std::uint8_t number)
-{
-    if (g_node.knows_subscribers)
-    {
-        report(msg_id, CFE_SB_SUBSCRIPTION, number);
-    }
-}
-
-void know_pipes(std::uint16_t msg_id, const std::vector<CFE_SB_PipeId_t> &pipes)
-{
-    g_known.erase(std::remove_if(g_known.begin(), g_known.end(),
-                                 [&](const Known &known) {
-                                     return known.msg_id == msg_id && CFE_RESOURCEID_TO_ULONG(known.pipe) == 0;
-                                 }),
-                  g_known.end());
-    for (const CFE_SB_PipeId_t &pipe : pipes)
-    {
-        know(msg_id, pipe);
-    }
-}
-
-std::uint32_t pipes_on(std::uint16_t msg_id)
-{
-    std::uint32_t count = 0;
-    for (std::size_t i = g_known.size(); i > 0; --i)
-    {
-        const Known known = g_known[i - 1];
-        if (known.msg_id != msg_id)
-        {
-            continue;
-        }
-        if (is_there(known))
-        {
-            ++count;
-        }
-        else
-        {
-            forget(msg_id, known.pipe); // its application has ended
-        }
-    }
-    return count;
-}
-
-std::vector<CFE_SB_PipeId_t> those_on(std::uint16_t msg_id)
-{
-    std::vector<CFE_SB_PipeId_t> found;
-    for (const Known &known : g_known)
-    {
-        if (known.msg_id == msg_id && is_there(known))
-        {
-            found.push_back(known.pipe);
-        }
-    }
-    return found;
 }
 
 namespace

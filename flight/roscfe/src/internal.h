@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 extern "C" {
@@ -44,6 +45,7 @@ constexpr std::uint16_t kCommandBit      = 0x1000; // requests of a service are 
 constexpr std::uint16_t kMasterMsgId     = 0x08FC; // of the answers of cfepy's ROS application, as of a service
 constexpr std::uint16_t kRosoutMsgId     = 0x0900;
 constexpr std::size_t   kLongestKey      = 256; // characters of a parameter's name that is looked up without memory
+constexpr std::size_t   kLongestMessage  = 1U << 28; // bytes that are joined from packets, where no type says how many
 constexpr std::int64_t  kMillisecond     = 1000000;
 constexpr std::int64_t  kSecond          = 1000000000;
 constexpr std::int64_t  kForever         = -1;
@@ -56,7 +58,8 @@ struct Node
     std::string            ns;
     bool                   initialized   = false;
     bool                   started       = false;
-    bool                   shutting_down = false;
+    bool                   shutting_down = false; // it was asked to end
+    bool                   is_shut       = false; // and has nothing more to do with the graph
     bool                   asked_to_end  = false; // by ES
     bool                   ended         = false; // the task is gone; objects that are destroyed now leave the bus alone
     ros::CallbackQueue     queue;
@@ -97,16 +100,16 @@ void set_aside(const Subscription &subscription);
 // Take over what waits in the pipe, unless that is under way.
 void take_over_now();
 
-bool          listen(std::uint16_t msg_id);
-void          listen_no_more(std::uint16_t msg_id);
-// The pipe has another subscription to what it hears: publishers send it the last message that they have latched.
-void          ask_for_repetition(std::uint16_t msg_id, std::uint8_t number);
-std::uint32_t pipes_on(std::uint16_t msg_id);
-// The pipes that hear a MsgId, in place of what the list of subscriptions said, which tells no pipes.
-void          know_pipes(std::uint16_t msg_id, const std::vector<CFE_SB_PipeId_t> &pipes);
+bool listen(std::uint16_t msg_id);
 
-// The pipes that have subscribed to a MsgId; 0 stands for those of which only that they are there is known.
-std::vector<CFE_SB_PipeId_t> those_on(std::uint16_t msg_id);
+// A packet is none of its kind, since it ends early or what it says of itself cannot be; an event says so, once a kind.
+enum class Ignored : std::uint8_t
+{
+    report,
+    request,
+    answer
+};
+void tell_ignored(Ignored what, std::uint16_t msg_id, std::size_t size);
 
 // A packet under way: memory of the Software Bus behind a header of its own. Null when there is none, which an event says.
 CFE_SB_Buffer_t *begin_packet(std::uint16_t msg_id, std::size_t size);
@@ -116,6 +119,26 @@ std::uint8_t *   bytes_of(CFE_SB_Buffer_t *buffer);
 // Send bytes behind a header and a lead that each packet repeats, in as many packets as it takes.
 void send_bytes(std::uint16_t msg_id, const std::uint8_t *lead, std::size_t lead_size, const std::uint8_t *bytes,
                 std::size_t size);
+
+// -- subscribers.cpp: who else listens ---------------------------------------------------------------------------------
+
+void open_subscribers();
+bool take_report(std::uint16_t msg_id, const CFE_SB_Buffer_t *buffer, std::size_t size);
+void listen_no_more(std::uint16_t msg_id);
+// The pipe has another subscription to what it hears: publishers send it the last message that they have latched.
+void ask_for_repetition(std::uint16_t msg_id, std::uint8_t number);
+// The node sends to a MsgId: of its subscriptions none is left out.
+void send_from_now_on(std::uint16_t msg_id);
+std::uint32_t pipes_on(std::uint16_t msg_id);
+// The pipes that hear a MsgId, in place of what the list of subscriptions said, which tells no pipes.
+void know_pipes(std::uint16_t msg_id, const std::vector<CFE_SB_PipeId_t> &pipes);
+
+// The pipes that have subscribed to a MsgId; 0 stands for those of which only that they are there is known.
+std::vector<CFE_SB_PipeId_t> those_on(std::uint16_t msg_id);
+bool                         has_name(CFE_SB_PipeId_t pipe); // whether a pipe is one of this processor
+bool                         hears(CFE_SB_PipeId_t pipe, std::uint16_t msg_id);
+// Ask whether subscriptions without a pipe are still there, at most once a second.
+void check_pipes_on(std::uint16_t msg_id);
 
 // -- others ------------------------------------------------------------------------------------------------------------
 
@@ -144,6 +167,7 @@ void end_exact_waits(); // before the task ends
 void publication_has_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe);
 void publication_has_another(std::uint16_t msg_id, CFE_SB_PipeId_t pipe, std::uint8_t number);
 void publication_lost_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe);
+void clients_lost_server(std::uint16_t msg_id, CFE_SB_PipeId_t pipe);
 bool take_request(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size);
 bool take_answer(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size);
 
@@ -168,7 +192,7 @@ struct Registration
     std::uint16_t msg_id  = 0;
     bool          raw     = false;
     bool          latched = false; // there are messages for a subscriber that comes now
-    std::vector<CFE_SB_PipeId_t> pipes; // that hear a topic which the node publishes
+    std::vector<CFE_SB_PipeId_t> pipes; // that hear the topic, or the service's requests
     bool          refused = false; // the master said why not; the name stays without a MsgId
 };
 Registration enroll(Kind kind, const std::string &name, const char *type, const char *md5, const char *definition);
@@ -192,7 +216,7 @@ namespace server
 {
 bool get(const std::string &name, XmlRpc::XmlRpcValue &value);
 bool get_cached(const std::string &name, XmlRpc::XmlRpcValue &value);
-void forget_cached(const std::string &name); // it has changed, or what is in it
+void forget_cached(std::string_view name); // it has changed, or what is in it
 void set(const std::string &name, const XmlRpc::XmlRpcValue &value);
 void give(const XmlRpc::XmlRpcValue &tree);
 bool has(const std::string &name);

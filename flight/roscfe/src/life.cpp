@@ -1,4 +1,5 @@
 // The life of a node: from the application's entry point to its end.
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -36,10 +37,8 @@ void tell_end(int status)
     {
         return;
     }
-    is_told              = true;
-    g_node.shutting_down = false; // otherwise nobody waits for the answer
-    const bool told      = call_master(kEnded, g_node.description->app, std::to_string(status).c_str(), "", "", answer);
-    g_node.shutting_down = true;
+    is_told         = true;
+    const bool told = call_master(kEnded, g_node.description->app, std::to_string(status).c_str(), "", "", answer);
     if (!told || answer.size() < 5 || answer[0] == 0)
     {
         return;
@@ -190,8 +189,10 @@ void set_private(const std::string &name, const char *value)
         param::set(full, static_cast<int>(whole));
         return;
     }
-    const double number = std::strtod(value, &end);
-    if (plain && *end == '\0')
+    // As in roscpp no hexadecimal number, nor one that a double cannot hold, though strtod reads both.
+    const double number  = std::strtod(value, &end);
+    const bool   is_word = std::strpbrk(value, "nN") != nullptr; // inf or nan
+    if (plain && *end == '\0' && std::strpbrk(value, "xX") == nullptr && (is_word || !std::isinf(number)))
     {
         param::set(full, number);
         return;
@@ -285,11 +286,13 @@ void start()
 void shutdown()
 {
     g_node.shutting_down = true;
+    g_node.is_shut       = true;
 }
 
+// In roscpp a thread shuts down then, a little later: until then the node is on the graph.
 void requestShutdown()
 {
-    shutdown();
+    g_node.shutting_down = true;
 }
 
 bool ok()

@@ -15,6 +15,8 @@ using XmlRpc::XmlRpcValue;
 namespace
 {
 
+constexpr std::size_t kAnswerAtOnce = 256; // bytes of an answer, before memory is needed for more
+
 // A parameter that the node has asked for with getParamCached.
 struct Cached
 {
@@ -32,7 +34,12 @@ std::map<std::string, Cached> &kept()
 // the memory of both is used again.
 bool ask(ParameterCall what, const std::string &name, const std::string &text, std::string &told)
 {
-    static std::vector<std::uint8_t> answer;
+    // The memory of two answers is used in turns: a number is asked for again, after a notice, without any more.
+    static std::vector<std::uint8_t> answer = [] {
+        std::vector<std::uint8_t> made;
+        made.reserve(kAnswerAtOnce);
+        return made;
+    }();
     if (!call_master(static_cast<std::uint8_t>(what), name, text.c_str(), "", "", answer) || answer.empty() ||
         answer[0] == 0)
     {
@@ -60,10 +67,10 @@ bool value_of(ParameterCall what, const std::string &name, XmlRpcValue &value)
 }
 
 // Whether one name is that of the other, or of a namespace around it.
-bool is_about(const std::string &one, const std::string &other)
+bool is_about(std::string_view one, std::string_view other)
 {
-    const std::string &shorter = one.size() < other.size() ? one : other;
-    const std::string &longer  = one.size() < other.size() ? other : one;
+    const std::string_view shorter = one.size() < other.size() ? one : other;
+    const std::string_view longer  = one.size() < other.size() ? other : one;
     return longer.compare(0, shorter.size(), shorter) == 0 &&
            (shorter.size() <= 1 || longer.size() == shorter.size() || longer[shorter.size()] == '/');
 }
@@ -92,7 +99,7 @@ bool get_cached(const std::string &name, XmlRpcValue &value)
     return cached.is_there;
 }
 
-void forget_cached(const std::string &name)
+void forget_cached(std::string_view name)
 {
     for (auto &each : kept())
     {

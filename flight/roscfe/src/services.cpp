@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "internal.h"
+#include "ros/init.h"
 #include "ros/node_handle.h"
 #include "ros/service.h"
 
@@ -77,8 +78,8 @@ bool listen_to_answers(std::uint16_t answer_id)
 void append(std::vector<std::uint8_t> &to, const std::uint8_t *bytes, std::size_t size, std::size_t lead,
             std::size_t most)
 {
-    const std::size_t room = most > 0 ? lead + most + 1 - std::min(lead + most + 1, to.size()) : size;
-    to.insert(to.end(), bytes, bytes + std::min(size, room));
+    const std::size_t room = lead + (most > 0 ? most : kLongestMessage) + 1;
+    to.insert(to.end(), bytes, bytes + std::min(size, room - std::min(room, to.size())));
 }
 
 std::uint8_t segment_flags(const std::uint8_t *packet)
@@ -156,6 +157,7 @@ bool take_request(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t 
         const std::size_t lead = kCommandHeader + kRequestLead;
         if (size < lead)
         {
+            tell_ignored(Ignored::request, msg_id, size);
             return true;
         }
         const std::uint32_t number = number_at(packet + kCommandHeader);
@@ -184,6 +186,10 @@ bool take_request(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t 
         if (each->receive(number, bytes, length))
         {
             each->callbacks_->addCallback(each, reinterpret_cast<std::uintptr_t>(each.get()));
+        }
+        if (flags != 3)
+        {
+            g_pieces.clear();
         }
         return true;
     }
@@ -217,19 +223,78 @@ void withdraw(const boost::shared_ptr<Service> &service)
 
 // -- the side that calls -----------------------------------------------------------------------------------------------
 
-Client::Client(const std::string &name, const char *type, const char *md5, std::size_t most_of_request,
-               std::size_t most_of_response)
-    : name_(name), most_(most_of_response), answer_id_(enroll(Kind::client, name, type, md5, "").msg_id)
+namespace
 {
+std::vector<Client *> g_persistent; // clients that are connected with the one server that they have found
+} // namespace
+
+Client::Client(const std::string &name, const char *type, const char *md5, std::size_t most_of_request,
+               std::size_t most_of_response, bool persistent)
+    : name_(name), most_(most_of_response), is_master_(type == nullptr)
+{
+    const Registration place = enroll(Kind::client, name, type, md5, "");
+    answer_id_               = place.msg_id;
     long_request_.reserve(most_of_request);
     answer_.reserve(most_ > 0 ? most_ + 1 : 0);
     g_listened.reserve(++g_clients);
+    if (is_master_)
+    {
+        return;
+    }
+    send_from_now_on(request_id());
+    if (g_node.has_master && !place.refused && g_node.knows_subscribers)
+    {
+        know_pipes(request_id(), place.pipes);
+    }
+    if (persistent)
+    {
+        const std::vector<CFE_SB_PipeId_t> servers = those_on(request_id());
+        is_linked_ = !servers.empty() || !g_node.knows_subscribers;
+        server_    = servers.empty() ? 0 : static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(servers.front()));
+        g_persistent.push_back(this);
+    }
+}
+
+Client::~Client()
+{
+    g_persistent.erase(std::remove(g_persistent.begin(), g_persistent.end(), this), g_persistent.end());
+}
+
+void clients_lost_server(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
+{
+    for (Client *each : g_persistent)
+    {
+        each->lose(msg_id, static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(pipe)));
+    }
+}
+
+std::uint16_t Client::request_id() const
+{
+    return answer_id_ | kCommandBit;
+}
+
+void Client::lose(std::uint16_t request_id_of_server, std::uint32_t server)
+{
+    // Of a server that was there before, nobody says which pipe it has.
+    is_linked_ = is_linked_ && (request_id_of_server != request_id() || (server_ != 0 && server != server_));
+}
+
+bool Client::is_linked()
+{
+    pump(0);
+    is_linked_ = is_linked_ && (!g_node.knows_subscribers ||
+                                hears(CFE_SB_PIPEID_C(CFE_ResourceId_FromInteger(server_)), request_id()));
+    return is_linked_;
 }
 
 bool Client::exists() const
 {
     pump(0);
-    return !g_node.knows_subscribers || pipes_on(answer_id_ | kCommandBit) > 0;
+    if (!is_master_) // which was there at the start; a call looks if it is not answered
+    {
+        check_pipes_on(request_id());
+    }
+    return !g_node.knows_subscribers || pipes_on(request_id()) > 0;
 }
 
 bool Client::wait_for_existence(std::int64_t timeout_ns)
@@ -238,7 +303,7 @@ bool Client::wait_for_existence(std::int64_t timeout_ns)
     while (!exists())
     {
         const std::int64_t now = now_ns();
-        if (g_node.shutting_down || (timeout_ns >= 0 && now >= until))
+        if (!ros::ok() || (timeout_ns >= 0 && now >= until))
         {
             return false;
         }
@@ -249,13 +314,20 @@ bool Client::wait_for_existence(std::int64_t timeout_ns)
 
 std::uint8_t *Client::begin(std::size_t size)
 {
-    if (!exists())
+    if ((g_node.is_shut && !is_master_) || !exists())
     {
         return nullptr;
     }
     size_ = size;
     long_request_.resize(std::max<std::size_t>(size, 1)); // an empty request has an address, too
     return long_request_.data();
+}
+
+// Whether an answer may still come: whoever serves is there, and the node is not to end. The master answers until then.
+bool Client::may_be_answered() const
+{
+    check_pipes_on(request_id());
+    return (is_master_ || ros::ok()) && (!g_node.knows_subscribers || pipes_on(request_id()) > 0);
 }
 
 bool Client::call()
@@ -269,12 +341,18 @@ bool Client::call()
     answer_.clear();
     std::uint8_t lead[kRequestLead];
     put_number(lead, this_call.number);
-    send_bytes(answer_id_ | kCommandBit, lead, sizeof lead, long_request_.data(), size_);
-    while (!this_call.is_over && !g_node.shutting_down)
+    send_bytes(request_id(), lead, sizeof lead, long_request_.data(), size_);
+    std::int64_t look = now_ns() + kLook;
+    while (!this_call.is_over && (is_master_ || !g_node.shutting_down))
     {
-        if (!pump(now_ns() + kLook) && !exists())
+        pump(look);
+        if (!this_call.is_over && now_ns() >= look)
         {
-            break; // whoever served has ended
+            look = now_ns() + kLook;
+            if (!may_be_answered())
+            {
+                break;
+            }
         }
     }
     g_call = this_call.outer;
@@ -286,7 +364,7 @@ bool take_answer(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t s
     const std::size_t lead = kTelemetryHeader + kAnswerLead;
     if (msg_id == kMasterMsgId && size >= lead && number_at(packet + kTelemetryHeader) == 0)
     {
-        server::forget_cached(std::string(reinterpret_cast<const char *>(packet) + lead, size - lead)); // a notice
+        server::forget_cached(std::string_view(reinterpret_cast<const char *>(packet) + lead, size - lead)); // a notice
         return true;
     }
     for (Call *call = g_call; call != nullptr; call = call->outer)
@@ -295,7 +373,12 @@ bool take_answer(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t s
         {
             continue;
         }
-        if (size < lead || number_at(packet + kTelemetryHeader) != call->number || call->is_over)
+        if (size < lead)
+        {
+            tell_ignored(Ignored::answer, msg_id, size);
+            return true;
+        }
+        if (number_at(packet + kTelemetryHeader) != call->number || call->is_over)
         {
             continue; // an answer to somebody else
         }
@@ -328,6 +411,10 @@ namespace ros
 
 ServiceServer NodeHandle::advertiseService(AdvertiseServiceOptions &options)
 {
+    if (roscfe::g_node.is_shut)
+    {
+        return ServiceServer();
+    }
     CallbackQueueInterface *queue = options.callback_queue != nullptr ? options.callback_queue : getCallbackQueue();
     auto                    made  = options.make(resolveName(options.service), queue);
     made->tracked_                = options.tracked_object;
@@ -372,9 +459,14 @@ std::string ServiceServer::getService() const
 
 ServiceClient::ServiceClient(const std::string &name, bool persistent, const char *type, const char *md5,
                              std::size_t most_of_request, std::size_t most_of_response)
-    : client_(boost::make_shared<roscfe::Client>(name, type, md5, most_of_request, most_of_response)),
+    : client_(boost::make_shared<roscfe::Client>(name, type, md5, most_of_request, most_of_response, persistent)),
       persistent_(persistent)
 {
+}
+
+bool ServiceClient::isValid() const
+{
+    return client_ != nullptr && (!persistent_ || client_->is_linked());
 }
 
 bool ServiceClient::waitForExistence(Duration timeout)

@@ -3,10 +3,19 @@
 #include <cstring>
 
 #include "internal.h"
+#include "ros/advertise_options.h"
 #include "ros/console.h"
 #include "ros/node_handle.h"
 #include "ros/single_subscriber_publisher.h"
 #include "ros/this_node.h"
+
+// Where messages go that are not sent, since the topic has no subscriber, while a bag or another watch looks on. cfepy has
+// these functions in such runs alone; elsewhere they are not there.
+extern "C" {
+__attribute__((weak, visibility("default"))) void *cfepy_unsent_room(std::size_t size);
+__attribute__((weak, visibility("default"))) void  cfepy_unsent(std::uint16_t msg_id, void *at, std::size_t size);
+__attribute__((weak, visibility("default"))) void  cfepy_latches(std::uint16_t msg_id);
+}
 
 namespace roscfe
 {
@@ -28,10 +37,11 @@ boost::shared_ptr<Publication> advertise(const std::string &topic, const char *t
             return each;
         }
     }
-    const Registration             place = enroll(Kind::publisher, topic, type, md5, definition);
+    const Registration place = enroll(Kind::publisher, topic, type, md5, definition);
     boost::shared_ptr<Publication> made  = boost::make_shared<Publication>(topic, type, md5, has_header);
     made->msg_id_                        = place.msg_id;
     made->raw_                           = place.raw;
+    send_from_now_on(place.msg_id);
     if (g_node.has_master && !place.refused && g_node.knows_subscribers)
     {
         know_pipes(place.msg_id, place.pipes);
@@ -40,21 +50,17 @@ boost::shared_ptr<Publication> advertise(const std::string &topic, const char *t
     return made;
 }
 
-void Publication::set_aside(std::size_t most_bytes)
+void Publication::set_aside(bool latch, std::size_t most_bytes)
 {
-    if (latch_)
-    {
-        latched_.reserve(most_bytes);
-    }
-    if (latch_ || raw_ || most_bytes > kRoom)
+    if (latch || raw_ || most_bytes > kRoom)
     {
         g_long_message.reserve(most_bytes);
     }
 }
 
-bool Publication::is_wanted() const
+bool Publication::is_wanted(bool latch) const
 {
-    return msg_id_ != 0 && (latch_ || !g_node.knows_subscribers || pipes_on(msg_id_) > 0);
+    return msg_id_ != 0 && (latch || !g_node.knows_subscribers || pipes_on(msg_id_) > 0);
 }
 
 std::uint32_t Publication::subscribers() const
@@ -62,11 +68,11 @@ std::uint32_t Publication::subscribers() const
     return g_node.knows_subscribers || msg_id_ == 0 ? pipes_on(msg_id_) : 1;
 }
 
-std::uint8_t *Publication::begin(std::size_t size)
+std::uint8_t *Publication::begin(std::size_t size, bool latch)
 {
     size_   = size;
     buffer_ = nullptr;
-    if (latch_ || raw_ || size > kRoom)
+    if (latch || raw_ || size > kRoom)
     {
         g_long_message.resize(size);
         return g_long_message.data();
@@ -76,17 +82,19 @@ std::uint8_t *Publication::begin(std::size_t size)
     return buffer != nullptr ? bytes_of(buffer) + kTelemetryHeader : nullptr;
 }
 
-void Publication::send()
+void Publication::write_number(std::uint8_t *at, std::size_t size) const
+{
+    for (std::size_t byte = 0; has_header_ && size >= 4 && byte < 4; ++byte)
+    {
+        at[byte] = static_cast<std::uint8_t>(seq_ >> (8 * byte));
+    }
+}
+
+void Publication::send(Advertised &by)
 {
     std::uint8_t *at = buffer_ != nullptr ? bytes_of(static_cast<CFE_SB_Buffer_t *>(buffer_)) + kTelemetryHeader
                                           : g_long_message.data();
-    if (has_header_ && size_ >= 4)
-    {
-        for (int byte = 0; byte < 4; ++byte)
-        {
-            at[byte] = static_cast<std::uint8_t>(seq_ >> (8 * byte));
-        }
-    }
+    write_number(at, size_);
     ++seq_;
     if (buffer_ != nullptr)
     {
@@ -109,77 +117,148 @@ void Publication::send()
         }
         return;
     }
-    if (latch_)
+    if (by.latch_)
     {
-        latched_.assign(at, at + size_);
+        by.keep(at, size_);
     }
     if (!g_node.knows_subscribers || pipes_on(msg_id_) > 0)
     {
         send_bytes(msg_id_, nullptr, 0, at, size_);
     }
+    else if (is_watched())
+    {
+        std::uint8_t *shown = begin_unsent(size_);
+        if (shown != nullptr)
+        {
+            std::memcpy(shown, at, size_);
+            cfepy_unsent(msg_id_, shown, size_);
+        }
+    }
 }
+
+bool Publication::is_watched() const
+{
+    return cfepy_unsent_room != nullptr && msg_id_ != 0;
+}
+
+std::uint8_t *Publication::begin_unsent(std::size_t size) const
+{
+    return static_cast<std::uint8_t *>(cfepy_unsent_room(size));
+}
+
+void Publication::show_unsent(std::uint8_t *at, std::size_t size) const
+{
+    write_number(at, size);
+    cfepy_unsent(msg_id_, at, size);
+}
+
+// -- what publishers ask for -------------------------------------------------------------------------------------------
 
 namespace
 {
-void call_all(const std::vector<ros::SubscriberStatusCallback> &calls, const ros::SingleSubscriberPublisher &only)
-{
-    for (const ros::SubscriberStatusCallback &call : calls)
-    {
-        call(only);
-    }
-}
+constexpr std::size_t kPeersAtOnce = 16; // that wait for a callback, before memory is needed for more
 } // namespace
 
+Advertised::Advertised(const boost::shared_ptr<Publication> &publication, const ros::AdvertiseOptions &options,
+                       ros::CallbackQueueInterface *callbacks)
+    : publication_(publication), latch_(options.latch), connect_(options.connect_cb),
+      disconnect_(options.disconnect_cb), callbacks_(callbacks), tracked_(options.tracked_object),
+      has_tracked_(options.tracked_object != nullptr)
+{
+    if (latch_)
+    {
+        latched_.reserve(options.most_bytes);
+    }
+    if (connect_ || disconnect_)
+    {
+        waiting_.reserve(kPeersAtOnce);
+        callbacks_->expect(kPeersAtOnce);
+    }
+}
+
+void Advertised::keep(const std::uint8_t *bytes, std::size_t size)
+{
+    latched_.assign(bytes, bytes + size);
+    has_latched_ = true;
+}
+
+void Advertised::tell(std::uint32_t pipe, bool came)
+{
+    if (is_over_ || !(came ? connect_ : disconnect_))
+    {
+        return;
+    }
+#if defined(ROSCFE_PROFILE_STRICT)
+    if (waiting_.size() == waiting_.capacity())
+    {
+        CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s: more than %lu subscribers of %s wait for a callback",
+                          g_node.name.c_str(), static_cast<unsigned long>(waiting_.size()), publication_->topic_.c_str());
+        return;
+    }
+#endif
+    waiting_.push_back({pipe, came});
+    callbacks_->addCallback(shared_from_this(), reinterpret_cast<std::uintptr_t>(this));
+}
+
+void Advertised::end()
+{
+    is_over_ = true;
+    waiting_.clear();
+    if (!g_node.ended && (connect_ || disconnect_))
+    {
+        callbacks_->removeByID(reinterpret_cast<std::uintptr_t>(this));
+    }
+}
+
+ros::CallbackInterface::CallResult Advertised::call()
+{
+    if (waiting_.empty())
+    {
+        return Invalid;
+    }
+    const Peer peer = waiting_.front();
+    waiting_.erase(waiting_.begin());
+    const ros::VoidConstPtr held = tracked_.lock();
+    if (is_over_ || (has_tracked_ && !held))
+    {
+        return Invalid;
+    }
+    char                  name[OS_MAX_API_NAME] = "";
+    const CFE_SB_PipeId_t pipe                  = CFE_SB_PIPEID_C(CFE_ResourceId_FromInteger(peer.pipe));
+    if (peer.came && has_name(pipe) && CFE_SB_GetPipeName(name, sizeof name, pipe) != CFE_SUCCESS)
+    {
+        return Invalid; // gone already
+    }
+    const ros::SubscriberStatusCallback &call = peer.came ? connect_ : disconnect_;
+    call(ros::SingleSubscriberPublisher(*publication_, peer.pipe, name));
+    return Success;
+}
+
 namespace
 {
-// A subscriber that was there before a publisher that wants to hear of it: roscpp connects both a little later.
-class EarlierSubscriber : public ros::CallbackInterface
+// Calls a function with all that publishers of the node have asked for a topic.
+template <class F>
+void with_all_of(std::uint16_t msg_id, F function)
 {
-  public:
-    EarlierSubscriber(const boost::shared_ptr<Publication> &publication, const ros::AdvertiseOptions &options,
-                      CFE_SB_PipeId_t pipe)
-        : publication_(publication), call_(options.connect_cb), tracked_(options.tracked_object),
-          is_tracked_(options.tracked_object != nullptr), pipe_(pipe)
+    for (const boost::shared_ptr<Publication> &each : g_node.publications)
     {
+        for (std::size_t i = 0; each->msg_id_ == msg_id && i < each->advertised_.size(); ++i)
+        {
+            function(*each->advertised_[i]);
+        }
     }
+}
 
-    CallResult call() override
-    {
-        const boost::shared_ptr<Publication> publication = publication_.lock();
-        const ros::VoidConstPtr              held        = tracked_.lock();
-        char                                 name[OS_MAX_API_NAME];
-        if (!publication || publication->users_ == 0 || (is_tracked_ && !held))
-        {
-            return Invalid;
-        }
-        if (CFE_RESOURCEID_TO_ULONG(pipe_) == 0)
-        {
-            name[0] = '\0';
-        }
-        else if (CFE_SB_GetPipeName(name, sizeof name, pipe_) != CFE_SUCCESS)
-        {
-            return Invalid; // gone already
-        }
-        const auto number = static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(pipe_));
-        call_(ros::SingleSubscriberPublisher(*publication, number, name));
-        return Success;
-    }
-
-  private:
-    boost::weak_ptr<Publication>  publication_;
-    ros::SubscriberStatusCallback call_;
-    ros::VoidConstWPtr            tracked_;
-    bool                          is_tracked_;
-    CFE_SB_PipeId_t               pipe_;
-};
-
-void tell_of_those_on(const boost::shared_ptr<Publication> &publication, const ros::AdvertiseOptions &options)
+std::uint32_t number_of(CFE_SB_PipeId_t pipe)
 {
-    ros::CallbackQueueInterface &queue = options.callback_queue != nullptr ? *options.callback_queue : g_node.queue;
-    for (const CFE_SB_PipeId_t pipe : those_on(publication->msg_id_))
+    return static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(pipe));
+}
+
+void repeat(Advertised &by, CFE_SB_PipeId_t pipe, std::uint8_t number)
+{
+    if (by.has_latched_)
     {
-        queue.expect(1);
-        queue.addCallback(boost::make_shared<EarlierSubscriber>(publication, options, pipe), 0);
+        send_to(*by.publication_, number_of(pipe), by.latched_.data(), by.latched_.size(), number);
     }
 }
 } // namespace
@@ -187,49 +266,21 @@ void tell_of_those_on(const boost::shared_ptr<Publication> &publication, const r
 // A pipe that hears the topic already has one more subscription.
 void publication_has_another(std::uint16_t msg_id, CFE_SB_PipeId_t pipe, std::uint8_t number)
 {
-    for (const boost::shared_ptr<Publication> &each : g_node.publications)
-    {
-        if (each->msg_id_ == msg_id && each->users_ > 0 && each->latch_ && !each->latched_.empty())
-        {
-            send_to(*each, static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(pipe)), each->latched_.data(),
-                    each->latched_.size(), number);
-        }
-    }
+    with_all_of(msg_id, [&](Advertised &each) { repeat(each, pipe, number); });
 }
 
 void publication_lost_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
 {
-    for (const boost::shared_ptr<Publication> &each : g_node.publications)
-    {
-        if (each->msg_id_ == msg_id && each->users_ > 0)
-        {
-            const auto number = static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(pipe));
-            call_all(each->on_disconnect_, ros::SingleSubscriberPublisher(*each, number, ""));
-        }
-    }
+    with_all_of(msg_id, [&](Advertised &each) { each.tell(number_of(pipe), false); });
 }
 
+// As in roscpp, what was latched is on its way before a callback is called.
 void publication_has_subscriber(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
 {
-    for (const boost::shared_ptr<Publication> &each : g_node.publications)
-    {
-        if (each->msg_id_ != msg_id || each->users_ == 0)
-        {
-            continue;
-        }
-        const auto number = static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(pipe));
-        char       name[OS_MAX_API_NAME];
-        if (CFE_SB_GetPipeName(name, sizeof name, pipe) != CFE_SUCCESS)
-        {
-            continue; // gone already
-        }
-        const ros::SingleSubscriberPublisher only(*each, number, name);
-        call_all(each->on_connect_, only);
-        if (each->latch_ && !each->latched_.empty())
-        {
-            send_to(*each, number, each->latched_.data(), each->latched_.size());
-        }
-    }
+    with_all_of(msg_id, [&](Advertised &each) {
+        repeat(each, pipe, 0);
+        each.tell(number_of(pipe), true);
+    });
 }
 
 std::uint32_t queue_size(std::uint32_t asked)
@@ -246,14 +297,12 @@ std::uint8_t           g_numbers    = 0; // given to subscriptions that are not 
 // The bus tells publishers of a node's first subscription to a topic only; its own latched topics it sees itself.
 void give_latched(const boost::shared_ptr<Subscription> &subscription)
 {
-    for (const boost::shared_ptr<Publication> &each : g_node.publications)
-    {
-        if (each->msg_id_ == subscription->msg_id_ && each->latch_ && !each->latched_.empty() &&
-            subscription->receive(each->latched_.data(), each->latched_.size()))
+    with_all_of(subscription->msg_id_, [&](Advertised &each) {
+        if (each.has_latched_ && subscription->receive(each.latched_.data(), each.latched_.size()))
         {
             subscription->callbacks_->addCallback(subscription, reinterpret_cast<std::uintptr_t>(subscription.get()));
         }
-    }
+    });
 }
 } // namespace
 
@@ -326,31 +375,34 @@ namespace ros
 
 // -- ros::Publisher ----------------------------------------------------------------------------------------------------
 
-Publisher::Publisher(const boost::shared_ptr<roscfe::Publication> &publication)
-    : handle_(boost::make_shared<Handle>(publication))
+Publisher::Publisher(const boost::shared_ptr<roscfe::Advertised> &advertised)
+    : handle_(boost::make_shared<Handle>(advertised))
 {
 }
 
-Publisher::Handle::Handle(const boost::shared_ptr<roscfe::Publication> &of) : publication(of), topic(of->topic_)
+Publisher::Handle::Handle(const boost::shared_ptr<roscfe::Advertised> &of)
+    : advertised(of), topic(of->publication_->topic_)
 {
-    ++publication->users_;
 }
 
 void Publisher::Handle::release()
 {
-    if (!publication)
+    if (!advertised)
     {
         return;
     }
-    const boost::shared_ptr<roscfe::Publication> was = publication;
-    publication.reset();
-    if (--was->users_ == 0)
+    const boost::shared_ptr<roscfe::Advertised> was = advertised;
+    advertised.reset();
+    was->end();
+    auto &others = was->publication_->advertised_;
+    others.erase(std::remove(others.begin(), others.end(), was), others.end());
+    if (others.empty())
     {
         auto &all = roscfe::g_node.publications;
-        all.erase(std::remove(all.begin(), all.end(), was), all.end());
+        all.erase(std::remove(all.begin(), all.end(), was->publication_), all.end());
         if (!roscfe::g_node.ended)
         {
-            roscfe::withdraw_name(roscfe::Kind::publisher, was->topic_);
+            roscfe::withdraw_name(roscfe::Kind::publisher, was->publication_->topic_);
         }
     }
 }
@@ -360,6 +412,7 @@ void Publisher::shutdown()
     if (handle_)
     {
         handle_->release();
+        handle_.reset(); // its copies still have the topic's name
     }
 }
 
@@ -375,12 +428,12 @@ std::uint32_t Publisher::getNumSubscribers() const
         return 0;
     }
     roscfe::pump(0); // a loop that waits for subscribers hears of them
-    return handle_->publication->subscribers();
+    return handle_->advertised->publication_->subscribers();
 }
 
 bool Publisher::isLatched() const
 {
-    return *this && handle_->publication->latch_;
+    return *this && handle_->advertised->latch_;
 }
 
 // -- ros::Subscriber ---------------------------------------------------------------------------------------------------
@@ -425,6 +478,10 @@ std::uint32_t Subscriber::getNumPublishers() const
 Publisher NodeHandle::advertise(AdvertiseOptions &options)
 {
     const std::string topic = resolveName(options.topic);
+    if (roscfe::g_node.is_shut)
+    {
+        return Publisher();
+    }
     for (const auto &each : roscfe::g_node.publications)
     {
         if (each->topic_ == topic && each->md5_ != options.md5sum)
@@ -436,24 +493,32 @@ Publisher NodeHandle::advertise(AdvertiseOptions &options)
             return Publisher();
         }
     }
+    CallbackQueueInterface *queue = options.callback_queue != nullptr ? options.callback_queue : getCallbackQueue();
     auto publication = roscfe::advertise(topic, options.datatype.c_str(), options.md5sum.c_str(),
                                          options.message_definition.c_str(), options.has_header);
-    publication->latch_ = publication->latch_ || options.latch;
-    publication->set_aside(options.most_bytes);
-    if (options.connect_cb)
+    publication->set_aside(options.latch, options.most_bytes);
+    const auto advertised = boost::make_shared<roscfe::Advertised>(publication, options, queue);
+    publication->advertised_.push_back(advertised);
+    if (options.latch && cfepy_latches != nullptr)
     {
-        publication->on_connect_.push_back(options.connect_cb);
-        roscfe::tell_of_those_on(publication, options);
+        cfepy_latches(publication->msg_id_);
     }
-    if (options.disconnect_cb)
+    if (options.connect_cb) // roscpp tells of subscribers that are there a little later
     {
-        publication->on_disconnect_.push_back(options.disconnect_cb);
+        for (const CFE_SB_PipeId_t pipe : roscfe::those_on(publication->msg_id_))
+        {
+            advertised->tell(roscfe::number_of(pipe), true);
+        }
     }
-    return Publisher(publication);
+    return Publisher(advertised);
 }
 
 Subscriber NodeHandle::subscribe(SubscribeOptions &options)
 {
+    if (roscfe::g_node.is_shut)
+    {
+        return Subscriber();
+    }
     CallbackQueueInterface *queue = options.callback_queue != nullptr ? options.callback_queue : getCallbackQueue();
     auto subscription             = options.make(options, resolveName(options.topic), queue);
     roscfe::subscribe(subscription, options.type, options.md5sum.c_str(), options.definition);

@@ -13,7 +13,7 @@ class Publisher
 {
   public:
     Publisher() = default;
-    explicit Publisher(const boost::shared_ptr<roscfe::Publication> &publication);
+    explicit Publisher(const boost::shared_ptr<roscfe::Advertised> &advertised);
 
     template <class M>
     void publish(const boost::shared_ptr<M> &message) const
@@ -24,22 +24,33 @@ class Publisher
     template <class M>
     void publish(const M &message) const
     {
-        if (!handle_ || !handle_->publication)
+        if (!handle_ || !handle_->advertised)
         {
             return; // roscpp asserts in a debug build only
         }
-        roscfe::Publication &publication = *handle_->publication;
-        if (!publication.is_wanted())
+        roscfe::Advertised & advertised  = *handle_->advertised;
+        roscfe::Publication &publication = *advertised.publication_;
+        const bool           is_wanted   = publication.is_wanted(advertised.latch_);
+        if (!is_wanted && !publication.is_watched())
         {
             ++publication.seq_;
             return;
         }
         const std::size_t size = roscfe::wire::length(message);
-        std::uint8_t *    at   = publication.begin(size);
-        if (at != nullptr)
+        std::uint8_t *    at = is_wanted ? publication.begin(size, advertised.latch_) : publication.begin_unsent(size);
+        if (at == nullptr)
         {
-            roscfe::wire::write(message, at, size);
-            publication.send();
+            return;
+        }
+        roscfe::wire::write(message, at, size);
+        if (is_wanted)
+        {
+            publication.send(advertised);
+        }
+        else
+        {
+            publication.show_unsent(at, size);
+            ++publication.seq_;
         }
     }
 
@@ -48,7 +59,7 @@ class Publisher
     std::uint32_t getNumSubscribers() const;
     bool          isLatched() const;
 
-    explicit operator bool() const { return handle_ && handle_->publication; }
+    explicit operator bool() const { return handle_ && handle_->advertised; }
     operator void *() const { return *this ? const_cast<void *>(static_cast<const void *>(handle_.get())) : nullptr; }
     bool operator<(const Publisher &other) const { return handle_ < other.handle_; }
     bool operator==(const Publisher &other) const { return handle_ == other.handle_; }
@@ -58,11 +69,11 @@ class Publisher
     // What copies of one publisher share; the topic is given up with the last of them.
     struct Handle
     {
-        explicit Handle(const boost::shared_ptr<roscfe::Publication> &of);
+        explicit Handle(const boost::shared_ptr<roscfe::Advertised> &of);
         ~Handle() { release(); }
-        void                                   release();
-        boost::shared_ptr<roscfe::Publication> publication;
-        const std::string                      topic; // which stays when the publisher is shut down
+        void                                  release();
+        boost::shared_ptr<roscfe::Advertised> advertised;
+        const std::string                     topic; // which stays when a copy is shut down
     };
     boost::shared_ptr<Handle> handle_;
 };

@@ -11,10 +11,8 @@ template <class T, class D>
 class RateOf
 {
   public:
-    explicit RateOf(double frequency)
-        : start_(T::now()), expected_(frequency > 0 ? D(1.0 / frequency) : D(0.0)), actual_(0.0)
-    {
-    }
+    // A frequency of 0 has a cycle that no duration is: std::runtime_error.
+    explicit RateOf(double frequency) : start_(T::now()), expected_(1.0 / frequency), actual_(0.0) {}
     explicit RateOf(const D &cycle) : start_(T::now()), expected_(cycle), actual_(0.0) {}
 
     // Wait for the end of the cycle; false when it was over already.

@@ -49,7 +49,7 @@ class ServiceClient
     template <class Req, class Res>
     bool call(const Req &request, Res &response)
     {
-        if (!client_)
+        if (!isValid())
         {
             return false;
         }
@@ -68,7 +68,7 @@ class ServiceClient
         return call(request, response);
     }
 
-    bool        isValid() const { return client_ != nullptr; }
+    bool        isValid() const; // a persistent one is until its server has gone
     bool        isPersistent() const { return persistent_; }
     std::string getService() const { return client_ ? client_->name_ : std::string(); }
     bool        waitForExistence(Duration timeout = Duration(-1));

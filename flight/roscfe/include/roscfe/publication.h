@@ -7,10 +7,56 @@
 #include <string>
 #include <vector>
 
+#include <boost/enable_shared_from_this.hpp>
+
+#include "ros/callback_queue_interface.h"
 #include "ros/forwards.h"
+
+namespace ros
+{
+struct AdvertiseOptions;
+}
 
 namespace roscfe
 {
+
+class Publication;
+
+// What one call of advertise has asked for, which the copies of its publisher share: a message to be kept for subscribers
+// that come later, and callbacks that are told of subscribers.
+class Advertised : public ros::CallbackInterface, public boost::enable_shared_from_this<Advertised>
+{
+  public:
+    Advertised(const boost::shared_ptr<Publication> &publication, const ros::AdvertiseOptions &options,
+               ros::CallbackQueueInterface *callbacks);
+
+    // A subscriber has come, or has gone: the callback for that is due.
+    void tell(std::uint32_t pipe, bool came);
+    // The topic is given up: no callback is called any more.
+    void end();
+    void keep(const std::uint8_t *bytes, std::size_t size);
+
+    CallResult call() override;
+
+    const boost::shared_ptr<Publication> publication_;
+    const bool                           latch_;
+    bool                                 has_latched_ = false;
+    std::vector<std::uint8_t>            latched_; // the last message
+
+  private:
+    struct Peer
+    {
+        std::uint32_t pipe;
+        bool          came;
+    };
+
+    ros::SubscriberStatusCallback connect_, disconnect_;
+    ros::CallbackQueueInterface * callbacks_;
+    ros::VoidConstWPtr            tracked_;
+    bool                          has_tracked_;
+    bool                          is_over_ = false;
+    std::vector<Peer>             waiting_;
+};
 
 class Publication
 {
@@ -21,16 +67,23 @@ class Publication
     }
 
     // Set memory aside for what is not written onto the bus itself: messages of so many bytes at most.
-    void set_aside(std::size_t most_bytes);
+    void set_aside(bool latch, std::size_t most_bytes);
 
     // Whether a message would reach anybody, now or later.
-    bool is_wanted() const;
+    bool is_wanted(bool latch) const;
+
+    // Whether a message is looked at though it reaches nobody, such as by a bag; on cfepy alone.
+    bool is_watched() const;
 
     // Memory for a message of so many bytes, on the Software Bus where it fits in a packet; null when it is refused.
-    std::uint8_t *begin(std::size_t size);
+    std::uint8_t *begin(std::size_t size, bool latch);
 
-    // Send what was written there.
-    void send();
+    // Send what was written there; a publisher that latches keeps it.
+    void send(Advertised &by);
+
+    // Memory for a message that is not sent, and show what was written there to those who look on.
+    std::uint8_t *begin_unsent(std::size_t size) const;
+    void          show_unsent(std::uint8_t *at, std::size_t size) const;
 
     // How many pipes get the topic's messages.
     std::uint32_t subscribers() const;
@@ -41,16 +94,14 @@ class Publication
     const bool        has_header_; // its number in header.seq is written by the publisher
     std::uint16_t     msg_id_ = 0;
     bool              raw_    = false;
-    bool              latch_  = false;
-    std::uint32_t     users_  = 0; // publishers that are not shut down
     std::uint32_t     seq_    = 0;
-    std::vector<std::uint8_t>                   latched_; // the last message, for those who come later
-    std::vector<ros::SubscriberStatusCallback> on_connect_;
-    std::vector<ros::SubscriberStatusCallback> on_disconnect_;
+    std::vector<boost::shared_ptr<Advertised>> advertised_; // of publishers that are not shut down
 
   private:
-    std::size_t size_    = 0;       // of the message under way
-    void *      buffer_  = nullptr; // of the Software Bus, or null when the message is long
+    void write_number(std::uint8_t *at, std::size_t size) const;
+
+    std::size_t size_   = 0;       // of the message under way
+    void *      buffer_ = nullptr; // of the Software Bus, or null when the message is long
 };
 
 // The publication of a topic, made when it is the first of the node.

@@ -85,12 +85,16 @@ class TypedService final : public Service
 void offer(const boost::shared_ptr<Service> &service, const char *type, const char *md5);
 void withdraw(const boost::shared_ptr<Service> &service);
 
-// Calls of one service by one client.
+// Calls of one service by one client. A persistent one is connected with the server that it finds at first, and with no
+// other one, as in roscpp.
 class Client
 {
   public:
     Client(const std::string &name, const char *type, const char *md5, std::size_t most_of_request = 0,
-           std::size_t most_of_response = 0);
+           std::size_t most_of_response = 0, bool persistent = false);
+    ~Client();
+    Client(const Client &) = delete;
+    Client &operator=(const Client &) = delete;
 
     // Send a request, whose bytes `write` makes, and wait for the answer; null when there is no service, or it failed.
     std::uint8_t *begin(std::size_t size);
@@ -99,14 +103,23 @@ class Client
     bool exists() const;
     bool wait_for_existence(std::int64_t timeout_ns); // below 0 is for ever
 
+    // Whether the server of a persistent client is still there.
+    bool is_linked();
+    void lose(std::uint16_t request_id_of_server, std::uint32_t server);
+
     const std::string         name_;
     const std::size_t         most_;   // bytes of an answer; 0 is as many as it likes
     std::vector<std::uint8_t> answer_; // of the last call
 
   private:
-    std::uint16_t answer_id_ = 0;
-    std::size_t   size_      = 0;
-    void *        buffer_    = nullptr;
+    std::uint16_t request_id() const;
+    bool          may_be_answered() const;
+
+    const bool                is_master_; // a client of cfepy's ROS application
+    std::uint16_t             answer_id_ = 0;
+    std::size_t               size_      = 0;
+    std::uint32_t             server_    = 0; // the pipe of the one server
+    bool                      is_linked_ = false;
     std::vector<std::uint8_t> long_request_;
 };
 

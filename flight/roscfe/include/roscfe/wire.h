@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <exception>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -499,7 +500,7 @@ bool read(Message &message, const std::uint8_t *from, std::size_t size)
         {
             detail::item(stream, message);
         }
-        catch (const ros::serialization::StreamOverrunException &)
+        catch (const std::exception &) // also of a count that cannot be true; roscpp catches them all
         {
             return false;
         }

@@ -101,7 +101,12 @@ boost::shared_ptr<Subscription> hear(Buffer &buffer, const std::string &topic, b
     return ear;
 }
 
-bool take(Buffer &buffer, const std::uint8_t *bytes, std::size_t size, bool is_static)
+namespace
+{
+
+// Call a function with each transform of a packet; false when the packet is no whole message.
+template <class F>
+bool with_each(const std::uint8_t *bytes, std::size_t size, F function)
 {
     wire::Reader  reader(bytes, size);
     std::uint32_t count = 0;
@@ -120,10 +125,25 @@ bool take(Buffer &buffer, const std::uint8_t *bytes, std::size_t size, bool is_s
         if (reader.good())
         {
             const Rigid rigid = {numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], numbers[6]};
-            buffer.set(child, parent, nanoseconds(head[1], head[2]), rigid, kAuthority, is_static);
+            function(child, parent, nanoseconds(head[1], head[2]), rigid);
         }
     }
     return reader.good() && reader.at_end();
+}
+
+} // namespace
+
+// Nothing of a packet is taken that is no whole message, as of any other type.
+bool take(Buffer &buffer, const std::uint8_t *bytes, std::size_t size, bool is_static)
+{
+    typedef std::string_view Name;
+    if (!with_each(bytes, size, [](Name, Name, std::int64_t, const Rigid &) {}))
+    {
+        return false;
+    }
+    return with_each(bytes, size, [&](Name child, Name parent, std::int64_t stamp, const Rigid &rigid) {
+        buffer.set(child, parent, stamp, rigid, kAuthority, is_static);
+    });
 }
 
 } // namespace frames

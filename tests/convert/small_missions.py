@@ -1,0 +1,70 @@
+"""Missions of one small package with nodes in C++, whose sources a test has as texts."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from unittest.mock import patch
+
+from cfepy.console import Console
+from cfepy.convert import build_for_flight
+from cfepy.mission import Mission, read_mission
+
+PACKAGE = "small"
+ARENA_BYTES = 1 << 22
+"""Enough for a buffer of transforms and a few topics."""
+MANIFEST = f"""<package format="2"><name>{PACKAGE}</name><version>1.0.0</version><description>small</description>
+<maintainer email="a@b.c">a</maintainer><license>Apache-2.0</license><depend>roscpp</depend>
+<depend>std_msgs</depend><depend>std_srvs</depend></package>
+"""
+
+
+def write_package(folder: Path, sources: Mapping[str, str]) -> Path:
+    """Write the package; its folder.
+
+    Args:
+        folder: for the package; it is to be in ROS_PACKAGE_PATH.
+        sources: texts of programs, by the names of their files, such as "talker.cpp" and "talker.py".
+    """
+    package = folder / PACKAGE
+    package.mkdir()
+    (package / "package.xml").write_text(MANIFEST)
+    programs = [name.removesuffix(".cpp") for name in sources if name.endswith(".cpp")]
+    made = "".join(f"add_executable({each} {each}.cpp)\n" for each in programs)
+    (package / "CMakeLists.txt").write_text(f"project({PACKAGE})\n{made}")
+    for name, text in sources.items():
+        (package / name).write_text(text)
+        (package / name).chmod(0o755)
+    return package
+
+
+def small_mission(folder: Path, sources: Mapping[str, str], launch: str, profile: str = "host") -> Mission:
+    """The mission of a launch file, not begun yet.
+
+    Args:
+        folder: an empty one.
+        sources: see `write_package`.
+        launch: what stands in the launch file.
+        profile: of the nodes in C++.
+    """
+    write_package(folder, sources)
+    (folder / "startup.scr").write_text("!\n")
+    (folder / "all.launch").write_text(f"<launch>{launch}</launch>\n")
+    cpp = f"  profile: {profile}\n  arena_bytes: {ARENA_BYTES}\n"
+    (folder / "mission.yaml").write_text(f"launch: [all.launch]\ncpp_nodes:\n{cpp}")
+    with patch.dict(os.environ, {"ROS_PACKAGE_PATH": str(folder)}):
+        spec = read_mission(str(folder), build=build_for_flight)
+    assert not spec.notes, spec.notes
+    return Mission(spec, console=Console(quiet=True))
+
+
+def node(name: str, program: str = "", inside: str = "") -> str:
+    """The tag of a node; its program is called as it is, if nothing else is said."""
+    return f'<node pkg="{PACKAGE}" type="{program or name}" name="{name}" output="screen">{inside}</node>'
+
+
+def said_by(mission: Mission, name: str) -> list[str]:
+    """What a node has logged, without names and times."""
+    lines = [line for line in mission.console.lines if line.startswith(f"[/{name}] [")]
+    return [line.partition("]: ")[2].removesuffix("\x1b[0m") for line in lines]
