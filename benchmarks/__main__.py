@@ -55,7 +55,7 @@ def main(arguments: list[str] | None = None) -> int:
         results[name] = {figure: float(f"{value:.4g}") for figure, value in suites[name]().items()}
     text = json.dumps(results, indent=2) + "\n"
     if options.json is not None:
-        options.json.write_text(text)
+        options.json.write_text(text, encoding="utf-8")
     else:
         sys.stdout.write(text)
     return 0

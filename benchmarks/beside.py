@@ -42,7 +42,7 @@ def figures(python: str, root: Path, names: Sequence[str]) -> Figures:
         found = Path(folder) / "figures.json"
         command = [python, "-m", "benchmarks", *names, "--json", str(found)]
         subprocess.run(command, cwd=root, stdout=subprocess.DEVNULL, check=True)
-        measured: Mapping[str, Figures] = json.loads(found.read_text())
+        measured: Mapping[str, Figures] = json.loads(found.read_text(encoding="utf-8"))
     return {figure: value for name in names for figure, value in measured[name].items()}
 
 

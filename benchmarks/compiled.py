@@ -52,7 +52,7 @@ def compiled(contexts: tuple[str, ...]) -> dict[str, float]:
         folders = {kind: Path(made) / kind for kind in ("c", "python")}
         for folder in folders.values():
             folder.mkdir()
-            (folder / "startup.scr").write_text(LINE)
+            (folder / "startup.scr").write_text(LINE, encoding="utf-8")
         build(HERE, folders["c"] / "BENCH.so")
         shutil.copy(HERE / "BENCH.py", folders["python"])
         for context in contexts:

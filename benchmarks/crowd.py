@@ -49,7 +49,7 @@ def boot(folder: Path, nodes: int, context: str, talks: bool) -> float:
     (folder / SCRIPT.name).write_bytes(SCRIPT.read_bytes())
     lines = [f"CFE_APP, {SCRIPT.stem}, __main__, N{number}, 100, 4096, 0x0, 0;\n" for number in range(nodes)]
     script = folder / "startup.scr"
-    script.write_text("".join(lines) + "!\n")
+    script.write_text("".join(lines) + "!\n", encoding="utf-8")
     configs = {
         f"N{number}": NodeConfig(f"N{number}", name=f"n{number}", args=(str(number), str(nodes), str(int(talks))))
         for number in range(nodes)

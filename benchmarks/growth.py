@@ -50,7 +50,7 @@ def ring(nodes: int, hz: int, context: str) -> Iterator[Mission]:
         (folder / SCRIPT.name).write_bytes(SCRIPT.read_bytes())
         lines = [f"CFE_APP, {SCRIPT.stem}, __main__, N{number}, 100, 4096, 0x0, 0;\n" for number in range(nodes)]
         script = folder / "startup.scr"
-        script.write_text("".join(lines) + "!\n")
+        script.write_text("".join(lines) + "!\n", encoding="utf-8")
         configs = {
             f"N{number}": NodeConfig(f"N{number}", name=f"n{number}", args=(str(number), str(nodes), str(hz)))
             for number in range(nodes)
@@ -281,7 +281,7 @@ def main() -> None:
         print(json.dumps(machine(), indent=2), file=sys.stderr)
         figures = growth(contexts_here())
     else:
-        figures = json.loads(Path(options.of).read_text())["growth"]
+        figures = json.loads(Path(options.of).read_text(encoding="utf-8"))["growth"]
     draw(figures, options.picture)
 
 

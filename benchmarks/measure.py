@@ -60,7 +60,7 @@ def _config_args() -> str | None:
 
 def _cpu_name() -> str:
     try:
-        with open("/proc/cpuinfo") as info:
+        with open("/proc/cpuinfo", encoding="utf-8") as info:
             return next((line.partition(":")[2].strip() for line in info if line.startswith("model name")), "")
     except OSError:
         return platform.processor()

@@ -45,7 +45,7 @@ bool read(Message &message, const std::uint8_t *from, std::size_t size)
 def code_size(name: str, includes: Sequence[Path], compiler: Sequence[str], folder: Path) -> int:
     """Bytes of code and of read-only data."""
     source, made = folder / "code.cpp", folder / "code.o"
-    source.write_text(CODE.format(name=name, cpp=name.replace("/", "::")))
+    source.write_text(CODE.format(name=name, cpp=name.replace("/", "::")), encoding="utf-8")
     include = [f"-I{each}" for each in includes]
     subprocess.run([*compiler, *FLAGS, *include, "-c", str(source), "-o", str(made)], check=True)
     size = shutil.which(compiler[0].replace("g++", "size")) or "size"

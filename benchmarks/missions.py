@@ -56,7 +56,7 @@ def _counts(flight: Mission) -> tuple[int, int]:
 def boot_s() -> float:
     """Wall seconds of a whole process: `cfepy run` of an empty mission for 0.6 virtual s, which ends OPERATIONAL."""
     with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / "startup.scr").write_text("!\n")
+        (Path(folder) / "startup.scr").write_text("!\n", encoding="utf-8")
         command = [sys.executable, "-m", "cfepy", "run", folder, "--for", "0.6"]
         best = 1e9
         for _ in range(REPEATS + 2):

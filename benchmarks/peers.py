@@ -137,7 +137,7 @@ def _wait_for(line: str, process: subprocess.Popen[str]) -> None:
 
 def _cpu_s(pid: int) -> float:
     """CPU time of a process so far, in seconds."""
-    told = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    told = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")
 
 
@@ -170,7 +170,7 @@ def _flags(built: Path) -> list[str]:
     found = sorted(built.parents[1].glob("**/sample_app.dir/flags.make"))
     if not found:
         raise FileNotFoundError(f"{VARIABLE}: {built} is not in the tree where it was built")
-    told = re.findall(r"^C_(?:DEFINES|INCLUDES|FLAGS) = (.*)$", found[0].read_text(), re.MULTILINE)
+    told = re.findall(r"^C_(?:DEFINES|INCLUDES|FLAGS) = (.*)$", found[0].read_text(encoding="utf-8"), re.MULTILINE)
     return " ".join(told).split()
 
 

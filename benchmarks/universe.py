@@ -115,7 +115,7 @@ def _round_trip(kernel: Kernel) -> float:
 def _run(context: str) -> None:
     with tempfile.TemporaryDirectory() as folder, Kernel(context=context, trace=Trace()) as kernel:
         script = Path(folder, "program.py")
-        script.write_text(_PROGRAM)
+        script.write_text(_PROGRAM, encoding="utf-8")
         Universe(kernel, name="program", script=script).spawn()
         kernel.run()
 

@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 _ALWAYS = "\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f"  # C0, DEL and C1 but for tab, newline and carriage return
 _ORDER = "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"  # turn the order of text round (UAX 9)
 _BREAKS = "\u2028\u2029"  # lines and paragraphs end there, for some
-_IN_TEXT = re.compile(f"[{_ALWAYS}{_ORDER}{_BREAKS}]|\r(?!\n)")
-_IN_LINE = re.compile(f"[{_ALWAYS}{_ORDER}{_BREAKS}\t\n\r]")
+_BYTES = "\ud800-\udfff"  # no characters: Python's form of bytes that are not text, in the name of a file (PEP 383)
+_IN_TEXT = re.compile(f"[{_ALWAYS}{_ORDER}{_BREAKS}{_BYTES}]|\r(?!\n)")
+_IN_LINE = re.compile(f"[{_ALWAYS}{_ORDER}{_BREAKS}{_BYTES}\t\n\r]")
 _SHORT = {"\t": "\\t", "\n": "\\n", "\r": "\\r"}
 _COLOUR = re.compile(r"\x1b\[[\d;]*m")  # Select Graphic Rendition (ECMA-48)
 _ENDS_COLOUR = re.compile(r"\x1b\[0*m")
@@ -32,6 +33,7 @@ _OF_NODE = re.compile(r"(?:[^\s:]+: )?\[[\w/]+\] ")  # how lines of nodes begin,
 
 def _written(found: re.Match[str]) -> str:
     code = ord(found[0])
+    code -= 0xDC00 if 0xDC80 <= code <= 0xDCFF else 0
     return _SHORT.get(found[0]) or (f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}")
 
 

@@ -98,7 +98,7 @@ class Entry(NamedTuple):
 def listed(module: str) -> Iterator[tuple[str, str, bool]]:
     """(header, name, whether the header has it inside) of all that a module's headers declare, each once."""
     header, seen = "", set[str]()
-    for line in (LISTS / f"api_{module}.txt").read_text().splitlines():
+    for line in (LISTS / f"api_{module}.txt").read_text(encoding="utf-8").splitlines():
         if line.startswith("#"):
             header = line.partition(":")[0].rpartition("/")[2]
         elif (name := line.split()[0]) not in seen:
@@ -109,7 +109,7 @@ def listed(module: str) -> Iterator[tuple[str, str, bool]]:
 def differences() -> list[Difference]:
     """The rows of docs/differences.md that mention names."""
     found, section = [], ""
-    for line in DIFFERENCES.read_text().splitlines():
+    for line in DIFFERENCES.read_text(encoding="utf-8").splitlines():
         if line.startswith("## "):
             section = line.removeprefix("## ")
         elif line.startswith("|") and not section.startswith(NOT_OF_PYTHON) and (names := NAME.findall(line)):
@@ -191,7 +191,7 @@ def _counts(rows: list[Entry]) -> str:
 def main() -> None:
     """Write the page, and tell what is missing."""
     with booted() as mission:
-        PAGE.write_text(page(mission.cfe))
+        PAGE.write_text(page(mission.cfe), encoding="utf-8")
         for module in MODULES:
             rows = entries(module, mission.cfe)
             missing = [f"{row.name} ({row.python})" for row in rows if row.is_missing]

@@ -8,7 +8,7 @@ from types import ModuleType
 
 from cfepy.msg import CMD_HEADER_SIZE
 
-REAL = json.loads((Path(__file__).parent / "data" / "packets.json").read_text())
+REAL = json.loads((Path(__file__).parent / "data" / "packets.json").read_text(encoding="utf-8"))
 
 
 def assert_complete(packets: ModuleType) -> None:

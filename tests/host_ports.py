@@ -19,7 +19,7 @@ _any_number = random.SystemRandom().randrange  # also where a test has set the s
 def first_picked() -> int:
     """The lowest port that the system picks by itself."""
     try:
-        return int(_RANGE.read_text().split()[0])
+        return int(_RANGE.read_text(encoding="utf-8").split()[0])
     except OSError:  # of a system without it: those of macOS and Windows are higher
         return USUAL_FIRST
 

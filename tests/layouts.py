@@ -33,7 +33,7 @@ class CStruct(NamedTuple):
 def c_structs() -> dict[str, CStruct]:
     """Every struct of the file, by name."""
     found: dict[str, CStruct] = {}
-    for block in (DATA / "layouts.txt").read_text().replace("\n  ", "\t").splitlines():
+    for block in (DATA / "layouts.txt").read_text(encoding="utf-8").replace("\n  ", "\t").splitlines():
         head, *rows = block.split("\t")
         name, size = head.split()
         found[name] = CStruct(name, int(size), tuple(_field(row) for row in rows))

@@ -44,7 +44,7 @@ def test_what_c_does_not_find_is_missing() -> None:
 
 
 def test_the_page_is_fresh(mission: Mission) -> None:
-    assert api_map.PAGE.read_text() == api_map.page(mission.cfe), "run `python -m tests.api_map`"
+    assert api_map.PAGE.read_text(encoding="utf-8") == api_map.page(mission.cfe), "run `python -m tests.api_map`"
 
 
 def test_the_lists_are_whole() -> None:

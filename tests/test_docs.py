@@ -23,7 +23,7 @@ each_document = pytest.mark.parametrize("path", DOCS, ids=lambda path: str(path.
 
 def anchors(path: Path) -> set[str]:
     """The anchors that GitHub makes of headings."""
-    titles = HEADING.findall(FENCE.sub("", path.read_text()))
+    titles = HEADING.findall(FENCE.sub("", path.read_text(encoding="utf-8")))
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 
 
@@ -37,7 +37,7 @@ def broken(path: Path, link: str) -> bool:
 
 def commands(path: Path) -> Iterator[list[str]]:
     """The `cfepy` commands in a document's code blocks, split into words."""
-    for block in FENCE.findall(path.read_text()):
+    for block in FENCE.findall(path.read_text(encoding="utf-8")):
         for line in block.splitlines():
             for command in line.removeprefix("$ ").split(" && "):
                 words = shlex.split(command, comments=True) if re.match(r"\s*([\w./]*/)?cfepy ", command) else []
@@ -56,12 +56,14 @@ def is_understood(words: list[str]) -> bool:
 
 @each_document
 def test_links_lead_somewhere(path: Path) -> None:
-    assert [link for link in LINK.findall(FENCE.sub("", path.read_text())) if broken(path, link)] == []
+    assert [link for link in LINK.findall(FENCE.sub("", path.read_text(encoding="utf-8"))) if broken(path, link)] == []
 
 
 @each_document
 def test_files_that_are_named_exist(path: Path) -> None:
-    assert [name for name in OURS.findall(path.read_text()) if not list(ROOT.glob(name.rstrip("/")))] == []
+    assert [
+        name for name in OURS.findall(path.read_text(encoding="utf-8")) if not list(ROOT.glob(name.rstrip("/")))
+    ] == []
 
 
 @each_document
@@ -71,7 +73,7 @@ def test_commands_can_be_given(path: Path) -> None:
 
 @each_document
 def test_no_digest_is_written_down(path: Path) -> None:
-    assert re.findall(r"\b[0-9a-f]{32}\b|trace: [0-9a-f]{4,}", path.read_text()) == []
+    assert re.findall(r"\b[0-9a-f]{32}\b|trace: [0-9a-f]{4,}", path.read_text(encoding="utf-8")) == []
 
 
 def test_the_readme_has_commands_to_look_at() -> None:
@@ -79,6 +81,6 @@ def test_the_readme_has_commands_to_look_at() -> None:
 
 
 def test_every_document_is_in_the_index() -> None:
-    index = (ROOT / "docs/README.md").read_text()
+    index = (ROOT / "docs/README.md").read_text(encoding="utf-8")
     missing = [path.name for path in DOCS if path.parent == ROOT / "docs" and f"({path.name})" not in index]
     assert missing == ["README.md"]

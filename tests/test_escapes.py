@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import re
 import sys
 from typing import TextIO
@@ -165,3 +166,8 @@ def test_errors_as_strings_have_no_control_characters() -> None:
     assert (error.file, error.field, error.text) == (f"/a\n{TITLE}", "f\x1b", f"bad {TITLE}")
     assert str(StallError("s\x1b", ("l\x9b",))) == "s\\x1b\n  l\\x9b"
     assert str(ExpectationError("no \x1b")) == r"no \x1b"
+
+
+def test_byte_of_a_name_that_is_no_text_is_visible() -> None:
+    assert visible(os.fsdecode(b"a\xff")) == "a\\xff"
+    assert visible("\ud800") == "\\ud800"

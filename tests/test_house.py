@@ -44,7 +44,7 @@ def small(tmp_path: Path) -> Tree:
     for name, text in FILES.items():
         file = tmp_path / name
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text)
+        file.write_text(text, encoding="utf-8")
     return Tree(tmp_path)
 
 

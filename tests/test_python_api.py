@@ -91,7 +91,7 @@ def test_a_script_of_the_examples_passes_mypy_strict(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     names = "".join(f"print(cfepy.{name})\n" for name in cfepy.__all__)
     wrong = "reveal_type(run)\nreveal_type(positions)\nrun.nothing\ncfepy.nothing\ncfepy.run('capture', second=1)\n"
-    script.write_text("\n".join([*EXAMPLES, names, wrong]))
+    script.write_text("\n".join([*EXAMPLES, names, wrong]), encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "--cache-dir", os.devnull, str(script)],
         cwd=tmp_path,

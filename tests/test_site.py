@@ -41,4 +41,4 @@ def test_the_site_is_built_without_a_warning(tmp_path: Path) -> None:
     built = subprocess.run(command, cwd=ROOT, env=environ, capture_output=True, text=True, check=False)
     assert built.returncode == 0, built.stderr
     for page in ("index.html", "exploration/index.html", "project/index.html", "missions/capture/index.html"):
-        assert "cfepy" in (tmp_path / page).read_text()
+        assert "cfepy" in (tmp_path / page).read_text(encoding="utf-8")

@@ -43,7 +43,7 @@ def check_writable(file: str | Path, option: str) -> None:
     """
     is_new = not os.path.exists(file)
     with writing(file, option):
-        open(file, "a").close()
+        open(file, "a", encoding="utf-8").close()
         if is_new:
             os.unlink(file)
 

@@ -85,7 +85,7 @@ class GdbSession:
         folder = Path(self._folder.enter_context(tempfile.TemporaryDirectory(prefix="cfepy-gdb-")))
         script = folder / "commands"
         entry = next((each.symbol for each in mission.spec.entries if each.name == self._app), "")
-        script.write_text(gdb_script(mission, folder, "" if is_running else entry))
+        script.write_text(gdb_script(mission, folder, "" if is_running else entry), encoding="utf-8")
         ctypes.CDLL(None).prctl(PR_SET_PTRACER, ANYBODY)  # a child may trace its parent
         self._process = subprocess.Popen(
             [gdb, "-q", "-nx", "-iex", "set auto-load no", "-p", str(os.getpid()), "-x", str(script)]
@@ -112,5 +112,5 @@ class GdbSession:
 
 def _is_traced() -> bool:
     """Whether somebody traces this thread."""
-    status = Path("/proc/thread-self/status").read_text()
+    status = Path("/proc/thread-self/status").read_text(encoding="utf-8")
     return next(int(line.split()[1]) for line in status.splitlines() if line.startswith("TracerPid:")) != 0

@@ -64,7 +64,7 @@ def _plain(name: str) -> str:
 def _aliases(name: str) -> set[str]:
     """Other names of this computer in its file of hosts."""
     try:
-        lines = HOSTS.read_text(errors="replace").splitlines()
+        lines = HOSTS.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         return set()
     found = [{_plain(each) for each in line.partition("#")[0].split()[1:]} for line in lines]

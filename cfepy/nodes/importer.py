@@ -11,7 +11,6 @@ Python itself.
 from __future__ import annotations
 
 import builtins
-import importlib
 import importlib.util
 import os
 import sys

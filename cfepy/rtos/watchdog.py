@@ -86,7 +86,7 @@ class Expenses:
             for thread in threads:
                 with (
                     contextlib.suppress(OSError, IndexError, ValueError),
-                    open(f"{THREADS}/{thread}/schedstat") as told,
+                    open(f"{THREADS}/{thread}/schedstat", encoding="utf-8") as told,
                 ):
                     self._count(thread, int(told.read().split()[1]))
         used_s = time.process_time() - time.thread_time()

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from rospy_shim.client.link import Link, SubscribeListener
     from rospy_shim.client.node import Node
     from rospy_shim.client.service import Service
-    from rospy_shim.client.subscription import Subscription
     from rospy_shim.msgs import MessageClass
 
 NO_QUEUE_SIZE = (

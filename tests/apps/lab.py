@@ -50,7 +50,7 @@ class Lab:
 @contextmanager
 def lab(folder: Path, tasks: str = "thread", before: str = "", **options: Any) -> Iterator[Lab]:
     """A booted mission in a folder; `before` are lines of its startup script in front of the two applications."""
-    (folder / "startup.scr").write_text(before + STARTUP)
+    (folder / "startup.scr").write_text(before + STARTUP, encoding="utf-8")
     mission = Mission(str(folder), tasks=tasks, console=Console(quiet=True), **options)
     with mission, GroundLink(mission) as ground:
         mission.run_for(1)

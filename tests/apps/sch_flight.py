@@ -67,9 +67,9 @@ class Flight:
 
 def write_mission(folder: Path, startup: str = SCH, **sources: str) -> Path:
     folder.mkdir(exist_ok=True)
-    (folder / "startup.scr").write_text(startup + "!\n")
+    (folder / "startup.scr").write_text(startup + "!\n", encoding="utf-8")
     (folder / "sch_def_schtbl.tbl").write_bytes(build(schedule_image(SLOTS)))
     (folder / "sch_def_msgtbl.tbl").write_bytes(build(message_image(MESSAGES)))
     for name, source in sources.items():
-        (folder / f"{name}.py").write_text(source)
+        (folder / f"{name}.py").write_text(source, encoding="utf-8")
     return folder

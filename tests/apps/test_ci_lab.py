@@ -48,7 +48,7 @@ def test_start(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "command",
-    [row for row in json.loads((DATA / "command_events.json").read_text()) if "_LAB" in row["desc"]],
+    [row for row in json.loads((DATA / "command_events.json").read_text(encoding="utf-8")) if "_LAB" in row["desc"]],
     ids=lambda row: row["desc"][:25],
 )
 def test_recorded_commands_cause_the_recorded_events(session: Lab, command: dict[str, object]) -> None:
@@ -170,7 +170,7 @@ def Squat(cfe):
 
 
 def test_a_taken_port_is_reported_and_the_app_lives(tmp_path: Path) -> None:
-    (tmp_path / "squat.py").write_text(SQUATTER)
+    (tmp_path / "squat.py").write_text(SQUATTER, encoding="utf-8")
     with lab(tmp_path, before="CFE_APP, squat, Squat, SQUAT, 50, 16384, 0x0, 0;\n") as session:
         events = [line.partition(" 66/1/")[2] for line in session.mission.console.lines]
         assert "CI_LAB 2: CI: bind socket failed = -1" in events
@@ -180,7 +180,7 @@ def test_a_taken_port_is_reported_and_the_app_lives(tmp_path: Path) -> None:
 
 def test_without_a_pipe_the_app_ends(tmp_path: Path) -> None:
     body = "def Squat(cfe):\n    cfe.sb.create_pipe(1, 'CI_LAB_CMD_PIPE')\n    cfe.os.task_delay(1 << 30)\n"
-    (tmp_path / "squat.py").write_text(body)
+    (tmp_path / "squat.py").write_text(body, encoding="utf-8")
     with lab(tmp_path, before="CFE_APP, squat, Squat, SQUAT, 50, 16384, 0x0, 0;\n") as session:
         session.mission.run_for(3)
         lines = session.mission.console.lines

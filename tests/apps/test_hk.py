@@ -34,7 +34,7 @@ from tests.layouts import assert_same
 DATA = Path(__file__).parents[1] / "data"
 TELEMETRY = {
     packet["mid"]: bytes.fromhex(packet["hex"])
-    for packet in json.loads((DATA / "packets.json").read_text())["telemetry"]
+    for packet in json.loads((DATA / "packets.json").read_text(encoding="utf-8"))["telemetry"]
 }
 COPY_TABLE = packets.COPY_TABLE
 SEND_1 = packets.SEND_COMBINED_PKT.packet(OutMsgToSend=0x089C)

@@ -28,7 +28,7 @@ class Session:
     """A mission and an operator."""
 
     def __init__(self, folder: Path, tasks: str) -> None:
-        (folder / "startup.scr").write_text(STARTUP)
+        (folder / "startup.scr").write_text(STARTUP, encoding="utf-8")
         self.mission = Mission(str(folder), tasks=tasks, console=Console(quiet=True))
 
     def events(self, seconds: int, *commands: bytes) -> list[str]:

@@ -120,7 +120,8 @@ def test_declarations() -> None:
 def test_the_library_in_a_mission(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text(
         "CFE_LIB, sample_lib, SAMPLE_LIB_Init, SAMPLE_LIB, 0, 0, 0x0, 0;\n"
-        "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
+        "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n",
+        encoding="utf-8",
     )
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
         mission.run_for(2)

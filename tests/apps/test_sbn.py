@@ -248,14 +248,14 @@ def test_a_command_flies_both_and_tells_of_the_other(tmp_path: Path, capsys: pyt
     assert main(["run", "pair", "--with", f"{CLIENT}@0.1", "--for", "2", "--json", str(numbers)]) == 0
     out = capsys.readouterr().out
     assert f"{CLIENT}: EVS Port1 1980-012-14:03:20.55000 66/2/SAMPLE_APP 1:" in out
-    (row,) = json.loads(numbers.read_text())["beside"]
+    (row,) = json.loads(numbers.read_text(encoding="utf-8"))["beside"]
     assert (row["mission"], row["booted_s"], row["lost"], row["died"]) == (f"{CLIENT}@0.1", 0.7, 0, "")
     assert min(row["sent"], row["taken"]) > 5
 
 
 def test_what_dies_beside_a_mission_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "startup.scr").write_text("CFE_APP, app, main, APP, 50, 16384, 0x0, 0;\n!\n")
-    (tmp_path / "app.py").write_text("def main(cfe):\n    raise ValueError('no')\n")
+    (tmp_path / "startup.scr").write_text("CFE_APP, app, main, APP, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
+    (tmp_path / "app.py").write_text("def main(cfe):\n    raise ValueError('no')\n", encoding="utf-8")
     assert main(["run", "pair", "--with", str(tmp_path), "--for", "1"]) == 1
     assert f"cfepy: {tmp_path}: APP died: ValueError: no" in capsys.readouterr().err
 

@@ -92,7 +92,7 @@ def test_the_library_holds_the_schedule(tmp_path: Path) -> None:
 
 def test_a_coarse_timer_keeps_all_slots(tmp_path: Path) -> None:
     board = tmp_path / "board.yaml"
-    board.write_text("name: coarse\ntick_ns: 10_000_000\n")
+    board.write_text("name: coarse\ntick_ns: 10_000_000\n", encoding="utf-8")
     flight = Flight(write_mission(tmp_path / "mission"), board=str(board))
     with flight.mission:
         flight.run_to(10.6)

@@ -48,7 +48,7 @@ def test_layouts(layout: Layout, c_name: str) -> None:
 
 
 def test_packets_are_as_long_as_the_recorded_ones() -> None:
-    recorded = json.loads((DATA / "packets.json").read_text())
+    recorded = json.loads((DATA / "packets.json").read_text(encoding="utf-8"))
     lengths = {(row["mid"], row.get("fc")): len(row["hex"]) // 2 for kind in recorded.values() for row in kind}
     for packet in (pk.NOOP, pk.ADD_PKT, pk.SEND_DATA_TYPES, pk.OUTPUT_ENABLE):
         assert packet.length == lengths[packet.msg_id, packet.code]
@@ -97,7 +97,7 @@ def test_counters(session: Lab) -> None:
 
 
 def test_the_packet_of_all_data_types(session: Lab) -> None:
-    rows = json.loads((DATA / "packets.json").read_text())["telemetry"]
+    rows = json.loads((DATA / "packets.json").read_text(encoding="utf-8"))["telemetry"]
     recorded = next(bytes.fromhex(row["hex"]) for row in rows if row["mid"] == pk.DATA_TYPES_MID)
     session.events(ENABLE, pk.SEND_DATA_TYPES.packet(), seconds=2)
     (packet,) = session.packets(pk.DATA_TYPES_TLM)

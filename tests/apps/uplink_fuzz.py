@@ -98,7 +98,7 @@ HIGHEST_MSG_ID = 0x1FFF
 def damaged(seed: int, count: int) -> Iterator[bytes]:
     """So many datagrams."""
     random = Random(seed)
-    rows = json.loads((DATA / "command_events.json").read_text())
+    rows = json.loads((DATA / "command_events.json").read_text(encoding="utf-8"))
     commands = [bytes.fromhex(row["hex"]) for row in rows]
     msg_ids = [get_msg_id(command) for command in commands] + list(REQUESTS.values()) + list(TELEMETRY.values())
     for _ in range(count):
@@ -244,7 +244,7 @@ class Books:
 
 def fly(folder: Path, seed: int, count: int, monkeypatch: pytest.MonkeyPatch) -> Books:
     """Send so many damaged commands to a mission of its own; the books of it."""
-    (folder / "startup.scr").write_text(STARTUP)
+    (folder / "startup.scr").write_text(STARTUP, encoding="utf-8")
     outcomes: Counter[tuple[int, int]] = Counter()
     dispatch = CommandTable.dispatch
 

@@ -46,7 +46,7 @@ def compile_cpp(folder: Path, name: str, source: str, *flags: str) -> Path:
 
 def _compile(command: list[str], folder: Path, file: str, source: str, flags: tuple[str, ...]) -> Path:
     text = folder / file
-    text.write_text(textwrap.dedent(source).lstrip())
+    text.write_text(textwrap.dedent(source).lstrip(), encoding="utf-8")
     made = text.with_suffix(".so")
     given = [*command, *FLAGS, "-include", "declarations.h", *flags, str(text), "-o", str(made)]
     done = subprocess.run(given, capture_output=True, text=True)
@@ -66,7 +66,9 @@ def write_mission(folder: Path, *names: str, action: int = 0, libraries: str = "
     Returns:
         What `Mission` takes.
     """
-    (folder / "startup.scr").write_text(libraries + "".join(APP.format(name, action) for name in names) + "!")
+    (folder / "startup.scr").write_text(
+        libraries + "".join(APP.format(name, action) for name in names) + "!", encoding="utf-8"
+    )
     return str(folder)
 
 

@@ -50,7 +50,7 @@ LINES = [
 def test_blocks_are_aligned_and_texts_copied(tmp_path: Path, guard: bool) -> None:
     compile_c(tmp_path, "TEST", SOURCE, "-O0", "-w")
     folder = write_mission(tmp_path, "TEST")
-    Path(folder, "mission.yaml").write_text(f"compiled: {{guard: {str(guard).lower()}}}\n")
+    Path(folder, "mission.yaml").write_text(f"compiled: {{guard: {str(guard).lower()}}}\n", encoding="utf-8")
     found = said(console_of(fly(folder, 1)))
     if guard:  # a block that was given back is never taken again
         assert [found[0], *found[3:]] == [LINES[0], *LINES[3:]]

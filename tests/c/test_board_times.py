@@ -22,8 +22,8 @@ def board(file: Path, times: dict[str, int]) -> str:
     """A profile of these times, on which calls with which code may wait cost nothing more."""
     words = [word for option, time in times.items() for word in (option, f"{time}ns")]
     assert main(["board", "new", str(file), *COSTS, *words]) == 0
-    text = file.read_text()
-    file.write_text(text + "node_call_ns: 0\n")
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text + "node_call_ns: 0\n", encoding="utf-8")
     return text
 
 
@@ -42,7 +42,7 @@ def test_it_measures_on_a_profile_what_that_was_made_of(tmp_path: Path, capsys: 
     assert LINE in capsys.readouterr().out
     folder.mkdir()
     assert main(["build", str(program), "-o", str(folder / "board_times.so"), "--flag=-Werror"]) == 0
-    (folder / "startup.scr").write_text(f"{LINE}\n!\n")
+    (folder / "startup.scr").write_text(f"{LINE}\n!\n", encoding="utf-8")
     first = board(tmp_path / "first.yaml", TIMES)
     found = told(folder, tmp_path / "first.yaml", capsys)
     assert found == pytest.approx(TIMES, abs=1)

@@ -20,7 +20,7 @@ from tests.c.building import needs_compiler
 @pytest.fixture(autouse=True)
 def _environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A home that is a file, so that not even root can make a folder in it, and a folder for temporary files."""
-    (tmp_path / "home").write_text("")
+    (tmp_path / "home").write_text("", encoding="utf-8")
     (tmp_path / "tmp").mkdir()
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
@@ -98,8 +98,8 @@ APP = "void APP_Main(void) { CFE_ES_ExitApp(CFE_ES_RunStatus_APP_EXIT); }\n"
 
 @needs_compiler
 def test_application_is_built_and_flown_without_a_home(tmp_path: Path) -> None:
-    (tmp_path / "app.c").write_text('#include "cfe.h"\n' + APP)
-    (tmp_path / "startup.scr").write_text("CFE_APP, app.so, APP_Main, APP, 50, 16384, 0x0, 0;\n!\n")
+    (tmp_path / "app.c").write_text('#include "cfe.h"\n' + APP, encoding="utf-8")
+    (tmp_path / "startup.scr").write_text("CFE_APP, app.so, APP_Main, APP, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     cfepy = [sys.executable, "-m", "cfepy"]
     made = subprocess.run([*cfepy, "build", str(tmp_path)], capture_output=True, text=True, check=False)
     assert made.returncode == 0, made.stderr

@@ -42,8 +42,8 @@ def test_a_library_that_is_loaded_too_late(tmp_path: Path) -> None:
     folder = write_mission(tmp_path, "TEST", libraries="CFE_LIB, lib, NULL, LIB, 0, 0, 0x0, 0;\n")
     assert problems(folder) == []
     script = tmp_path / "startup.scr"
-    first, second, end = script.read_text().splitlines()
-    script.write_text("\n".join((second, first, end)))
+    first, second, end = script.read_text(encoding="utf-8").splitlines()
+    script.write_text("\n".join((second, first, end)), encoding="utf-8")
     [text] = problems(folder)
     assert "TEST needs LIB_One of the library LIB, which line 2 loads later" in text
 
@@ -88,7 +88,7 @@ def test_an_object_of_the_other_abi_profile(tmp_path: Path, of_file: bool, of_mi
     made = compile_c(tmp_path, "TEST", TABLES, f"-DHANDLE={HANDLES[of_file]}")
     folder = write_mission(tmp_path, "TEST")
     if of_mission is not None:
-        (tmp_path / "mission.yaml").write_text(OMITS.format(str(of_mission).lower()))
+        (tmp_path / "mission.yaml").write_text(OMITS.format(str(of_mission).lower()), encoding="utf-8")
     found = check_mission(str(tmp_path / "startup.scr"))
     console = console_of(fly(folder, 1))
     if of_file is bool(of_mission):
@@ -110,5 +110,5 @@ def test_without_debug_data_the_abi_profile_cannot_be_told(tmp_path: Path) -> No
     [problem] = check_mission(folder)
     assert problem.is_warning
     assert "whether TEST.so have OMIT_DEPRECATED cannot be told" in problem.text
-    (tmp_path / "mission.yaml").write_text(OMITS.format("false"))
+    (tmp_path / "mission.yaml").write_text(OMITS.format("false"), encoding="utf-8")
     assert check_mission(folder) == []

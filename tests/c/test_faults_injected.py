@@ -37,7 +37,8 @@ def test_calls_fail_and_messages_are_lost(tmp_path: Path, capsys) -> None:  # ty
         "faults:\n"
         "- {fail: CFE_SB_CreatePipe, app: TEST, status: CFE_SB_MAX_PIPES_MET, number: 1}\n"
         "- {drop: 0x1899, after: 1.4, until: 2.4}\n"
-        "- {crash: TEST, at: 3.2}\n"
+        "- {crash: TEST, at: 3.2}\n",
+        encoding="utf-8",
     )
     main(["run", folder, "--for", "4", "--faults", str(plan)])
     out = capsys.readouterr().out

@@ -77,5 +77,5 @@ def test_a_deadlock_tells_the_lines_of_c_that_wait(tmp_path: Path, capsys) -> No
     )
     out = tmp_path / "found.json"
     assert main(["explore", write_mission(tmp_path, "TEST"), "--for", "2", "--seeds", "2", "--json", str(out)]) == 1
-    assert "deadlock" in json.dumps(json.loads(out.read_text()))
+    assert "deadlock" in json.dumps(json.loads(out.read_text(encoding="utf-8")))
     assert "TEST" in capsys.readouterr().out

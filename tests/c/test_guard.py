@@ -38,7 +38,7 @@ void TEST_Main(void)
 
 
 def fly_guarded(folder: str, is_on: bool) -> object:
-    Path(folder, "mission.yaml").write_text(f"compiled: {{guard: {str(is_on).lower()}}}\n")
+    Path(folder, "mission.yaml").write_text(f"compiled: {{guard: {str(is_on).lower()}}}\n", encoding="utf-8")
     return fly(folder, 1)
 
 

@@ -152,7 +152,7 @@ def compile_app(folder: Path, source: str) -> str:
 
 def switch(folder: Path, is_on: bool) -> None:
     """Switch the guard on or off."""
-    (folder / "mission.yaml").write_text(f"compiled: {{guard: {str(is_on).lower()}}}\n")
+    (folder / "mission.yaml").write_text(f"compiled: {{guard: {str(is_on).lower()}}}\n", encoding="utf-8")
 
 
 def without_addresses(text: object) -> str:

@@ -42,7 +42,7 @@ each_profile = pytest.mark.parametrize("flags", PROFILES.values(), ids=PROFILES)
 
 def rows(file: str) -> Iterator[tuple[str, str]]:
     """The rows of a table of facts."""
-    for line in (FACTS / file).read_text().splitlines():
+    for line in (FACTS / file).read_text(encoding="utf-8").splitlines():
         name, _, value = line.partition("\t")
         yield name, value
 
@@ -51,7 +51,7 @@ def compile_text(folder: Path, text: str, *flags: str, command: list[str] | None
     """What the compiler says of a file that includes every header."""
     file = folder / "facts.c"
     includes = "".join(f'#include "{name}.h"\n' for name in sorted(names()))
-    file.write_text(f"{includes}{text}\nint end;\n")
+    file.write_text(f"{includes}{text}\nint end;\n", encoding="utf-8")
     tool = command or [*compiler(), "-std=gnu11"]
     whole = [*tool, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", *flags, f"-I{headers_folder()}", str(file)]
     return subprocess.run(whole, capture_output=True, text=True, check=False).stderr
@@ -108,7 +108,7 @@ def test_every_public_name_is_declared(tmp_path: Path) -> None:
     functions = {name for name, _ in rows("functions.tsv")}
     text = ""
     for file in (DATA / "api").glob("*.txt"):
-        for line in file.read_text().splitlines():
+        for line in file.read_text(encoding="utf-8").splitlines():
             name = line.split()[0]
             if line.startswith("#") or name.startswith(PRIVATE):
                 continue
@@ -123,7 +123,7 @@ def test_every_public_name_is_declared(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", sorted(names()))
 def test_each_header_stands_alone(name: str, tmp_path: Path) -> None:
     file = tmp_path / "alone.c"
-    file.write_text(f'#include "{name}.h"\n#include "{name}.h"\nint end;\n')
+    file.write_text(f'#include "{name}.h"\n#include "{name}.h"\nint end;\n', encoding="utf-8")
     command = [*compiler(), "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-fsyntax-only"]
     done = subprocess.run([*command, f"-I{headers_folder()}", str(file)], capture_output=True, text=True, check=False)
     assert done.stderr == ""
@@ -138,7 +138,11 @@ def test_every_declaration_has_a_name_that_leads_to_it() -> None:
     led_to = {each for ours in names().values() for each in ours}
     there = {each.stem for each in DECLARATIONS.glob("*.h")}
     assert led_to <= there
-    included = {each for file in DECLARATIONS.glob("*.h") for each in re.findall(r'"(\w+)\.h"', file.read_text())}
+    included = {
+        each
+        for file in DECLARATIONS.glob("*.h")
+        for each in re.findall(r'"(\w+)\.h"', file.read_text(encoding="utf-8"))
+    }
     assert there == led_to | included
 
 
@@ -175,7 +179,7 @@ def kinds(folder: Path, functions: dict[str, str]) -> dict[str, str]:
         types = [each.strip() for each in kind[kind.rindex("(") + 1 : -1].split(",")]
         types = [re.sub(r"\s*\[\d*\]", "*", each) for each in types if each not in ("void", "...")]
         text += "".join(f"    K({each}),\n" for each in types) + "    '\\n',\n"
-    (folder / "kinds.c").write_text(text + "};\n")
+    (folder / "kinds.c").write_text(text + "};\n", encoding="utf-8")
     made = folder / "kinds.o"  # not run: it may be for another computer than the one that compiles
     subprocess.run([*compiler(), f"-I{headers_folder()}", "-c", str(folder / "kinds.c"), "-o", str(made)], check=True)
     elf = elf_file(BytesIO(made.read_bytes()))

@@ -41,7 +41,7 @@ SOURCE = """
 def held() -> set[tuple[str, str]]:
     """The memory maps of C code and the open files of this process; Python's own memory comes and goes."""
     low, high = engine().ARENA_LOW, engine().ARENA_HIGH
-    starts = (line.partition("-")[0] for line in Path("/proc/self/maps").read_text().splitlines())
+    starts = (line.partition("-")[0] for line in Path("/proc/self/maps").read_text(encoding="utf-8").splitlines())
     maps = {("map", start) for start in starts if low <= int(start, 16) < high}
     return maps | {("file", name) for name in os.listdir("/proc/self/fd")}
 

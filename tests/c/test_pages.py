@@ -60,7 +60,7 @@ MISTAKES = {
 def test_an_application_flies_guarded(tmp_path: Path, page: int, mistake: str) -> None:
     compile_c(tmp_path, "TEST", SOURCE.replace("MISTAKE", mistake), "-w", f"-Wl,-z,max-page-size={page}")
     folder = write_mission(tmp_path, "TEST")
-    (tmp_path / "mission.yaml").write_text("compiled: {guard: true}\n")
+    (tmp_path / "mission.yaml").write_text("compiled: {guard: true}\n", encoding="utf-8")
     command = [sys.executable, "-c", FLIGHT, folder, str(page)]
     done = subprocess.run(command, cwd=Path(__file__).parents[2], capture_output=True, text=True)
     assert done.stdout.startswith("['1'] [] SIGSEGV"), done.stdout + done.stderr

@@ -60,9 +60,9 @@ def fly(folder: Path, bug: Bug, capsys: Any) -> tuple[int, str]:
 
 
 def write(folder: Path, name: str, *flags: str) -> None:
-    made = compile_c(folder, name, (PLANTED / f"{name}.c").read_text(), "-O0", "-w", *flags)
+    made = compile_c(folder, name, (PLANTED / f"{name}.c").read_text(encoding="utf-8"), "-O0", "-w", *flags)
     made.rename(folder / "BUG.so")
-    (folder / "startup.scr").write_text(MISSION)
+    (folder / "startup.scr").write_text(MISSION, encoding="utf-8")
 
 
 FAMILY = ("table_rows", "table_validation", "pool_name", "pool_queue")
@@ -119,5 +119,5 @@ def test_a_counter_that_wraps_shows_in_the_rate_of_a_packet(tmp_path: Path, flag
     write(tmp_path, "counter_wrap", *flags)
     out = tmp_path / "run.json"
     assert main(["run", str(tmp_path), "--for", "90", "--json", str(out)]) == 0
-    [row] = [row for row in json.loads(out.read_text())["topics"] if row["msg_id"] == 0x0899]
+    [row] = [row for row in json.loads(out.read_text(encoding="utf-8"))["topics"] if row["msg_id"] == 0x0899]
     assert least <= row["sent"] <= least + 8

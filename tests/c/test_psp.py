@@ -176,11 +176,15 @@ def test_the_user_reserved_area_outlives_a_processor_reset_and_python_sees_the_s
     folder = write_mission(tmp_path, "TEST")
 
     (tmp_path / "startup.scr").write_text(
-        (tmp_path / "startup.scr").read_text().replace("!", "CFE_APP, other, main, OTHER, 60, 8192, 0x0, 0;\n!")
+        (tmp_path / "startup.scr")
+        .read_text(encoding="utf-8")
+        .replace("!", "CFE_APP, other, main, OTHER, 60, 8192, 0x0, 0;\n!"),
+        encoding="utf-8",
     )
     (tmp_path / "other.py").write_text(
         "def main(cfe):\n    cfe.os.task_delay(50)\n    area = cfe.psp.get_user_reserved_area()\n"
-        "    area[1] = 10 * area[0]\n"
+        "    area[1] = 10 * area[0]\n",
+        encoding="utf-8",
     )
     lines = said(console_of(fly(folder, 4)))
     assert lines[:12] == [

@@ -52,7 +52,7 @@ def explore(folder: Path, code: str, *options: str) -> list[dict[str, str]]:
     compile_c(folder, "TEST", START.replace("@", code), "-fsanitize=thread", "-O0", "-w")
     out = folder / "found.json"
     main(["explore", write_mission(folder, "TEST"), "--for", "2", "--seeds", "12", "--json", str(out), *options])
-    found = json.loads(out.read_text())
+    found = json.loads(out.read_text(encoding="utf-8"))
     return list(found["failures"])
 
 
@@ -303,7 +303,7 @@ def RELAY_Main(cfe):
 def test_a_python_application_between_two_tasks_orders_them(tmp_path: Path, relays: str, races: int) -> None:
     code = RELAYED if not races else RELAYED.replace("pipe, -1)", "pipe, 500)")
     compile_c(tmp_path, "TEST", code, "-fsanitize=thread", "-O0", "-w")
-    (tmp_path / "RELAY.py").write_text(RELAY.replace("@", relays))
+    (tmp_path / "RELAY.py").write_text(RELAY.replace("@", relays), encoding="utf-8")
     flown = fly(RunPlan((write_mission(tmp_path, "TEST", "RELAY"),), seconds=2, schedule=Schedule.parse("at")))
     assert len(flown.mission.record.data_races) == races
     assert flown.mission.record.deaths() == []

@@ -179,7 +179,7 @@ def test_a_table_in_memory_that_was_freed_is_zeros_for_the_ground(tmp_path: Path
     """
     compile_c(tmp_path, "TEST", DECLARED + source, "-Wno-use-after-free")
     folder = write_mission(tmp_path, "TEST")
-    (tmp_path / "mission.yaml").write_text("compiled: {guard: true}\n")
+    (tmp_path / "mission.yaml").write_text("compiled: {guard: true}\n", encoding="utf-8")
     with Mission(folder, console=Console(quiet=True)) as mission:
         mission.run_for(2)
         assert said(console_of(mission)) == ["modified: 00000000"]

@@ -38,7 +38,7 @@ def test_a_source_of_time_is_there_when_the_mission_has_it(tmp_path: Path, sourc
     compile_c(tmp_path, "TEST", DECLARED + code)
     folder = write_mission(tmp_path, "TEST")
     limits = f"time_cfg_source: true, time_cfg_src_{source}: true, time_cfg_fake_tone: false"
-    (tmp_path / "mission.yaml").write_text(f"limits: {{{limits}}}\n")
+    (tmp_path / "mission.yaml").write_text(f"limits: {{{limits}}}\n", encoding="utf-8")
     mission = fly(folder, 6)
     assert said(console_of(mission)) == [f"leap seconds {-3 if source == 'gps' else 37}"]
     assert not mission.record.resets

@@ -39,7 +39,7 @@ def write(folder: Path, files: dict[str, str]) -> Path:
     """Files of an application, indented as they stand in the test."""
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(textwrap.dedent(text).lstrip())
+        (folder / name).write_text(textwrap.dedent(text).lstrip(), encoding="utf-8")
     return folder
 
 
@@ -316,17 +316,17 @@ def test_what_is_no_table(old: str, new: str, wrong: str, app: Path) -> None:
 def test_a_compiler_that_waits_for_a_pipe_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cfepy.c.toolchain.compiler._LOOK_S", 0.2)
     os.mkfifo(tmp_path / "pipe.h")
-    (tmp_path / "a.c").write_text('#include "pipe.h"\n')
+    (tmp_path / "a.c").write_text('#include "pipe.h"\n', encoding="utf-8")
     with pytest.raises(CompilerError, match="waited for something"):
         compile_file(tmp_path / "a.c", tmp_path / "a.o", [])
 
 
 def test_a_compiler_is_held_to_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cfepy.c.toolchain.compiler.OBJECT_BYTES", 1 << 20)
-    (tmp_path / "a.c").write_text("char many[8 << 20] = {1};\n")
+    (tmp_path / "a.c").write_text("char many[8 << 20] = {1};\n", encoding="utf-8")
     with pytest.raises(CompilerError):
         compile_file(tmp_path / "a.c", tmp_path / "a.o", [])
-    (tmp_path / "a.c").write_text("char few[8] = {1};\n")
+    (tmp_path / "a.c").write_text("char few[8] = {1};\n", encoding="utf-8")
     assert compile_file(tmp_path / "a.c", tmp_path / "a.o", []) == ""
 
 
@@ -343,7 +343,7 @@ def test_a_header_that_a_mission_makes_stays_where_it_is_written(app: Path) -> N
 
 
 def test_a_compiler_is_called_where_the_process_itself_is_bound(tmp_path: Path) -> None:
-    (tmp_path / "a.c").write_text("int a;\n")
+    (tmp_path / "a.c").write_text("int a;\n", encoding="utf-8")
     program = (
         "import resource, sys\n"
         "from pathlib import Path\n"

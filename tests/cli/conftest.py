@@ -58,11 +58,11 @@ def make_mission(tmp_path: Path) -> Write:
     def write(*entry_points: str, yaml: str | None = None, action: int = 0) -> Path:
         folder = tmp_path / "mission"
         folder.mkdir(exist_ok=True)
-        (folder / "apps.py").write_text(APPS)
+        (folder / "apps.py").write_text(APPS, encoding="utf-8")
         lines = [f"CFE_APP, apps, {name}, {name.upper()}, 50, 8192, 0, {action};\n" for name in entry_points]
-        (folder / "startup.scr").write_text("".join(lines) + "!\n")
+        (folder / "startup.scr").write_text("".join(lines) + "!\n", encoding="utf-8")
         if yaml is not None:
-            (folder / "mission.yaml").write_text(yaml)
+            (folder / "mission.yaml").write_text(yaml, encoding="utf-8")
         return folder
 
     return write

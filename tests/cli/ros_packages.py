@@ -55,9 +55,9 @@ def demo(tmp_path: Path) -> Path:
     """The folder of a package `demo` with the nodes talker.py, listener.py and check.py."""
     folder = tmp_path / "demo"
     (folder / "scripts").mkdir(parents=True)
-    (folder / "package.xml").write_text("<package><name>demo</name></package>")
+    (folder / "package.xml").write_text("<package><name>demo</name></package>", encoding="utf-8")
     for name, source in (("talker.py", TALKER), ("listener.py", LISTENER), ("check.py", CHECK)):
-        (folder / "scripts" / name).write_text(textwrap.dedent(source).lstrip())
+        (folder / "scripts" / name).write_text(textwrap.dedent(source).lstrip(), encoding="utf-8")
     return folder
 
 
@@ -67,7 +67,7 @@ def write_launch(demo: Path) -> Launch:
 
     def write(body: str) -> str:
         file = demo / "demo.launch"
-        file.write_text(f"<launch>{body}</launch>")
+        file.write_text(f"<launch>{body}</launch>", encoding="utf-8")
         return str(file)
 
     return write

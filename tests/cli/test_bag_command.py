@@ -30,7 +30,7 @@ def count(file: Path) -> int:
 def test_info(here: Path, capsys: Capture) -> None:
     assert main(["bag", "info", "drive.bag", "--json", "info.json"]) == 0
     out = capsys.readouterr().out
-    found = json.loads((here / "info.json").read_text())
+    found = json.loads((here / "info.json").read_text(encoding="utf-8"))
     assert out.startswith(f"\ndrive.bag: bag, {GOLDEN.stat().st_size:,} bytes, {count(GOLDEN):,} messages, ")
     assert found["messages"] == count(GOLDEN)
     assert found["losses"] == []
@@ -94,7 +94,7 @@ def test_other_commands_read_mcap_files_as_they_do_bags(here: Path, capsys: Capt
         assert main(["topic", "echo", file, topic, "-n", "1"]) == 0
         said[-1] += capsys.readouterr().out
         assert main(["export", "csv", file, topic, "-o", f"{file}.csv"]) == 0
-        said[-1] += (here / f"{file}.csv").read_text()
+        said[-1] += (here / f"{file}.csv").read_text(encoding="utf-8")
         capsys.readouterr()
     assert said[0] == said[1]
 

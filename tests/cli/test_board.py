@@ -23,7 +23,7 @@ def test_a_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert re.search(r"LEFT +3 +8,192 +no C stack\n", told)
     assert "stacks: LEFT, RIGHT: Python has no C stack that could be measured" in told
     assert "RAM: it fits, 312,136 bytes are left" in told
-    assert json.loads(file.read_text())["board"] == "rx64m"
+    assert json.loads(file.read_text(encoding="utf-8"))["board"] == "rx64m"
 
 
 @pytest.mark.slow

@@ -16,7 +16,7 @@ pytestmark = needs_compiler
 def app(tmp_path: Path) -> Path:
     source = tmp_path / "probe/fsw/src/probe.c"
     source.parent.mkdir(parents=True)
-    source.write_text('#include "cfe.h"\nvoid PROBE_Main(void) {}\n')
+    source.write_text('#include "cfe.h"\nvoid PROBE_Main(void) {}\n', encoding="utf-8")
     return tmp_path / "probe"
 
 
@@ -27,13 +27,13 @@ def test_it_names_what_it_wrote(app: Path, tmp_path: Path, capsys: pytest.Captur
 
 
 def test_a_refused_file_is_a_finding(app: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (app / "fsw/src/probe.c").write_text("nonsense\n")
+    (app / "fsw/src/probe.c").write_text("nonsense\n", encoding="utf-8")
     assert main(["build", str(app)]) == 1
     assert "probe.c:1" in capsys.readouterr().err
 
 
 def test_options_reach_the_compiler(app: Path) -> None:
-    (app / "fsw/src/probe.c").write_text("#if ONE + TWO != 3\n#error flags\n#endif\nint x;\n")
+    (app / "fsw/src/probe.c").write_text("#if ONE + TWO != 3\n#error flags\n#endif\nint x;\n", encoding="utf-8")
     assert main(["build", str(app), "--flag=-DONE=1", "--flag=-DTWO=2", "-O2", "--no-debug"]) == 0
 
 

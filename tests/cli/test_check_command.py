@@ -44,14 +44,14 @@ def test_warnings_stand_apart_and_do_not_fail(
 ) -> None:
     folder = make_mission("Quiet", "Quiet")
     script = folder / "startup.scr"
-    lines = script.read_text().splitlines()
+    lines = script.read_text(encoding="utf-8").splitlines()
     first, second = lines[0].replace(" 50,", " high,", 1), lines[1]
     monkeypatch.chdir(folder)
-    script.write_text(f"{first}\n!")
+    script.write_text(f"{first}\n!", encoding="utf-8")
     assert main(["check", "."]) == 0
     warning = "startup.scr:1: warning: the priority 'high' is read as 0; write a number, such as 60 or 0x3C"
     assert capsys.readouterr().out.splitlines() == [warning, "1 warning found"]
-    script.write_text(f"{first}\n{second}\n{second}\n!")
+    script.write_text(f"{first}\n{second}\n{second}\n!", encoding="utf-8")
     assert main(["check", "."]) == 1
     *problems, warned, count = capsys.readouterr().out.splitlines()
     assert all(line.startswith(("startup.scr:2: ", "startup.scr:3: ")) for line in problems)

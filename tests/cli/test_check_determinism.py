@@ -144,7 +144,7 @@ def test_the_text_of_an_object_has_its_address() -> None:
 
 def test_with_a_script_a_board_and_a_schedule(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     script = tmp_path / "flight.txt"
-    script.write_text("at 3 end\n")
+    script.write_text("at 3 end\n", encoding="utf-8")
     arguments = ["run", "lab", "--check-determinism", "2", "--script", str(script), "--board", "rx64m", "--seed", "5"]
     assert main([*arguments, "--schedule", "random"]) == 0
     assert "all made the same " in capsys.readouterr().out
@@ -181,7 +181,7 @@ def test_impossible_numbers_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
 def test_a_file_in_the_working_directory_is_no_module_of_the_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / "random.py").write_text("open('executed', 'w').close()\n")
+    (tmp_path / "random.py").write_text("open('executed', 'w').close()\n", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     assert main(["run", "lab", "--for", "0.01", "--check-determinism", "2"]) == 0
     assert not (tmp_path / "executed").exists()
@@ -240,10 +240,12 @@ LAUNCH = """
 def test_nodes_and_launch_files_are_checked_like_missions(
     words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / "package.xml").write_text("<package><name>pk</name><version>1.0.0</version></package>")
-    (tmp_path / "node.py").write_text(f"#!/usr/bin/env python3{NODE}")
+    (tmp_path / "package.xml").write_text(
+        "<package><name>pk</name><version>1.0.0</version></package>", encoding="utf-8"
+    )
+    (tmp_path / "node.py").write_text(f"#!/usr/bin/env python3{NODE}", encoding="utf-8")
     (tmp_path / "node.py").chmod(0o755)
-    (tmp_path / "n.launch").write_text(LAUNCH)
+    (tmp_path / "n.launch").write_text(LAUNCH, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     command = [words[0], "--for", "1"]

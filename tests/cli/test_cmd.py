@@ -16,7 +16,7 @@ MISSION = "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\
 @pytest.fixture
 def mission(make_mission: Write) -> str:
     folder = make_mission("Quiet")
-    (folder / "startup.scr").write_text(MISSION)
+    (folder / "startup.scr").write_text(MISSION, encoding="utf-8")
     return str(folder)
 
 
@@ -101,7 +101,7 @@ def test_an_error_event_is_a_failure(mission: str, capsys: pytest.CaptureFixture
 def test_a_command_that_nobody_takes_is_a_failure(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
     folder = make_mission("Quiet")
     source = "from cfepy.msg import Command\nCOMMANDS = (Command('QUIET_NOOP', 0x1890, 0),)\n"
-    (folder / "apps.py").write_text(source + (folder / "apps.py").read_text())
+    (folder / "apps.py").write_text(source + (folder / "apps.py").read_text(encoding="utf-8"), encoding="utf-8")
     assert main(["cmd", str(folder), "QUIET_NOOP", "--for", "0.5"]) == 1
     assert "QUIET_NOOP sent to nobody" in capsys.readouterr().out
 

@@ -84,7 +84,7 @@ def test_a_shell_asks(shell: str, tmp_path: Path) -> None:
     if shutil.which(shell) is None:
         pytest.skip(f"{shell} is not installed")
     command = tmp_path / "cfepy"
-    command.write_text(f'#!/bin/sh\nexec {sys.executable} -m cfepy "$@"\n')
+    command.write_text(f'#!/bin/sh\nexec {sys.executable} -m cfepy "$@"\n', encoding="utf-8")
     command.chmod(command.stat().st_mode | stat.S_IXUSR)
     environ = {**os.environ, "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}", "PYTHONPATH": str(Path.cwd())}
     done = subprocess.run([shell, "-c", SHELLS[shell]], capture_output=True, text=True, env=environ)

@@ -64,7 +64,7 @@ def test_the_saved_script_repeats_the_run(console: Console, tmp_path: Path, caps
     assert status == 0, output
     assert "SAMPLE_APP 6 INFORMATION: SAMPLE: ValU32=7, " in output or "ValU32=7" in output
     assert f"again: cfepy run --script {script} lab" in output
-    saved = script.read_text()
+    saved = script.read_text(encoding="utf-8")
     assert 'at 1 send SAMPLE_APP_DISPLAY_PARAM ValU32=7 ValStr="two words"\n        expect event' in saved
     assert "send CFE_ES_RESTART RestartType=1" in saved
     assert main(["run", "lab", "--script", str(script), "--quiet"]) == 0
@@ -100,7 +100,7 @@ def test_stop_on_failure_ends_the_session(console: Console) -> None:
 
 def test_a_file_is_done_step_by_step(console: Console, tmp_path: Path) -> None:
     script = tmp_path / "steps.txt"
-    script.write_text("at 1.25 send CFE_ES_NOOP\nexpect event CFE_ES 3\nafter 0.5 end\n")
+    script.write_text("at 1.25 send CFE_ES_NOOP\nexpect event CFE_ES 3\nafter 0.5 end\n", encoding="utf-8")
     status, output = console("lab", lines=f"load {script}\nhelp CFE_EVS_ADD_EVENT_FILTER\n")
     assert status == 0
     assert f"1.250 {script}:1: at 1.25 send CFE_ES_NOOP" in output
@@ -184,7 +184,7 @@ def test_a_computer_elsewhere(console: Console, monkeypatch: pytest.MonkeyPatch,
     assert "0x0999  n=1" in output
     assert output.count("a computer elsewhere shows its packets alone") == 2
     assert "a computer elsewhere does not stand still" in output
-    assert " send CFE_ES_NOOP\n" in script.read_text()
+    assert " send CFE_ES_NOOP\n" in script.read_text(encoding="utf-8")
 
 
 def test_nobody_listens_and_to_lab_is_asked(console: Console, monkeypatch: pytest.MonkeyPatch) -> None:

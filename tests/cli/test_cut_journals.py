@@ -63,7 +63,9 @@ def test_diff_with_a_journal_that_is_cut_off_fails(recorded: bytes, capsys: Capt
 def test_report_of_a_journal_that_is_cut_off_warns(recorded: bytes, capsys: Capture) -> None:
     Path("cut.cfepy").write_bytes(recorded[:-20])
     assert main(["report", "cut.cfepy", "-o", "page.html"]) == 1
-    assert "this may not be the run of cut.cfepy: the journal is cut off" in Path("page.html").read_text()
+    assert "this may not be the run of cut.cfepy: the journal is cut off" in Path("page.html").read_text(
+        encoding="utf-8"
+    )
 
 
 def test_diff_of_two_empty_traces_is_no_same_run(

@@ -36,7 +36,7 @@ def test_a_failure_is_told_once_with_its_command_and_timeline(
     assert f"failure 1: {EVENT}" in out
     assert "failure 2" not in out
     assert f"FAILURE in LISTENER: {EVENT}" in out
-    found = json.loads(numbers.read_text())
+    found = json.loads(numbers.read_text(encoding="utf-8"))
     assert found["schedules"] == 6
     (failure,) = found["failures"]
     assert failure["command"].startswith("cfepy run --for 0.7 --tasks greenlet --schedule random:")
@@ -173,7 +173,7 @@ def test_a_task_that_waits_for_ever_may_be_let(tmp_path: Path, capsys: pytest.Ca
 
 
 def test_a_node_is_explored_by_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "lone.py").write_text("import sys\nraise ValueError(sys.argv[1])\n")
+    (tmp_path / "lone.py").write_text("import sys\nraise ValueError(sys.argv[1])\n", encoding="utf-8")
     words = (tmp_path / "lone.py", "today", "--for", 0.2, "--seeds", 1, "--jobs", 1)
     assert explore(*words, "--until-failure") == FOUND_PROBLEMS
     out = capsys.readouterr().out

@@ -25,7 +25,7 @@ def test_xtce_to_a_file_and_to_standard_output(
     assert main(["export", "xtce", folder, "-o", str(file)]) == 0
     assert capsys.readouterr().out == ""
     assert main(["export", "xtce", folder]) == 0
-    assert capsys.readouterr().out == file.read_text()
+    assert capsys.readouterr().out == file.read_text(encoding="utf-8")
     assert ElementTree.parse(file).getroot().attrib["name"] == "mission"
 
 
@@ -81,14 +81,14 @@ def test_several_series_in_one_file_and_in_a_folder(
     words = [*sources["mission"], "/phase", "CFE_EVS_LONG_EVENT_MSG.PacketID", "/joint_states.name"]
     file, folder = tmp_path / "all.csv", tmp_path / "each"
     assert main(["export", "csv", *words, "-o", str(file)]) == 0
-    rows = rows_of(file.read_text())
+    rows = rows_of(file.read_text(encoding="utf-8"))
     assert [float(row["time"]) for row in rows] == sorted(float(row["time"]) for row in rows)
     assert {row["CFE_EVS_LONG_EVENT_MSG.PacketID.AppName"] for row in rows} >= {"", "CFE_EVS", "HK"}
     assert [row["/phase.data"] for row in rows if row["/phase.data"]] == ["approach"]
     assert main(["export", "csv", *words, "-o", f"{folder}/"]) == 0
     names = {each.name for each in folder.iterdir()}
     assert names == {"phase.csv", "CFE_EVS_LONG_EVENT_MSG.csv", "joint_states.csv"}
-    assert list(rows_of((folder / "phase.csv").read_text())[0]) == ["time", "stamp", "data"]
+    assert list(rows_of((folder / "phase.csv").read_text(encoding="utf-8"))[0]) == ["time", "stamp", "data"]
     assert capsys.readouterr().out == ""
 
 
@@ -114,7 +114,7 @@ def test_a_text_a_truth_and_bytes_in_csv(tmp_path: Path, capsys: pytest.CaptureF
         "blob = rospy.Publisher('blob', UInt8MultiArray, queue_size=1)\n"
         "on.publish(True)\nsaid.publish('a, \"b\"')\nblob.publish(data=b'\\x00\\xff')\nrospy.sleep(0.1)\n"
     )
-    (tmp_path / "node.py").write_text(f"#!/usr/bin/env python3\n{script}")
+    (tmp_path / "node.py").write_text(f"#!/usr/bin/env python3\n{script}", encoding="utf-8")
     assert main(["export", "csv", str(tmp_path / "node.py"), "/on", "/said", "/blob.data"]) == 0
     rows = rows_of(capsys.readouterr().out)
     assert [row["/on.data"] for row in rows] == ["1", "", ""]
@@ -188,7 +188,8 @@ def test_csv_with_quote_formulas(
     node.write_text(
         "import rospy\nfrom std_msgs.msg import String\nrospy.init_node('n')\n"
         "out = rospy.Publisher('/t', String, queue_size=1)\n"
-        "while not rospy.is_shutdown():\n    out.publish('=1+1')\n    rospy.sleep(0.1)\n"
+        "while not rospy.is_shutdown():\n    out.publish('=1+1')\n    rospy.sleep(0.1)\n",
+        encoding="utf-8",
     )
     for options, text in ((["--quote-formulas"], "'=1+1"), ([], "=1+1")):
         assert main(["export", "csv", str(node), "/t.data", "--for", "1", *options]) == 0

@@ -27,7 +27,7 @@ def test_a_full_file_is_named(option: str, capsys: pytest.CaptureFixture[str]) -
 
 def test_half_a_file_does_not_stay(tmp_path: Path) -> None:
     def half(number: int) -> None:
-        (tmp_path / "x").write_text("{")
+        (tmp_path / "x").write_text("{", encoding="utf-8")
         raise OSError(number, "told")
 
     for number, stays in ((errno.ENOSPC, False), (errno.EDQUOT, False), (errno.EACCES, True)):
@@ -56,7 +56,7 @@ def test_without_memory_the_input_is_named(
 @pytest.mark.parametrize("words", [["boards"], ["tbl", "show", TABLE, "--json", "-"]], ids=("text", "json"))
 def test_a_full_standard_output_is_named(words: list[str]) -> None:
     command = [sys.executable, "-m", "cfepy", *words]
-    with FULL.open("w") as full:
+    with FULL.open("w", encoding="utf-8") as full:
         process = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
     assert process.stderr == "cfepy: standard output cannot be written: No space left on device\n"
     assert process.returncode == 2

@@ -22,8 +22,8 @@ def test_nodes_applications_messages_and_pipes_of_a_mission(tmp_path: Path, caps
     assert "  takes out of pipe ARM.motor_co.1, depth 1\n    0x0911 /motor_command <- /main_control\n" in text
     assert "  takes out of pipe HK_CMD_PIPE, depth 40\n    0x0800 CFE_ES_HK_TLM <- " in text
     assert "0x0901 /arm_health/samples <- /arm_health  (limit 4)\n" in text
-    assert drawing.read_text().startswith("<svg ")
-    assert dot.read_text().startswith("digraph")
+    assert drawing.read_text(encoding="utf-8").startswith("<svg ")
+    assert dot.read_text(encoding="utf-8").startswith("digraph")
 
 
 def test_services_and_a_script_that_looks_as_one_wants(tmp_path: Path, capsys: Capture) -> None:
@@ -44,8 +44,8 @@ def test_a_drawing_alone_on_standard_output(capsys: Capture) -> None:
 
 
 def test_what_died_on_the_way_is_told(tmp_path: Path, capsys: Capture) -> None:
-    (tmp_path / "startup.scr").write_text("CFE_APP, app, main, APP, 50, 16384, 0x0, 0;\n!\n")
-    (tmp_path / "app.py").write_text("def main(cfe):\n    raise ValueError('no')\n")
+    (tmp_path / "startup.scr").write_text("CFE_APP, app, main, APP, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
+    (tmp_path / "app.py").write_text("def main(cfe):\n    raise ValueError('no')\n", encoding="utf-8")
     assert main(["graph", str(tmp_path), "--for", "1"]) == 0
     said = capsys.readouterr()
     assert said.out.endswith("APP (application)\n  sends nothing, and takes nothing\n")
@@ -56,4 +56,4 @@ def test_what_died_on_the_way_is_told(tmp_path: Path, capsys: Capture) -> None:
 def test_the_drawing_in_the_documentation_is_that_of_today(tmp_path: Path) -> None:
     drawing = tmp_path / "graph.svg"
     assert main(["graph", "capture", "--svg", str(drawing)]) == 0
-    assert drawing.read_text() == (ROOT / "docs" / "graph.svg").read_text()
+    assert drawing.read_text(encoding="utf-8") == (ROOT / "docs" / "graph.svg").read_text(encoding="utf-8")

@@ -18,8 +18,8 @@ LAUNCH = f"""<launch>
 
 @pytest.mark.parametrize("text", [f"board: {LONG}", f"params_from: {LONG}", f"launch: [{LONG}]"])
 def test_a_mission_file(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "startup.scr").write_text("!\n")
-    (tmp_path / "mission.yaml").write_text(f"name: test\n{text}\n")
+    (tmp_path / "startup.scr").write_text("!\n", encoding="utf-8")
+    (tmp_path / "mission.yaml").write_text(f"name: test\n{text}\n", encoding="utf-8")
     assert main(["check", str(tmp_path)]) == 1
     assert "mission.yaml:2: " in capsys.readouterr().out
     assert main(["run", str(tmp_path), "--for", "1"]) == 2
@@ -27,7 +27,7 @@ def test_a_mission_file(text: str, tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 def test_a_launch_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "x.launch").write_text(LAUNCH)
+    (tmp_path / "x.launch").write_text(LAUNCH, encoding="utf-8")
     assert main(["check", str(tmp_path / "x.launch")]) == 1
     told = capsys.readouterr().out
     assert "x.launch:2: " in told

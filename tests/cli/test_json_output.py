@@ -50,7 +50,9 @@ def test_with_a_file_the_text_is_shown_as_well(
 ) -> None:
     file = tmp_path / "found.json"
     main([word.format(data=DATA) for word in COMMANDS[command]] + ["--json", str(file)])
-    assert json.loads(file.read_text().splitlines()[0] if command in LINES else file.read_text())
+    assert json.loads(
+        file.read_text(encoding="utf-8").splitlines()[0] if command in LINES else file.read_text(encoding="utf-8")
+    )
     assert capsys.readouterr().out
 
 

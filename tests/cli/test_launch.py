@@ -42,7 +42,7 @@ def test_a_run_ends_with_its_last_node(
 ) -> None:
     numbers = tmp_path / "numbers.json"
     assert main(["launch", write_launch(TALKER.format("", COUNT.format(5))), "--json", str(numbers)]) == 0
-    assert 1 < json.loads(numbers.read_text())["virtual_s"] < 1.2
+    assert 1 < json.loads(numbers.read_text(encoding="utf-8"))["virtual_s"] < 1.2
 
 
 def test_a_node_that_respawns(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
@@ -101,7 +101,7 @@ def test_packages_of_the_workspace_that_one_is_in(
     (workspace / "src/stack").mkdir(parents=True)
     (workspace / "src/other").mkdir()
     demo = demo.rename(workspace / "src/stack/demo")
-    (demo / "demo.launch").write_text(f"<launch>{TALKER.format('', COUNT.format(1))}</launch>")
+    (demo / "demo.launch").write_text(f"<launch>{TALKER.format('', COUNT.format(1))}</launch>", encoding="utf-8")
     monkeypatch.chdir(workspace / here)
     assert main(["launch", "demo", "demo.launch", "--nodes"]) == 0
     assert main(["node", "demo", "talker.py", "_count:=1"]) == 0
@@ -153,7 +153,7 @@ def test_even_a_short_run_is_one_of_the_nodes(write_launch: Launch, capsys: pyte
 def test_what_is_no_mission(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], file: str, text: str, said: str
 ) -> None:
-    (tmp_path / file).write_text(text)
+    (tmp_path / file).write_text(text, encoding="utf-8")
     for command in ("export xtce",) if "program" in said else ("run", "check", "mids"):
         assert main([*command.split(), str(tmp_path / file)]) == 2
         assert said in capsys.readouterr().err
@@ -220,7 +220,8 @@ def test_common_tools_are_stood_in_for(write_launch: Launch, demo: Path, capsys:
         "heard = []\n"
         "rospy.Subscriber('slow_relay', rospy.AnyMsg, heard.append)\n"
         "rospy.sleep(5)\n"
-        "print(len(heard))\n"
+        "print(len(heard))\n",
+        encoding="utf-8",
     )
     file = write_launch(
         '<node pkg="tf" type="static_transform_publisher" name="one" args="1 2 -3 0 0 0 map arm 100"/>'
@@ -256,7 +257,7 @@ URDF = """
 def test_a_robot_description_with_a_mistake(
     write_launch: Launch, demo: Path, capsys: pytest.CaptureFixture[str], wrong: str, said: str
 ) -> None:
-    (demo / "r.urdf").write_text(URDF.replace('xyz="1 0 0"', wrong))
+    (demo / "r.urdf").write_text(URDF.replace('xyz="1 0 0"', wrong), encoding="utf-8")
     file = write_launch(
         '<param name="robot_description" textfile="$(find demo)/r.urdf"/>'
         '<node pkg="robot_state_publisher" type="robot_state_publisher" name="state"/>'
@@ -270,7 +271,7 @@ def test_a_robot_description_with_a_mistake(
 def test_a_robots_state_becomes_transforms(
     write_launch: Launch, demo: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (demo / "r.urdf").write_text(URDF)
+    (demo / "r.urdf").write_text(URDF, encoding="utf-8")
     (demo / "scripts/move.py").write_text(
         "import rospy, tf2_ros\n"
         "from sensor_msgs.msg import JointState\n"
@@ -283,7 +284,8 @@ def test_a_robots_state_becomes_transforms(
         "state.header.stamp = rospy.Time.now()\n"
         "publisher.publish(state)\n"
         "at = buffer.lookup_transform('base', 'tip', rospy.Time(), rospy.Duration(2)).transform\n"
-        "print(*(round(each, 6) for each in (at.translation.x, at.translation.y, at.translation.z, at.rotation.w)))\n"
+        "print(*(round(each, 6) for each in (at.translation.x, at.translation.y, at.translation.z, at.rotation.w)))\n",
+        encoding="utf-8",
     )
     file = write_launch(
         '<param name="robot_description" textfile="$(dirname)/r.urdf"/>'

@@ -62,7 +62,7 @@ def test_performance_data_as_a_picture(tmp_path: Path, capsys: pytest.CaptureFix
     path.write_bytes(perf_file((7 | EXIT_BIT, 0, 5), *inside, (91, 0, 30)))
     assert main(["log", str(path), "--perfetto", str(out)]) == 0
     assert capsys.readouterr().out == f"{out}: 6 entries; open it in https://ui.perfetto.dev\n"
-    trace = json.loads(out.read_text())
+    trace = json.loads(out.read_text(encoding="utf-8"))
     assert trace["otherData"]["DataCount"] == 6
     events = [event for event in trace["traceEvents"] if event["ph"] != "M"]
     assert [(event["ph"], event["tid"]) for event in events] == [

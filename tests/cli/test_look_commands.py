@@ -31,7 +31,7 @@ def test_the_trace_of_a_journal_is_that_of_its_run(
     printed = capsys.readouterr().out
     mission, file = str(make_mission("Quiet", "Chatty")), tmp_path / "trace.txt"
     assert main(["run", mission, "--for", "2", "--quiet", "--trace", str(file)]) == 0
-    assert printed == file.read_text()
+    assert printed == file.read_text(encoding="utf-8")
     capsys.readouterr()
     assert main(["trace", mission, "--for", "2"]) == 0
     assert capsys.readouterr().out == printed
@@ -61,7 +61,7 @@ def test_a_trace_for_perfetto(journal: Path, tmp_path: Path, capsys: Capture) ->
     file = tmp_path / "out.json"
     assert main(["trace", str(journal), "--perfetto", str(file)]) == 0
     assert "ui.perfetto.dev" in capsys.readouterr().out
-    written = json.loads(file.read_text())
+    written = json.loads(file.read_text(encoding="utf-8"))
     assert written["displayTimeUnit"] == "ns"
     assert written["otherData"]["mission"] == "mission"
     assert {"B", "E", "X", "M", "i"} <= {event["ph"] for event in written["traceEvents"]}
@@ -71,7 +71,7 @@ def test_the_page_of_a_journal(journal: Path, tmp_path: Path, capsys: Capture) -
     page = tmp_path / "page.html"
     assert main(["report", str(journal), "-o", str(page)]) == 0
     assert str(page) in capsys.readouterr().out
-    text = page.read_text()
+    text = page.read_text(encoding="utf-8")
     assert f"cfepy replay {journal}" in text
     assert 'data-path="topics.0.sent"' in text
 
@@ -83,7 +83,7 @@ def test_the_page_of_a_mission_tells_the_command_for_the_same_run(
     words = ["mission", "--for", "2", "--seed", "4", "--schedule", "random", "--board", "rx64m"]
     make_mission("Quiet", "Dies")
     assert main(["report", *words]) == 0
-    text = Path("report.html").read_text()
+    text = Path("report.html").read_text(encoding="utf-8")
     assert "cfepy run --for 2 --seed 4 --board rx64m --schedule random:4" in text
     assert "died: ValueError: boom" in text
 
@@ -91,11 +91,11 @@ def test_the_page_of_a_mission_tells_the_command_for_the_same_run(
 def test_a_replay_that_is_another_run_is_told(journal: Path, tmp_path: Path, capsys: Capture) -> None:
     code = tmp_path / "mission"
     for file in code.glob("*.py"):
-        file.write_text(file.read_text().replace("task_delay(100)", "task_delay(90)"))
+        file.write_text(file.read_text(encoding="utf-8").replace("task_delay(100)", "task_delay(90)"), encoding="utf-8")
     page = tmp_path / "page.html"
     assert main(["report", str(journal), "--from-disk", "-o", str(page)]) == 1
     assert "not the run of" in capsys.readouterr().err
-    assert "not the run of" in page.read_text()
+    assert "not the run of" in page.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -135,6 +135,6 @@ def test_deadlines_that_are_missed_make_a_run_fail(make_mission: Write, tmp_path
     out, error = capsys.readouterr()
     assert re.search(r"0x0890 +at_most_every +1 s +\d+ +\d+ +100 ms", out)
     assert "cfepy: 0x0890 missed its deadline at_most_every 1 s" in error
-    (deadline,) = json.loads(numbers.read_text())["deadlines"]
+    (deadline,) = json.loads(numbers.read_text(encoding="utf-8"))["deadlines"]
     assert deadline["owner"] == "0x0890"
     assert deadline["overruns"] == deadline["checked"] > 5

@@ -71,7 +71,7 @@ def test_help_imports_nothing_heavy() -> None:
 
 
 def test_an_empty_run_imports_neither_ros_nor_what_other_commands_need(tmp_path: Path) -> None:
-    (tmp_path / "startup.scr").write_text("!\n")
+    (tmp_path / "startup.scr").write_text("!\n", encoding="utf-8")
     words = ["run", str(tmp_path), "--for", "0.6", "--quiet"]
     program = f"import sys\nfrom cfepy.cli.main import main\nmain({words})\nprint(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

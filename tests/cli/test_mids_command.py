@@ -23,7 +23,7 @@ def test_as_json(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> Non
     rows = json.loads(capsys.readouterr().out)
     assert rows == sorted(rows, key=lambda row: row["msg_id"])
     assert main(["mids", str(folder), "--json", str(folder / "x.json")]) == 0
-    assert json.loads((folder / "x.json").read_text()) == rows
+    assert json.loads((folder / "x.json").read_text(encoding="utf-8")) == rows
 
 
 def test_a_file_that_cannot_be_written(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:

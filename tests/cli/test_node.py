@@ -14,7 +14,7 @@ __all__ = ["demo"]  # a fixture
 
 def run(folder: Path, source: str, *words: str) -> int:
     script = folder / "node.py"
-    script.write_text(source)
+    script.write_text(source, encoding="utf-8")
     return main(["node", str(script), *words])
 
 
@@ -68,8 +68,10 @@ def test_no_such_node(capsys: pytest.CaptureFixture[str], words: list[str], said
 def test_where_the_master_serves_is_told_once(
     words: list[str], demo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / "node.py").write_text("import rospy\nrospy.init_node('n')\n")
-    (tmp_path / "nodes.launch").write_text('<launch><node pkg="demo" type="talker.py" name="talker"/></launch>')
+    (tmp_path / "node.py").write_text("import rospy\nrospy.init_node('n')\n", encoding="utf-8")
+    (tmp_path / "nodes.launch").write_text(
+        '<launch><node pkg="demo" type="talker.py" name="talker"/></launch>', encoding="utf-8"
+    )
     what = tmp_path / ("nodes.launch" if words == ["launch"] else "node.py")
     assert main([*words, str(what), "--for", "0.1", "--realtime", "1000", "--ros-master", "serve:0"]) == 0
     shown = capsys.readouterr()

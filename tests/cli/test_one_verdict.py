@@ -119,7 +119,7 @@ def test_every_command_has_the_same_verdict(
     options: dict[str, str] = {}
     for option, text in (("script", case.script), ("faults", case.faults)):
         if text:
-            Path(f"{option}.txt").write_text(text)
+            Path(f"{option}.txt").write_text(text, encoding="utf-8")
             words += [f"--{option}", f"{option}.txt"]
             options[option] = f"{option}.txt"
     status = 1 if case.problem else 0
@@ -127,7 +127,7 @@ def test_every_command_has_the_same_verdict(
     assert main(["run", *words, "--quiet", "--record", "j", "--json", "n.json"]) == status
     told = capsys.readouterr()
     assert case.problem in told.out + told.err
-    problems = json.loads(Path("n.json").read_text())["problems"]
+    problems = json.loads(Path("n.json").read_text(encoding="utf-8"))["problems"]
     assert bool(problems) == bool(case.problem)
     assert any(case.problem in each for each in problems) == bool(case.problem)
     assert main(["replay", "j", "--quiet"]) == status
@@ -136,9 +136,9 @@ def test_every_command_has_the_same_verdict(
     assert main(["run", *words, "--check-determinism", "2"]) == status
     capsys.readouterr()
     assert main(["report", *words, "-o", "p.html"]) == 0
-    assert ("No problems" in Path("p.html").read_text()) == (not case.problem)
+    assert ("No problems" in Path("p.html").read_text(encoding="utf-8")) == (not case.problem)
     assert main(["sweep", *words, "--board", "linux", "--jobs", "1", "--quiet", "--json", "s.json"]) == 0
-    (point,) = json.loads(Path("s.json").read_text())["rows"]
+    (point,) = json.loads(Path("s.json").read_text(encoding="utf-8"))["rows"]
     assert (point["problem"] not in ("", "no message came")) == bool(case.problem)
     assert cfepy.run("m", seconds=2, **options).problems == problems
 
@@ -155,14 +155,14 @@ def test_mission_beside_counts_as_the_mission_itself(
     line = "b: PROG sent 1 ERROR or CRITICAL event"
     assert main(["run", *words, "--quiet", "--record", "j", "--json", "n.json"]) == 1
     assert line in capsys.readouterr().err
-    assert json.loads(Path("n.json").read_text())["problems"] == [line]
+    assert json.loads(Path("n.json").read_text(encoding="utf-8"))["problems"] == [line]
     assert main(["replay", "j", "--quiet"]) == 1
     said = capsys.readouterr().err
     assert line in said
     assert "the same run as j" in said
     assert main(["explore", *words, "--seeds", "1", "--jobs", "1", "--quiet"]) == 1
     assert main(["report", *words, "-o", "p.html"]) == 0
-    assert line in Path("p.html").read_text()
+    assert line in Path("p.html").read_text(encoding="utf-8")
 
 
 def test_node_and_launch_end_with_status_1_after_an_exception_in_a_callback(
@@ -172,8 +172,8 @@ def test_node_and_launch_end_with_status_1_after_an_exception_in_a_callback(
     write_mission(tmp_path, CASES["callback"].startup, prog=CASES["callback"].source)
     assert main(["node", "prog.py", "--for", "1", "--quiet"]) == 1
     assert "ZeroDivisionError" in capsys.readouterr().err
-    Path("p.launch").write_text('<launch><node pkg="p" type="prog.py" name="prog"/></launch>')
-    Path("package.xml").write_text("<package><name>p</name></package>")
+    Path("p.launch").write_text('<launch><node pkg="p" type="prog.py" name="prog"/></launch>', encoding="utf-8")
+    Path("package.xml").write_text("<package><name>p</name></package>", encoding="utf-8")
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     assert main(["launch", "p.launch", "--for", "1", "--quiet"]) == 1
     assert "ZeroDivisionError" in capsys.readouterr().err
@@ -195,12 +195,12 @@ def test_rostest_fails_after_an_exception_in_a_callback_of_another_node(
         rostest.rosrun("p", "waits", Waits)
     """
     write_mission(tmp_path, CASES["callback"].startup, prog=CASES["callback"].source, waits=test)
-    Path("package.xml").write_text("<package><name>p</name></package>")
+    Path("package.xml").write_text("<package><name>p</name></package>", encoding="utf-8")
     node, own = '<node pkg="p" type="prog.py" name="prog"/>', '<test test-name="waits" pkg="p" type="waits.py"/>'
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
-    Path("p.test").write_text(f"<launch>{own}</launch>")
+    Path("p.test").write_text(f"<launch>{own}</launch>", encoding="utf-8")
     assert main(["rostest", "p.test"]) == 0
-    Path("p.test").write_text(f"<launch>{node}{own}</launch>")
+    Path("p.test").write_text(f"<launch>{node}{own}</launch>", encoding="utf-8")
     capsys.readouterr()
     assert main(["rostest", "p.test"]) == 1
     out = capsys.readouterr().out

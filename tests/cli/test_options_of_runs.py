@@ -38,9 +38,9 @@ class TookOffError(BaseException):
 @pytest.fixture
 def words(tmp_path: Path, demo: Path, write_launch: Launch) -> dict[str, list[str]]:
     """The command lines of the commands that fly, by what they are called here; options may be added at the end."""
-    (tmp_path / "startup.scr").write_text("CFE_APP, app, main, APP, 50, 16384, 0x0, 0;\n!\n")
-    (tmp_path / "app.py").write_text(APP)
-    (tmp_path / "script.txt").write_text("send CFE_ES_NOOP\n")
+    (tmp_path / "startup.scr").write_text("CFE_APP, app, main, APP, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
+    (tmp_path / "app.py").write_text(APP, encoding="utf-8")
+    (tmp_path / "script.txt").write_text("send CFE_ES_NOOP\n", encoding="utf-8")
     mission = str(tmp_path)
     launch, node = write_launch(NODES + TEST), str(demo / "scripts" / "talker.py")
     return {
@@ -218,7 +218,10 @@ def test_faults_that_do_not_fit_or_never_strike(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     plan = tmp_path / "plan.yaml"
-    plan.write_text("faults:\n  - drop: /nothing\n    name: lost\n  - crash: NOBODY\n    name: gone\n    at: 0.1\n")
+    plan.write_text(
+        "faults:\n  - drop: /nothing\n    name: lost\n  - crash: NOBODY\n    name: gone\n    at: 0.1\n",
+        encoding="utf-8",
+    )
     short = [] if command in ("rostest", "param") else ["--for", "1"]
     quick = ["--seeds", "1", "--jobs", "1", "--no-stuck"] if command == "explore" else []
     main([*words[command], *short, *quick, "--faults", str(plan)])
@@ -236,7 +239,7 @@ def test_a_script_with_a_mistake(
     capfd: pytest.CaptureFixture[str],
 ) -> None:
     script = tmp_path / "wrong.txt"
-    script.write_text("send NO_SUCH_COMMAND\n")
+    script.write_text("send NO_SUCH_COMMAND\n", encoding="utf-8")
     assert main([*words[command], "--script", str(script)]) == 2
     assert f"{script}:1" in capfd.readouterr().err
 

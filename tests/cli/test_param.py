@@ -55,7 +55,7 @@ def test_a_node_whose_name_only_its_script_knows(tmp_path: Path, capsys: pytest.
 
 def test_files_for_the_ground(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     source, out = tmp_path / "robot.yaml", tmp_path / "out"
-    source.write_text("robot: {rate: 10, axes: [x, y]}\ntext: '10'\nbig: " + "z" * 12000 + "\n")
+    source.write_text("robot: {rate: 10, axes: [x, y]}\ntext: '10'\nbig: " + "z" * 12000 + "\n", encoding="utf-8")
     assert said(capsys, "build", source, "-o", out).split()[0].endswith("params01.tbl:")
     assert sorted(path.name for path in out.iterdir()) == ["params01.tbl", "params02.tbl"]
     assert said(capsys, "list", out).split() == ["/big", "/robot/axes", "/robot/rate", "/text"]
@@ -94,6 +94,6 @@ def test_mistakes(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "empty").mkdir()
-    (tmp_path / "robot.yaml").write_text("rate: 10\n")
+    (tmp_path / "robot.yaml").write_text("rate: 10\n", encoding="utf-8")
     said(capsys, "build", "robot.yaml", "-o", "p")
     assert error in said(capsys, *arguments, status=2)

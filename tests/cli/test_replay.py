@@ -61,8 +61,8 @@ def test_a_run_is_replayed_with_its_console_and_report(
     speed = re.compile(r"virtual s in .*")
     assert speed.sub("", again.out) == speed.sub("", first)
     assert again.err == "cfepy: the same run as a.cfepy\n"
-    assert trace_of(first) in Path("a.json").read_text()
-    assert "dispatch" in Path("a.txt").read_text()
+    assert trace_of(first) in Path("a.json").read_text(encoding="utf-8")
+    assert "dispatch" in Path("a.txt").read_text(encoding="utf-8")
 
 
 def test_until_ends_earlier(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -193,9 +193,9 @@ def test_diff_shows_where_files_were_and_leaves_nothing_behind(
     mission, temporary = tmp_path / "app", tmp_path / "temporary"
     mission.mkdir()
     temporary.mkdir()
-    (mission / "startup.scr").write_text("CFE_APP, steps, Main, STEPS, 60, 8192, 0, 0;\n!\n")
+    (mission / "startup.scr").write_text("CFE_APP, steps, Main, STEPS, 60, 8192, 0, 0;\n!\n", encoding="utf-8")
     for step, name in (("1", "one"), ("2", "three")):  # other lengths: Python tells files of one second by their size
-        (mission / "steps.py").write_text(RAISER.replace("STEP", name))
+        (mission / "steps.py").write_text(RAISER.replace("STEP", name), encoding="utf-8")
         main(["run", str(mission), "--for", "1", "--quiet", "--record", f"{step}.cfepy"])
     capsys.readouterr()
     monkeypatch.setenv("TMPDIR", str(temporary))
@@ -272,7 +272,7 @@ def test_a_replay_that_ends_before_the_boot_does_says_why(tmp_path: Path, capsys
 
 
 def test_a_replay_of_a_node_that_still_runs_says_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "spin.py").write_text("import rospy\nrospy.init_node('spin')\nrospy.spin()\n")
+    (tmp_path / "spin.py").write_text("import rospy\nrospy.init_node('spin')\nrospy.spin()\n", encoding="utf-8")
     main(["node", "--for", "1", "--record", "a.cfepy", "spin.py"])
     assert "the node still runs after 1 virtual seconds; --for runs longer" in capsys.readouterr().err
     main(["replay", "a.cfepy"])

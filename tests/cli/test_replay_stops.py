@@ -35,7 +35,7 @@ for number in range(4):
 def journal(tmp_path: Path) -> str:
     """The journal of a node that counts."""
     script, file = tmp_path / "counter.py", tmp_path / "run.cfepy"
-    script.write_text(NODE)
+    script.write_text(NODE, encoding="utf-8")
     assert main(["node", "--for", "2", "--record", str(file), str(script)]) == 0
     return str(file)
 

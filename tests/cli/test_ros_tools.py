@@ -25,7 +25,7 @@ QUICK = ("rosnode info -q /frames", "tf_echo base world", "rosmsg show geometry_
 
 def recorded() -> dict[str, str]:
     """What was printed, by command line."""
-    sections = re.split(r"(?m)^\$ ", (DATA / "ros_cli" / "answers.txt").read_text())[1:]
+    sections = re.split(r"(?m)^\$ ", (DATA / "ros_cli" / "answers.txt").read_text(encoding="utf-8"))[1:]
     return {name: text for name, _, text in (each.partition("\n") for each in sections)}
 
 
@@ -35,7 +35,7 @@ def mission(tmp_path: Path) -> str:
     for name in ("frames", "ear"):
         shutil.copy(DATA / "ros_cli" / f"{name}.py", tmp_path)
     lines = "".join(f"CFE_APP, {each}, __main__, {each.upper()}, 100, 16384, 0x0, 0;\n" for each in ("frames", "ear"))
-    (tmp_path / "startup.scr").write_text(f"{lines}!\n")
+    (tmp_path / "startup.scr").write_text(f"{lines}!\n", encoding="utf-8")
     return str(tmp_path)
 
 
@@ -76,7 +76,7 @@ def test_prints_what_ros_prints(line: str, mission: str, monkeypatch: pytest.Mon
 def test_info_of_a_bag_is_as_it_was_recorded(capsys: Capture) -> None:
     assert main(["rosbag", "info", BAG]) == 0
     shown = capsys.readouterr().out.splitlines()
-    expected = (DATA / "bags" / "golden.bag.info.txt").read_text().splitlines()
+    expected = (DATA / "bags" / "golden.bag.info.txt").read_text(encoding="utf-8").splitlines()
     assert shown[1:] == expected[1:]  # the first is the path
 
 
@@ -130,8 +130,8 @@ def test_the_status_is_that_of_the_tool(capsys: Capture) -> None:
 def test_packages_in_the_folder_are_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
     package = tmp_path / "my_msgs"
     (package / "srv").mkdir(parents=True)
-    (package / "package.xml").write_text("<package><name>my_msgs</name></package>")
-    (package / "srv" / "Ask.srv").write_text("# what\nint32 a\n---\nbool b\n")
+    (package / "package.xml").write_text("<package><name>my_msgs</name></package>", encoding="utf-8")
+    (package / "srv" / "Ask.srv").write_text("# what\nint32 a\n---\nbool b\n", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     assert main(["rossrv", "show", "-r", "my_msgs/Ask"]) == 0
     assert capsys.readouterr().out == "# what\nint32 a\n---\nbool b\n\n"
@@ -154,10 +154,10 @@ def test_kill_in_the_middle_of_a_flight(mission: str, capsys: Capture) -> None:
 
 
 def test_a_run_that_is_over_before_it_is_asked(mission: str, capsys: Capture) -> None:
-    Path(mission, "script.txt").write_text("send CFE_ES_NOOP\n")
+    Path(mission, "script.txt").write_text("send CFE_ES_NOOP\n", encoding="utf-8")
     assert main(["rosnode", "list", mission, "--script", str(Path(mission, "script.txt"))]) == 0
     assert capsys.readouterr().out == "/ear\n/frames\n"
-    Path(mission, "frames.py").write_text("import rospy\nrospy.init_node('frames')\nrospy.sleep(1)\n")
+    Path(mission, "frames.py").write_text("import rospy\nrospy.init_node('frames')\nrospy.sleep(1)\n", encoding="utf-8")
     node = str(Path(mission, "frames.py"))
     assert main(["rosnode", "list", node, "--at", "5"]) == 1
     assert "the run was over before 5 s, when rosnode was to list; see --at" in capsys.readouterr().err
@@ -187,7 +187,7 @@ def test_frames_as_a_tree_and_for_graphviz(mission: str, tmp_path: Path, capsys:
     expected = "world\n  base  10.769 Hz for 1.3 s, by /frames\n    camera  once, by /frames\n"
     assert capsys.readouterr().out == expected
     assert main(["tf", "frames", mission, "--for", "2", "--dot", str(tmp_path / "frames.gv")]) == 0
-    drawn = (tmp_path / "frames.gv").read_text()
+    drawn = (tmp_path / "frames.gv").read_text(encoding="utf-8")
     assert drawn.startswith('digraph G {\n"base" -> "camera"[label="Broadcaster: /frames\\nAverage rate: 10000.000 Hz')
     assert drawn.endswith('}->"world";\n}\n')
 
@@ -210,7 +210,7 @@ def test_no_transform(capsys: Capture) -> None:
 
 def test_a_tool_that_dies_ends_the_run(mission: str, tmp_path: Path, capsys: Capture) -> None:
     plan = tmp_path / "plan.yaml"
-    plan.write_text("faults:\n  - crash: GROUND_NODE\n    at: 1.0\n")
+    plan.write_text("faults:\n  - crash: GROUND_NODE\n    at: 1.0\n", encoding="utf-8")
     assert main(["rosnode", "list", mission, "--for", "2", "--faults", str(plan)]) == 1
     assert "the run was over before 2 s, when rosnode was to list" in capsys.readouterr().err
 

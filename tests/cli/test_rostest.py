@@ -51,7 +51,7 @@ def test_the_time_limit_is_virtual(write_launch: Launch, capsys: pytest.CaptureF
 def test_a_test_without_results_says_what_it_printed(
     demo: Path, write_launch: Launch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (demo / "scripts/broken.py").write_text("import no_such_module\n")
+    (demo / "scripts/broken.py").write_text("import no_such_module\n", encoding="utf-8")
     assert main(["rostest", write_launch('<test pkg="demo" type="broken.py" test-name="b"/>')]) == 1
     shown = capsys.readouterr().out
     assert "the test node wrote no results, exit status 1" in shown
@@ -70,7 +70,8 @@ def test_a_test_is_retried_with_another_seed(demo: Path, write_launch: Launch) -
         "class TestFlaky(unittest.TestCase):\n"
         "    def test_third_time(self):\n"
         "        self.assertGreater(random.random(), 0.5)\n"
-        "rostest.rosrun('demo', 'flaky', TestFlaky, sys.argv)\n"
+        "rostest.rosrun('demo', 'flaky', TestFlaky, sys.argv)\n",
+        encoding="utf-8",
     )
     test = '<test pkg="demo" type="flaky.py" test-name="f" retry="{}"/>'
     found = [main(["rostest", "--seed", "2", write_launch(test.format(tries))]) for tries in range(4)]

@@ -71,7 +71,7 @@ def test_a_processor_reset(make_mission: Write, capsys: pytest.CaptureFixture[st
 def test_a_bad_line_of_the_startup_script(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
     folder = make_mission("Quiet")
     script = folder / "startup.scr"
-    script.write_text(script.read_text().replace("!", "CFE_APP, apps, Quiet;\n!"))
+    script.write_text(script.read_text(encoding="utf-8").replace("!", "CFE_APP, apps, Quiet;\n!"), encoding="utf-8")
     assert run(folder, "--quiet") == 1
     assert f"{script}:2: the entry has 3 of 8 fields" in capsys.readouterr().err
 
@@ -131,7 +131,7 @@ def test_an_app_that_raises_keyboard_interrupt_ends_the_run_like_ctrl_c(
     make_mission: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = make_mission("Quiet")
-    (folder / "apps.py").write_text("def Quiet(cfe):\n    raise KeyboardInterrupt\n")
+    (folder / "apps.py").write_text("def Quiet(cfe):\n    raise KeyboardInterrupt\n", encoding="utf-8")
     assert run(folder, "--quiet") == 130
     assert "ended by Ctrl-C" in capsys.readouterr().err
 
@@ -140,7 +140,7 @@ def test_a_board_on_which_the_core_cannot_boot(
     make_mission: Write, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     board = tmp_path / "small.yaml"
-    board.write_text(SMALL_BOARD)
+    board.write_text(SMALL_BOARD, encoding="utf-8")
     assert run(make_mission("Quiet"), "--board", str(board), "--quiet") == 2
     said = capsys.readouterr().err
     assert "cannot boot" in said
@@ -155,7 +155,7 @@ def test_too_short_to_boot(make_mission: Write, capsys: pytest.CaptureFixture[st
 def test_numbers_as_json(make_mission: Write, tmp_path: Path) -> None:
     file = tmp_path / "numbers.json"
     run(make_mission("Chatty", "Quiet"), "--quiet", "--json", str(file), "--seed", "7", "--board", "rx64m")
-    numbers = json.loads(file.read_text())
+    numbers = json.loads(file.read_text(encoding="utf-8"))
     assert numbers["virtual_s"] == pytest.approx(2, abs=0.001)
     assert numbers["speed"] == pytest.approx(numbers["virtual_s"] / numbers["wall_s"])
     assert (numbers["seed"], numbers["board"], numbers["tasks"]) == (7, "rx64m", task_kind(AUTO).name)
@@ -183,7 +183,7 @@ def test_names_and_reasons_in_the_report(make_mission: Write, capsys: pytest.Cap
 
 def test_a_rate_beyond_the_board_is_marked(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
     board = make_mission("Chatty") / "slow.yaml"
-    board.write_text("name: slow\nmax_publish_hz: 5\n")
+    board.write_text("name: slow\nmax_publish_hz: 5\n", encoding="utf-8")
     run(board.parent, "--quiet", "--board", str(board))
     shown = capsys.readouterr().out
     assert "! more than the 5 Hz that slow is made for" in shown
@@ -192,7 +192,7 @@ def test_a_rate_beyond_the_board_is_marked(make_mission: Write, capsys: pytest.C
 def test_the_trace_file(make_mission: Write, tmp_path: Path) -> None:
     file = tmp_path / "trace.txt"
     run(make_mission("Chatty"), "--quiet", "--trace", str(file))
-    lines = file.read_text().splitlines()
+    lines = file.read_text(encoding="utf-8").splitlines()
     assert any(line.endswith("CHATTY send 0x0890 sequence 1 length 20") for line in lines)
     assert any(line.endswith("CHATTY drop at CHATTY") for line in lines)
     assert any(" console " in line and "OPERATIONAL" in line for line in lines)
@@ -302,7 +302,7 @@ def test_ctrl_c_ends_a_run_with_its_report(make_mission: Write, options: tuple[s
 @pytest.mark.parametrize("tasks", [pytest.param("thread", marks=pytest.mark.slow), "greenlet"])
 def test_ctrl_c_ends_the_run_whatever_a_task_does(make_mission: Write, body: str, told: str, tasks: str) -> None:
     folder = make_mission("Quiet")
-    (folder / "apps.py").write_text(f"def Quiet(cfe):\n{body}")
+    (folder / "apps.py").write_text(f"def Quiet(cfe):\n{body}", encoding="utf-8")
     process = start("run", str(folder), "--for", "1000000", "--tasks", tasks)
     assert process.stdout is not None
     while "Loading file" not in process.stdout.readline():

@@ -20,7 +20,7 @@ def script(tmp_path: Path) -> Path:
 
 
 def run(folder: Path, script: Path, text: str, *options: str) -> int:
-    script.write_text(text)
+    script.write_text(text, encoding="utf-8")
     return main(["run", str(folder), "--script", str(script), "--quiet", *options])
 
 
@@ -75,7 +75,7 @@ def test_a_mistake_in_the_script_is_bad_usage(
 def test_verdicts_in_the_json_file(make_mission: Write, script: Path, tmp_path: Path) -> None:
     file = tmp_path / "numbers.json"
     assert run(make_mission("Quiet"), script, BAD, "--json", str(file)) == 1
-    numbers = json.loads(file.read_text())
+    numbers = json.loads(file.read_text(encoding="utf-8"))
     assert numbers["script"]["ok"] is False
     assert [(step["line"], step["ok"], step["at_s"]) for step in numbers["script"]["steps"]] == [
         (1, False, 1.0),

@@ -31,9 +31,9 @@ def Writer(cfe):
 def mission(tmp_path: Path) -> Path:
     folder = tmp_path / "mission"
     folder.mkdir()
-    (folder / "writer.py").write_text(WRITER)
-    (folder / "plan.txt").write_text("old")
-    (folder / "startup.scr").write_text("CFE_APP, writer, Writer, WRITER, 50, 8192, 0, 0;\n!\n")
+    (folder / "writer.py").write_text(WRITER, encoding="utf-8")
+    (folder / "plan.txt").write_text("old", encoding="utf-8")
+    (folder / "startup.scr").write_text("CFE_APP, writer, Writer, WRITER, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
     return folder
 
 
@@ -43,13 +43,13 @@ def test_what_the_mission_wrote_is_saved(mission: Path, tmp_path: Path, capsys: 
     saved = {str(path.relative_to(target)): path.read_bytes() for path in target.rglob("*") if path.is_file()}
     assert saved == {"ram/note.txt": b"hello", "ram/sub/deep.txt": b"", "cf/plan.txt": b"new"}
     assert f"saved to {target}: 3 files" in capsys.readouterr().out
-    assert (mission / "plan.txt").read_text() == "old"
+    assert (mission / "plan.txt").read_text(encoding="utf-8") == "old"
 
 
 def test_a_folder_that_cannot_be_made_is_an_error_before_the_run(
     mission: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / "file").write_text("")
+    (tmp_path / "file").write_text("", encoding="utf-8")
     assert main(["run", str(mission), "--save-files", str(tmp_path / "file" / "out")]) == 2
     out, err = capsys.readouterr()
     assert "--save-files: cannot be made" in err

@@ -68,11 +68,11 @@ def test_the_missions_own_types(tmp_path: Path, capsys: Capture) -> None:
         ("flight/mission.yaml", "nodes: {ROVER: {env: {ROS_PACKAGE_PATH: ../../elsewhere}}}\n"),
     ):
         (package / file).parent.mkdir(parents=True, exist_ok=True)
-        (package / file).write_text(text)
+        (package / file).write_text(text, encoding="utf-8")
     assert said(capsys, "call", str(package / "rover.launch"), "/drive", "speed: 4") == "twice: 8\n"
     (tmp_path / "other").mkdir()
-    (tmp_path / "other/startup.scr").write_text("!\n")
-    (tmp_path / "other/mission.yaml").write_text("launch: [../rover/rover.launch]\n")
+    (tmp_path / "other/startup.scr").write_text("!\n", encoding="utf-8")
+    (tmp_path / "other/mission.yaml").write_text("launch: [../rover/rover.launch]\n", encoding="utf-8")
     assert said(capsys, "call", str(tmp_path / "other"), "/drive", "speed: 4") == "twice: 8\n"
     (package / "node.py").rename(package / "flight/node.py")
     (package / "srv").rename(tmp_path / "srv")

@@ -49,13 +49,13 @@ APP = 'def main(cfe):\n    cfe.es.write_to_sys_log("ready")\n    while True:\n  
 
 def node(folder: Path, body: str) -> str:
     file = folder / "probe.py"
-    file.write_text(BEGIN + body)
+    file.write_text(BEGIN + body, encoding="utf-8")
     return str(file)
 
 
 def app(folder: Path) -> str:
-    (folder / "startup.scr").write_text("CFE_APP, app, main, SPIN, 50, 16384, 0x0, 0;\n!\n")
-    (folder / "app.py").write_text(APP)
+    (folder / "startup.scr").write_text("CFE_APP, app, main, SPIN, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
+    (folder / "app.py").write_text(APP, encoding="utf-8")
     return str(folder)
 
 
@@ -117,7 +117,7 @@ def test_one_signal_ends_an_exploration(tmp_path: Path, how: signal.Signals) -> 
     words += ["--results", str(tmp_path / "results.jsonl")]
     process = subprocess.Popen([sys.executable, "-u", "-m", "cfepy", *words], stdout=subprocess.PIPE, text=True)
     results = tmp_path / "results.jsonl"
-    while not (results.exists() and results.read_text().count("stalled")):
+    while not (results.exists() and results.read_text(encoding="utf-8").count("stalled")):
         assert process.poll() is None
     process.send_signal(how)
     out, _ = process.communicate()

@@ -21,14 +21,14 @@ def test_a_sweep_writes_what_it_found(tmp_path: Path, capsys: pytest.CaptureFixt
     out = capsys.readouterr().out
     assert "/left/report_period" in out
     assert "rx64m, /left/report_period=1: clean up to 100 Hz; at 160 Hz /left_to_right came at 100.0 Hz" in out
-    rows = list(csv.DictReader(table.read_text().splitlines()))
+    rows = list(csv.DictReader(table.read_text(encoding="utf-8").splitlines()))
     assert [(each["rate_hz"], each["topic"], each["lost"], each["clean"]) for each in rows] == [
         ("100", "/left_to_right", "0", "yes"),
         ("100", "/right_to_left", "0", "yes"),
         ("160", "/left_to_right", "0", "no"),
         ("160", "/right_to_left", "0", "no"),
     ]
-    assert json.loads(numbers.read_text())["knees"][0]["clean_hz"] == 100
+    assert json.loads(numbers.read_text(encoding="utf-8"))["knees"][0]["clean_hz"] == 100
     assert picture.read_bytes().startswith(b"\x89PNG")
     again = tmp_path / "b.csv"
     assert (

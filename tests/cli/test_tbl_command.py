@@ -43,7 +43,7 @@ def Main(cfe):
 def test_show_then_build_gives_the_same_bytes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["tbl", "show", "--yaml", "-", str(SAMPLE)]) == 0
     source = tmp_path / "sample.yaml"
-    source.write_text(capsys.readouterr().out)
+    source.write_text(capsys.readouterr().out, encoding="utf-8")
     assert main(["tbl", "build", str(source)]) == 0
     assert (tmp_path / "sample.tbl").read_bytes() == SAMPLE.read_bytes()
     assert capsys.readouterr().out.endswith("sample.tbl: SAMPLE_APP.ExampleTable, 4 bytes, CRC 0x9C00\n")
@@ -70,7 +70,7 @@ def test_show_as_json(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_layout_in_a_file_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     source, target = tmp_path / "gains.yaml", tmp_path / "out.tbl"
-    source.write_text(OWN)
+    source.write_text(OWN, encoding="utf-8")
     assert main(["tbl", "build", str(source), "-o", str(target)]) == 0
     image = read(target.read_bytes())
     assert (image.name, image.spacecraft_id, image.description) == ("MINE.Gains", 42, "Gains of mine")
@@ -78,7 +78,7 @@ def test_layout_in_a_file_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixt
     capsys.readouterr()
     assert main(["tbl", "show", str(target), "--yaml", "-", "--layout", str(source)]) == 0
     again = tmp_path / "again.yaml"
-    again.write_text(capsys.readouterr().out)
+    again.write_text(capsys.readouterr().out, encoding="utf-8")
     assert main(["tbl", "build", str(again), "-o", str(tmp_path / "again.tbl")]) == 0
     assert (tmp_path / "again.tbl").read_bytes() == target.read_bytes()
     assert main(["tbl", "show", str(target), "--layout", str(source)]) == 0
@@ -86,10 +86,10 @@ def test_layout_in_a_file_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 def test_tables_of_a_missions_own_apps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "limits.py").write_text(APP)
-    (tmp_path / "startup.scr").write_text("CFE_APP, limits, Main, LIMITS, 50, 8192, 0, 0;\n!\n")
+    (tmp_path / "limits.py").write_text(APP, encoding="utf-8")
+    (tmp_path / "startup.scr").write_text("CFE_APP, limits, Main, LIMITS, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
     source = tmp_path / "points.yaml"
-    source.write_text("table: LIMITS.Points\nrows:\n- {Low: -1, High: 1}\n")
+    source.write_text("table: LIMITS.Points\nrows:\n- {Low: -1, High: 1}\n", encoding="utf-8")
     assert main(["tbl", "build", str(source)]) == 2
     assert main(["tbl", "build", str(source), "--mission", str(tmp_path)]) == 0
     assert read((tmp_path / "points.tbl").read_bytes()).data == bytes.fromhex("ffff0100") + bytes(12)
@@ -97,8 +97,8 @@ def test_tables_of_a_missions_own_apps(tmp_path: Path, capsys: pytest.CaptureFix
 
 
 def test_an_app_that_cannot_be_read_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "limits.py").write_text(APP + "\nraise ValueError('boom')\n")
-    (tmp_path / "startup.scr").write_text("CFE_APP, limits, Main, LIMITS, 50, 8192, 0, 0;\n!\n")
+    (tmp_path / "limits.py").write_text(APP + "\nraise ValueError('boom')\n", encoding="utf-8")
+    (tmp_path / "startup.scr").write_text("CFE_APP, limits, Main, LIMITS, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
     assert main(["tbl", "show", str(SAMPLE), "--mission", str(tmp_path)]) == 0
     assert "limits.py could not be read: ValueError: boom" in capsys.readouterr().err
 
@@ -124,7 +124,7 @@ def test_diff_of_unknown_layouts_shows_bytes(tmp_path: Path, capsys: pytest.Capt
 def test_diff_takes_yaml_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main(["tbl", "show", "--yaml", "-", str(SAMPLE)])
     source = tmp_path / "sample.yaml"
-    source.write_text(capsys.readouterr().out)
+    source.write_text(capsys.readouterr().out, encoding="utf-8")
     assert main(["tbl", "diff", str(SAMPLE), str(source)]) == 0
 
 
@@ -201,7 +201,7 @@ def test_verify_reports_every_fault(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 def test_mark(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     source, target = tmp_path / "gains.yaml", tmp_path / "gains.tbl"
-    source.write_text(OWN)
+    source.write_text(OWN, encoding="utf-8")
     assert main(["tbl", "build", str(source)]) == 0
     data = target.read_bytes()
     assert data == with_mark(data)
@@ -211,7 +211,7 @@ def test_mark(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_no_mark_when_the_yaml_says_so(tmp_path: Path) -> None:
     source, target = tmp_path / "gains.yaml", tmp_path / "gains.tbl"
-    source.write_text(OWN + "mark: false\n")
+    source.write_text(OWN + "mark: false\n", encoding="utf-8")
     assert main(["tbl", "build", str(source)]) == 0
     assert target.read_bytes()[64:68] == bytes(4)
 
@@ -233,25 +233,25 @@ def test_errors(arguments: list[str], words: str, capsys: pytest.CaptureFixture[
 
 def test_output_that_cannot_be_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     source = tmp_path / "gains.yaml"
-    source.write_text(OWN)
+    source.write_text(OWN, encoding="utf-8")
     assert main(["tbl", "build", str(source), "-o", str(tmp_path / "no" / "x.tbl")]) == 2
     assert "cannot be written" in capsys.readouterr().err
 
 
 def test_layout_file_without_layout(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     source = tmp_path / "rows.yaml"
-    source.write_text("table: A.B\nrows: []\n")
+    source.write_text("table: A.B\nrows: []\n", encoding="utf-8")
     assert main(["tbl", "show", str(SAMPLE), "--layout", str(source)]) == 2
     assert f"{source}:1: gives no layout" in capsys.readouterr().err
 
 
 def test_the_yaml_of_the_documentation_is_good(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    text = (DATA.parents[1] / "docs/tables_and_logs.md").read_text()
+    text = (DATA.parents[1] / "docs/tables_and_logs.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
     assert len(blocks) == 2
     for number, block in enumerate(blocks):
         source = tmp_path / f"{number}.yaml"
-        source.write_text(block)
+        source.write_text(block, encoding="utf-8")
         assert main(["tbl", "build", str(source)]) == 0, capsys.readouterr().err
     hk = read((tmp_path / "0.tbl").read_bytes())
     assert (hk.name, len(hk.data), hk.data[9 * 16 : 9 * 16 + 2]) == ("HK.CopyTable", 2048, b"\x83\x08")

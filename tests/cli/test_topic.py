@@ -66,9 +66,11 @@ def test_a_launch_file(tmp_path: Path, capsys: Capture) -> None:
     package = tmp_path / "robot"
     package.mkdir()
     robot(package)
-    (package / "package.xml").write_text("<package><name>robot</name></package>")
+    (package / "package.xml").write_text("<package><name>robot</name></package>", encoding="utf-8")
     launch = package / "robot.launch"
-    launch.write_text('<launch><group ns="one"><node pkg="robot" type="robot.py" name="r"/></group></launch>')
+    launch.write_text(
+        '<launch><group ns="one"><node pkg="robot" type="robot.py" name="r"/></group></launch>', encoding="utf-8"
+    )
     assert said(capsys, "echo", str(launch), "/one/said", "-n", "1") == 'data: "m0"\n---\n'
     words = ("pub", str(launch), "/one/orders", "std_msgs/String", "go", "--at", "1", "--for", "2")
     assert "got go\npublished 1 message on /one/orders\n" in said(capsys, *words)
@@ -121,7 +123,7 @@ def test_numbers(tmp_path: Path, capsys: Capture, bag: str) -> None:
 def test_a_script_flies_meanwhile(tmp_path: Path, capsys: Capture) -> None:
     mission = robot(tmp_path)
     script = tmp_path / "end.txt"
-    script.write_text("at 2 send CFE_ES_STOP_APP Application=ROBOT\n")
+    script.write_text("at 2 send CFE_ES_STOP_APP Application=ROBOT\n", encoding="utf-8")
     words = ("hz", str(mission), "/said", "--json", "-", "--for", "5")
     alone = json.loads(said(capsys, *words))["window"]
     assert json.loads(said(capsys, *words, "--script", str(script)))["window"] < alone - 20
@@ -157,10 +159,13 @@ def test_a_bag_is_played_into_a_mission(tmp_path: Path, capsys: Capture, bag: st
     (folder / "hears.py").write_text(
         "import rospy\nfrom std_msgs.msg import String\nrospy.init_node('hears')\n"
         "rospy.Subscriber('/said', String, lambda m: print(m.data, round(rospy.get_time() - 316533800, 1)))\n"
-        "rospy.spin()\n"
+        "rospy.spin()\n",
+        encoding="utf-8",
     )
-    (folder / "startup.scr").write_text("CFE_APP, hears.py, __main__, HEARS, 100, 16384, 0x0, 0;\n!\n")
-    (folder / "mission.yaml").write_text(f"params: {{use_sim_time: {str(has_sim_time).lower()}}}\n")
+    (folder / "startup.scr").write_text(
+        "CFE_APP, hears.py, __main__, HEARS, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8"
+    )
+    (folder / "mission.yaml").write_text(f"params: {{use_sim_time: {str(has_sim_time).lower()}}}\n", encoding="utf-8")
     assert main(["run", str(folder), "--for", "2", "--play", bag]) == 0
     lines = [line for line in capsys.readouterr().out.split("\n") if line.startswith("[hears]")]
     assert lines[:2] == (["[hears] m0 0.6", "[hears] m1 0.7"] if has_sim_time else ["[hears] m0 0.8", "[hears] m1 0.9"])

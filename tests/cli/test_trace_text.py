@@ -26,8 +26,8 @@ TICKS = 10_000_000  # in a second: OS_time_t counts 100 ns
 
 @pytest.fixture
 def mission(tmp_path: Path) -> Path:
-    (tmp_path / "app.py").write_text(APP)
-    (tmp_path / "startup.scr").write_text("CFE_APP, app, Main, APP, 90, 16384, 0, 0;\n!\n")
+    (tmp_path / "app.py").write_text(APP, encoding="utf-8")
+    (tmp_path / "startup.scr").write_text("CFE_APP, app, Main, APP, 90, 16384, 0, 0;\n!\n", encoding="utf-8")
     return tmp_path
 
 
@@ -47,7 +47,7 @@ def test_a_line_has_the_time_at_which_it_was_made(
     capsys.readouterr()
     assert main(["trace", *common]) == 0
     told = times(capsys.readouterr().out)
-    assert told == times(file.read_text())
+    assert told == times(file.read_text(encoding="utf-8"))
     assert len(told) == 3
     assert len({time for time, _ in told}) == 3
     assert all(time == pytest.approx(known, abs=2e-5) for time, known in told)
@@ -59,7 +59,7 @@ def test_a_replay_that_parts_tells_the_times_at_which_records_were_made(
     monkeypatch.setattr(replay, "MOST_LINES", 10_000)
     journal = str(tmp_path / "a.cfepy")
     assert main(["run", str(mission), "--board", "rx64m", "--for", "1", "--quiet", "--record", journal]) == 0
-    (mission / "app.py").write_text(APP.replace("range(3)", "range(4)"))
+    (mission / "app.py").write_text(APP.replace("range(3)", "range(4)"), encoding="utf-8")
     assert main(["replay", journal, "--from-disk", "--quiet"]) == 1
     told = times(re.sub("^  ", "", capsys.readouterr().err, flags=re.MULTILINE))
     assert len({time for time, _ in told}) == 4

@@ -137,7 +137,7 @@ def test_a_journal_of_a_run_with_rosbridge_is_replayed_without_clients(
 
 def test_what_keeps_a_mission_from_taking_off_is_told(mission: str, capsys: pytest.CaptureFixture[str]) -> None:
     script = f"{mission}/script.txt"
-    Path(script).write_text("nonsense\n")
+    Path(script).write_text("nonsense\n", encoding="utf-8")
     assert main(["run", mission, "--script", script, "--foxglove", "0"]) == 2
     assert "script.txt:1" in capsys.readouterr().err
 

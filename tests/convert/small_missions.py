@@ -29,12 +29,12 @@ def write_package(folder: Path, sources: Mapping[str, str]) -> Path:
     """
     package = folder / PACKAGE
     package.mkdir()
-    (package / "package.xml").write_text(MANIFEST)
+    (package / "package.xml").write_text(MANIFEST, encoding="utf-8")
     programs = [name.removesuffix(".cpp") for name in sources if name.endswith(".cpp")]
     made = "".join(f"add_executable({each} {each}.cpp)\n" for each in programs)
-    (package / "CMakeLists.txt").write_text(f"project({PACKAGE})\n{made}")
+    (package / "CMakeLists.txt").write_text(f"project({PACKAGE})\n{made}", encoding="utf-8")
     for name, text in sources.items():
-        (package / name).write_text(text)
+        (package / name).write_text(text, encoding="utf-8")
         (package / name).chmod(0o755)
     return package
 
@@ -49,10 +49,10 @@ def small_mission(folder: Path, sources: Mapping[str, str], launch: str, profile
         profile: of the nodes in C++.
     """
     write_package(folder, sources)
-    (folder / "startup.scr").write_text("!\n")
-    (folder / "all.launch").write_text(f"<launch>{launch}</launch>\n")
+    (folder / "startup.scr").write_text("!\n", encoding="utf-8")
+    (folder / "all.launch").write_text(f"<launch>{launch}</launch>\n", encoding="utf-8")
     cpp = f"  profile: {profile}\n  arena_bytes: {ARENA_BYTES}\n"
-    (folder / "mission.yaml").write_text(f"launch: [all.launch]\ncpp_nodes:\n{cpp}")
+    (folder / "mission.yaml").write_text(f"launch: [all.launch]\ncpp_nodes:\n{cpp}", encoding="utf-8")
     with patch.dict(os.environ, {"ROS_PACKAGE_PATH": str(folder)}):
         spec = read_mission(str(folder), build=build_for_flight)
     assert not spec.notes, spec.notes

@@ -58,11 +58,11 @@ def launch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     package = ping_package(tmp_path)
     (package / "srv").mkdir()
-    (package / "srv/Count.srv").write_text("int32 first\nint32 last\n---\nint32 sum\n")
-    (package / "src/sender.cpp").write_text(SERVER)
-    (package / "scripts/asker.py").write_text(ASKER)
+    (package / "srv/Count.srv").write_text("int32 first\nint32 last\n---\nint32 sum\n", encoding="utf-8")
+    (package / "src/sender.cpp").write_text(SERVER, encoding="utf-8")
+    (package / "scripts/asker.py").write_text(ASKER, encoding="utf-8")
     (package / "scripts/asker.py").chmod(0o755)
-    (package / "launch/asked.launch").write_text(LAUNCH)
+    (package / "launch/asked.launch").write_text(LAUNCH, encoding="utf-8")
     return str(package / "launch/asked.launch")
 
 

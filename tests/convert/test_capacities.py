@@ -14,8 +14,8 @@ from rospy_shim.msgs import shipped
 
 
 def mission(folder: Path, capacities: str) -> Path:
-    (folder / "startup.scr").write_text("!\n")
-    (folder / "mission.yaml").write_text(f"cpp_nodes:\n  capacities:\n    {capacities}\n")
+    (folder / "startup.scr").write_text("!\n", encoding="utf-8")
+    (folder / "mission.yaml").write_text(f"cpp_nodes:\n  capacities:\n    {capacities}\n", encoding="utf-8")
     return folder
 
 

@@ -18,8 +18,8 @@ MAIN = "int main(int argc, char **argv) { return 0; }\n"
 def look(folder: Path, text: str, profile: Profile = Profile.STRICT, **others: str) -> CheckReport:
     """A report on one source; others are headers beside it."""
     for name, content in others.items():
-        (folder / f"{name}.h").write_text(content)
-    (folder / "node.cpp").write_text(text)
+        (folder / f"{name}.h").write_text(content, encoding="utf-8")
+    (folder / "node.cpp").write_text(text, encoding="utf-8")
     report = CheckReport("node", profile)
     ProgramSources([folder / "node.cpp"], [], shipped()).look(report)
     return report
@@ -149,7 +149,7 @@ def test_code_of_a_library_that_a_node_cannot_call_does_not_refuse_it(
 ) -> None:
     sources = {"node.cpp": node, "worker.cpp": worker, "worker.h": WORKER_H}
     for name, text in sources.items():
-        (tmp_path / name).write_text(text)
+        (tmp_path / name).write_text(text, encoding="utf-8")
     report = CheckReport("node", Profile.STRICT)
     ProgramSources([tmp_path / "node.cpp", tmp_path / "worker.cpp"], [], shipped()).look(report)
     assert {each.rule for each in report.findings} & {"thread", "unused-code"} == {rule}

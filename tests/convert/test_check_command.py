@@ -26,14 +26,14 @@ pytestmark = pytest.mark.slow
 
 
 def checked(folder: Path, text: str, *more: str) -> int:
-    (folder / "ear.cpp").write_text(text)
+    (folder / "ear.cpp").write_text(text, encoding="utf-8")
     return main(["convert", "check", str(folder / "ear.cpp"), *more])
 
 
 def rules_of(folder: Path, text: str, profile: str = "host") -> set[str]:
     """The rules of the errors."""
     status = checked(folder, text, "--profile", profile, "--json", str(folder / "found.json"))
-    (node,) = json.loads((folder / "found.json").read_text())["nodes"]
+    (node,) = json.loads((folder / "found.json").read_text(encoding="utf-8"))["nodes"]
     assert node["refused"] == (status == 1)
     return {each["rule"] for each in node["found"] if each["level"] == "error"}
 
@@ -70,13 +70,13 @@ def test_what_the_compiler_refuses_is_never_clean(tmp_path: Path, old: str, new:
 
 def test_what_both_passes_see_is_told_once(tmp_path: Path) -> None:
     checked(tmp_path, NODE.replace("ros::spin();", "throw 1;"), "--profile", "pool", "--json", str(tmp_path / "f.json"))
-    (node,) = json.loads((tmp_path / "f.json").read_text())["nodes"]
+    (node,) = json.loads((tmp_path / "f.json").read_text(encoding="utf-8"))["nodes"]
     assert [each["rule"] for each in node["found"]].count("throw") == 1
 
 
 def test_the_first_of_many_errors_are_told(tmp_path: Path) -> None:
     checked(tmp_path, NODE + "".join(f"int a{at} = b{at};\n" for at in range(60)), "--json", str(tmp_path / "f.json"))
-    (node,) = json.loads((tmp_path / "f.json").read_text())["nodes"]
+    (node,) = json.loads((tmp_path / "f.json").read_text(encoding="utf-8"))["nodes"]
     told = [each["text"] for each in node["found"] if each["rule"] == "compile-error"]
     assert len(told) == 50
     assert any(each.startswith("'b0' was not declared") for each in told)
@@ -94,9 +94,9 @@ def test_strict_needs_capacities(tmp_path: Path) -> None:
 
 def test_a_mistake_in_a_message_is_told_where_it_is_included(tmp_path: Path) -> None:
     package = ping_package(tmp_path)
-    (package / "msg/Beat.msg").write_text("int32 number\nnone_msgs/Thing what\n")
+    (package / "msg/Beat.msg").write_text("int32 number\nnone_msgs/Thing what\n", encoding="utf-8")
     assert main(["convert", "check", str(package), "--json", str(tmp_path / "found.json")]) == 1
-    nodes = json.loads((tmp_path / "found.json").read_text())["nodes"]
+    nodes = json.loads((tmp_path / "found.json").read_text(encoding="utf-8"))["nodes"]
     assert "message-definition" in {each["rule"] for node in nodes for each in node["found"]}
 
 
@@ -121,7 +121,7 @@ def test_sarif_is_valid(tmp_path: Path) -> None:
     """The members that SARIF 2.1.0 requires, with the types and values that its schema allows."""
     file = tmp_path / "found.sarif"
     assert checked(tmp_path, NODE.replace("ros::spin();", "exit(3); none();"), "--sarif", str(file)) == 1
-    log = json.loads(file.read_text())
+    log = json.loads(file.read_text(encoding="utf-8"))
     assert log["version"] == "2.1.0"
     assert log["$schema"].endswith("sarif-schema-2.1.0.json")
     (run,) = log["runs"]

@@ -29,7 +29,7 @@ exit(gen.generate("demo", "demo", "Tune"))
 @pytest.fixture
 def program(tmp_path: Path) -> Program:
     (tmp_path / "cfg").mkdir()
-    (tmp_path / "cfg/Tune.cfg").write_text(SCRIPT)
+    (tmp_path / "cfg/Tune.cfg").write_text(SCRIPT, encoding="utf-8")
     return Program(CppPackage("demo", tmp_path), "node")
 
 
@@ -51,10 +51,10 @@ def test_a_script_becomes_a_class(program: Program) -> None:
 
 def test_a_script_that_fails_is_told(program: Program) -> None:
     script = program.package.folder / "cfg/Tune.cfg"
-    script.write_text("raise ValueError('no such gain')")
+    script.write_text("raise ValueError('no such gain')", encoding="utf-8")
     with pytest.raises(UsageError, match=r"cfg/Tune.cfg: failed: ValueError: no such gain"):
         configuration_headers(["demo/TuneConfig.h"], program)
-    script.write_text("from dynamic_reconfigure.parameter_generator_catkin import *\n")
+    script.write_text("from dynamic_reconfigure.parameter_generator_catkin import *\n", encoding="utf-8")
     with pytest.raises(UsageError, match="it did not call generate"):
         configuration_headers(["demo/TuneConfig.h"], program)
 

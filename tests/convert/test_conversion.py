@@ -31,23 +31,25 @@ def package(tmp_path: Path) -> Path:
 def test_a_launch_file_becomes_applications(package: Path, tmp_path: Path) -> None:
     out = tmp_path / "made"
     assert convert(package, out, "hz:=20") == 0
-    said = json.loads((out / "report.json").read_text())
+    said = json.loads((out / "report.json").read_text(encoding="utf-8"))
     left, ear = said["nodes"]
     assert (left["node"], left["app"], left["entry"]) == ("/arm/left", "ARM_LEFT", "ARM_LEFT_AppMain")
     assert left["sources"] == ["ping/src/sender.cpp", "ping/src/words.cpp"]
     assert left["topics"] == ear["topics"] == ["/pulse"]
     assert left["message_types"] == ["ping/Beat"]
-    lines = (out / "startup_lines.scr").read_text().splitlines()
+    lines = (out / "startup_lines.scr").read_text(encoding="utf-8").splitlines()
     assert lines[0] == "CFE_APP, arm_left, ARM_LEFT_AppMain, ARM_LEFT, 60, 65536, 0x0, 0;"
-    entry = (out / "arm_left/fsw/src/arm_left_entry.cpp").read_text()
+    entry = (out / "arm_left/fsw/src/arm_left_entry.cpp").read_text(encoding="utf-8")
     for text in ('{"/arm/beat", "/pulse"}', '{"/arm/left/hz", "20"}', '{"/prefix", "plain"}', '    "!",'):
         assert text in entry
-    assert '"/arm/left/hz"' not in (out / "arm_ear/fsw/src/arm_ear_entry.cpp").read_text()
-    cmake = (out / "arm_left/CMakeLists.txt").read_text()
+    assert '"/arm/left/hz"' not in (out / "arm_ear/fsw/src/arm_ear_entry.cpp").read_text(encoding="utf-8")
+    cmake = (out / "arm_left/CMakeLists.txt").read_text(encoding="utf-8")
     assert 'target_compile_definitions(arm_left PRIVATE ROS_PACKAGE_NAME="ping" GREETING="beat")' in cmake
     assert "../packages/ping/include" in cmake
-    assert "-Wl,--version-script=${ROSCFE_DIR}/exports.map" in (out / "roscfe/roscfe.cmake").read_text()
-    assert (out / "roscfe/exports.map").read_text() == "{ global: *_AppMain; RN_*_Main; roscfe_node; local: *; };\n"
+    assert "-Wl,--version-script=${ROSCFE_DIR}/exports.map" in (out / "roscfe/roscfe.cmake").read_text(encoding="utf-8")
+    assert (out / "roscfe/exports.map").read_text(
+        encoding="utf-8"
+    ) == "{ global: *_AppMain; RN_*_Main; roscfe_node; local: *; };\n"
     assert (out / "packages/ping/include/ping/words.h").read_bytes() == (package / "include/ping/words.h").read_bytes()
     assert (out / "roscfe/msg/ping/Beat.h").is_file()
     assert (len((out / "tables/arm_left_params.tbl").read_bytes()) - 64 - 52) % ROW_BYTES == 0
@@ -57,7 +59,7 @@ def test_the_mission_has_the_same_ids(package: Path, tmp_path: Path) -> None:
     out = tmp_path / "made"
     assert convert(package, out) == 0
     spec = read_mission(str(out / "mission"))
-    said = json.loads((out / "report.json").read_text())["topics"]
+    said = json.loads((out / "report.json").read_text(encoding="utf-8"))["topics"]
     assert {name: f"0x{id_:04X}" for name, id_ in spec.ros.locked_topics.items()} == said
 
 
@@ -69,10 +71,10 @@ def test_it_stays_the_same_and_keeps_what_its_user_changed(package: Path, tmp_pa
     assert convert(package, out) == 0
     assert {each: each.read_bytes() for each in out.rglob("*") if each.is_file()} == first
     changed = out / "arm_left/CMakeLists.txt"
-    changed.write_text("# mine\n")
+    changed.write_text("# mine\n", encoding="utf-8")
     with pytest.raises(UsageError, match=r"arm_left/CMakeLists\.txt changed by hand since"):
         run_or_raise(package, out)
-    assert changed.read_text() == "# mine\n"
+    assert changed.read_text(encoding="utf-8") == "# mine\n"
     assert convert(package, out, "--force") == 0
     assert changed.read_bytes() == first[changed]
 
@@ -82,14 +84,18 @@ def test_a_node_that_the_check_refuses_is_not_converted(
     package: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     source = package / "src/sender.cpp"
-    source.write_text(source.read_text() + "#include <thread>\nstatic void spare() { std::thread(spare).detach(); }\n")
+    source.write_text(
+        source.read_text(encoding="utf-8")
+        + "#include <thread>\nstatic void spare() { std::thread(spare).detach(); }\n",
+        encoding="utf-8",
+    )
     words = ["convert", str(package / "launch/ping.launch"), "-o", str(tmp_path / "made")]
     assert main(words) == 1
     err = capsys.readouterr().err
     assert "sender.cpp:" in err
     assert "[thread]" in err
     assert "/arm/left is not converted: 1 error, see above; --no-check converts it all the same" in err
-    said = json.loads((tmp_path / "made/report.json").read_text())
+    said = json.loads((tmp_path / "made/report.json").read_text(encoding="utf-8"))
     assert [each["node"] for each in said["nodes"]] == ["/arm/ear"]
     assert [each["node"] for each in said["refused"]] == ["/arm/left"]
     assert main([*words, "--no-check", "--force"]) == 0
@@ -106,10 +112,10 @@ def run_or_raise(package: Path, out: Path) -> None:
 def test_two_names_on_one_id_are_told(package: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     mission = tmp_path / "mission"
     mission.mkdir()
-    (mission / "startup.scr").write_text("!\n")
+    (mission / "startup.scr").write_text("!\n", encoding="utf-8")
     from rospy_shim.graph.msg_ids import msg_id_of
 
-    (mission / "mission.yaml").write_text(f"topics:\n  /other: {{msg_id: {msg_id_of('/pulse')}}}\n")
+    (mission / "mission.yaml").write_text(f"topics:\n  /other: {{msg_id: {msg_id_of('/pulse')}}}\n", encoding="utf-8")
     assert convert(package, tmp_path / "made", "--ids", str(mission)) == 2
     assert "cfepy mids --lock" in capsys.readouterr().err
 
@@ -141,7 +147,7 @@ def test_parts_of_the_library_that_nobody_uses_stay_out(package: Path, tmp_path:
     """Their messages have no capacity by themselves, so that no strict node could be built beside them."""
     out = tmp_path / "made"
     assert convert(package, out, "--profile", "strict") == 0
-    cmake = (out / "roscfe/roscfe.cmake").read_text()
+    cmake = (out / "roscfe/roscfe.cmake").read_text(encoding="utf-8")
     assert "/src/topics.cpp" in cmake
     assert "/src/tf/" not in cmake
     header = library_folder() / "include/tf2_ros/buffer.h"

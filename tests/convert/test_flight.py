@@ -45,8 +45,8 @@ def test_what_a_node_prints_by_itself_is_shown_with_its_name(package: Path, capf
   std::printf("half a line");
   return 0;
   ros::Rate rate(hz);"""
-    text = source.read_text().replace("  ros::Rate rate(hz);", own)
-    source.write_text("#include <cstdio>\n#include <iostream>\n" + text)
+    text = source.read_text(encoding="utf-8").replace("  ros::Rate rate(hz);", own)
+    source.write_text("#include <cstdio>\n#include <iostream>\n" + text, encoding="utf-8")
     assert main(["launch", "ping", "ping.launch", "--for", "8"]) == 0
     shown = capfd.readouterr().out.splitlines()
     said = ["to be continued", "hört", "one", "two", "half a line", "at its end"]
@@ -66,8 +66,8 @@ def test_the_clocks_of_cpp_are_the_mission_s(package: Path, capfd: pytest.Captur
   std::printf("after %.3f s, %.3f s\\n", one.count(), other.count());
   return 0;
   ros::Rate rate(hz);"""
-    text = source.read_text().replace("  ros::Rate rate(hz);", own)
-    source.write_text("#include <chrono>\n#include <cstdio>\n" + text)
+    text = source.read_text(encoding="utf-8").replace("  ros::Rate rate(hz);", own)
+    source.write_text("#include <chrono>\n#include <cstdio>\n" + text, encoding="utf-8")
     assert main(["node", "ping", "sender", "--for", "2"]) == 0
     assert capfd.readouterr().out == "after 0.500 s, 0.500 s\n"
 
@@ -82,7 +82,7 @@ def test_both_kinds_of_nodes_hear_each_other(package: Path, capfd: pytest.Captur
 @pytest.mark.parametrize("name", ["ping/Doubler", "Filters/Doubler"])
 def test_a_nodelet_is_an_application(package: Path, name: str, capfd: pytest.CaptureFixture[str]) -> None:
     for file in (package / "nodelets.xml", package / "launch/nodelet.launch"):
-        file.write_text(file.read_text().replace("ping/Doubler", name))
+        file.write_text(file.read_text(encoding="utf-8").replace("ping/Doubler", name), encoding="utf-8")
     assert main(["launch", "ping", "nodelet.launch", "--for", "1"]) == 0
     shown, told = capfd.readouterr()
     assert "doubling 3" in shown
@@ -118,7 +118,10 @@ def test_a_replay_needs_no_compiler(package: Path, tmp_path: Path, monkeypatch: 
 
 def test_what_the_compiler_refuses_is_left_out_with_its_words(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     source = package / "src/sender.cpp"
-    source.write_text(source.read_text().replace("ros::Rate rate(hz);", "ros::Rate rate(nothing_such);"))
+    source.write_text(
+        source.read_text(encoding="utf-8").replace("ros::Rate rate(hz);", "ros::Rate rate(nothing_such);"),
+        encoding="utf-8",
+    )
     assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 0
     told = capfd.readouterr().err
     assert "node /arm/left is left out: it cannot be built" in told
@@ -128,8 +131,8 @@ def test_what_the_compiler_refuses_is_left_out_with_its_words(package: Path, cap
 def test_a_topic_of_a_node_has_one_type(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     source = package / "src/sender.cpp"
     again = 'ros::Publisher other = nh.advertise<std_msgs::String>("beat", 4); ROS_INFO("is one: %d", bool(other));'
-    text = source.read_text().replace("ros::Rate rate(hz);", again + " ros::Rate rate(hz);")
-    source.write_text("#include <std_msgs/String.h>\n" + text)
+    text = source.read_text(encoding="utf-8").replace("ros::Rate rate(hz);", again + " ros::Rate rate(hz);")
+    source.write_text("#include <std_msgs/String.h>\n" + text, encoding="utf-8")
     assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 1  # an event of the type ERROR
     shown = capfd.readouterr().out
     assert "is one: 0" in shown
@@ -151,7 +154,8 @@ def test_symbols_that_nodes_would_share_are_found(tmp_path: Path) -> None:
     source = tmp_path / "unit.cpp"
     source.write_text(
         "template <class T> struct A { static int x; }; template <class T> int A<T>::x = 1;"
-        'extern "C" int* f() { return &A<int>::x; }\n'
+        'extern "C" int* f() { return &A<int>::x; }\n',
+        encoding="utf-8",
     )
     made = tmp_path / "unit.so"
     subprocess.run(["c++", "-shared", "-fPIC", str(source), "-o", str(made)], check=True)
@@ -164,14 +168,17 @@ def test_another_type_in_python_is_told_once(package: Path, capfd: pytest.Captur
     source = package / "src/sender.cpp"
     (package / "launch/both.launch").write_text(
         '<launch><node pkg="ping" type="sender" name="left"/>'
-        '<node pkg="ping" type="script.py" name="script"/></launch>\n'
+        '<node pkg="ping" type="script.py" name="script"/></launch>\n',
+        encoding="utf-8",
     )
     (package / "scripts/script.py").write_text(
         "#!/usr/bin/env python3\nimport rospy\nfrom ping.msg import Beat\nrospy.init_node('script')\n"
-        "rospy.Subscriber('/other', Beat, lambda message: rospy.loginfo('heard'))\nrospy.spin()\n"
+        "rospy.Subscriber('/other', Beat, lambda message: rospy.loginfo('heard'))\nrospy.spin()\n",
+        encoding="utf-8",
     )
     (package / "scripts/script.py").chmod(0o755)
-    source.write_text("""
+    source.write_text(
+        """
 #include <ros/ros.h>
 #include <std_msgs/String.h>
 
@@ -195,7 +202,9 @@ int main(int argc, char **argv)
   sub.shutdown();
   ROS_INFO("goes on: %u", pub.getNumSubscribers());
 }
-""")
+""",
+        encoding="utf-8",
+    )
     assert main(["run", str(package / "launch/both.launch"), "--for", "3"]) == 1  # events of the type ERROR
     shown = capfd.readouterr().out
     events = [line for line in shown.splitlines() if line.startswith("EVS") and "/LEFT 3: " in line]

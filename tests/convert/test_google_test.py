@@ -93,10 +93,10 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     folder = ping_package(tmp_path)
     cmake = folder / "CMakeLists.txt"
-    cmake.write_text(cmake.read_text() + CMAKE)
+    cmake.write_text(cmake.read_text(encoding="utf-8") + CMAKE, encoding="utf-8")
     (folder / "test").mkdir(exist_ok=True)
-    (folder / "test/words_test.cpp").write_text(TESTS)
-    (folder / "test/words.test").write_text(LAUNCH.format(limit=90))
+    (folder / "test/words_test.cpp").write_text(TESTS, encoding="utf-8")
+    (folder / "test/words.test").write_text(LAUNCH.format(limit=90), encoding="utf-8")
     return folder
 
 
@@ -122,22 +122,25 @@ def test_what_came_of_each_test_is_told(package: Path, tmp_path: Path, capfd: py
         " * ERRORS: 0",
         " * FAILURES: 2",
     ]
-    assert "haveWords" in results.read_text()
+    assert "haveWords" in results.read_text(encoding="utf-8")
 
 
 @needs_google_test
 def test_a_test_that_passes_and_one_that_takes_too_long(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     source = package / "test/words_test.cpp"
     source.write_text(
-        TESTS.replace('"two"', '"one"').replace("2.0, 0.5", "1.0, 0.5").replace("FAIL() <<", "SUCCEED() <<")
+        TESTS.replace('"two"', '"one"').replace("2.0, 0.5", "1.0, 0.5").replace("FAIL() <<", "SUCCEED() <<"),
+        encoding="utf-8",
     )
-    source.write_text(source.read_text().replace('throw std::runtime_error("it fell")', "SUCCEED()"))
+    source.write_text(
+        source.read_text(encoding="utf-8").replace('throw std::runtime_error("it fell")', "SUCCEED()"), encoding="utf-8"
+    )
     launch = package / "test/words.test"
     assert main(["rostest", str(launch), "--text"]) == 0
     shown = capfd.readouterr().out
     assert "RESULT: SUCCESS" in shown
     assert "[/words] [ RUN      ] Beats.areHeard" in shown
-    launch.write_text(LAUNCH.format(limit=30))
+    launch.write_text(LAUNCH.format(limit=30), encoding="utf-8")
     assert main(["rostest", str(launch)]) == 1
     shown = capfd.readouterr().out
     assert "did not end in its 30 virtual seconds" in shown

@@ -23,7 +23,7 @@ def library(**texts: str) -> Library:
 def header(folder: Path, name: str, of: Library, profile: Profile = Profile.HOST, **options: Capacities) -> str:
     """The header of demo/NAME."""
     write_headers([f"demo/{name}"], folder, profile, of, **options)
-    return (folder / "demo" / f"{name}.h").read_text()
+    return (folder / "demo" / f"{name}.h").read_text(encoding="utf-8")
 
 
 def test_a_type_comes_with_all_types_in_it(tmp_path: Path) -> None:
@@ -45,7 +45,7 @@ def test_an_action_has_its_seven_messages(tmp_path: Path) -> None:
 def test_files_that_are_right_are_left_alone(tmp_path: Path) -> None:
     made = write_headers(["nav_msgs/Odometry"], tmp_path, Profile.HOST, shipped())
     texts = [path.read_bytes() for path in made]
-    made[0].write_text("changed")
+    made[0].write_text("changed", encoding="utf-8")
     for path in made:
         path.chmod(0o444 if path != made[0] else 0o644)
     stamps = [path.stat().st_mtime_ns for path in made[1:]]
@@ -153,6 +153,6 @@ def test_the_definition_is_that_of_the_connection_header(tmp_path: Path) -> None
 )
 def test_which_headers_of_boost_need_the_real_one(tmp_path: Path, header: str, host: bool, pool: bool) -> None:
     source = tmp_path / "node.cpp"
-    source.write_text(f"#include <boost/{header}.hpp>\n")
+    source.write_text(f"#include <boost/{header}.hpp>\n", encoding="utf-8")
     found = collect([source], library_includes())
     assert [needs_real_boost(found, profile) for profile in (Profile.HOST, Profile.POOL)] == [host, pool]

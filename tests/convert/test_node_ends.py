@@ -47,14 +47,14 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     folder = tmp_path / "brief"
     folder.mkdir()
-    (folder / "package.xml").write_text(MANIFEST)
-    (folder / "CMakeLists.txt").write_text("project(brief)\nadd_executable(brief brief.cpp)\n")
-    (folder / "brief.cpp").write_text(NODE)
+    (folder / "package.xml").write_text(MANIFEST, encoding="utf-8")
+    (folder / "CMakeLists.txt").write_text("project(brief)\nadd_executable(brief brief.cpp)\n", encoding="utf-8")
+    (folder / "brief.cpp").write_text(NODE, encoding="utf-8")
     return folder
 
 
 def launched(package: Path, one: str, status: int = 0, seconds: float = 60.0) -> int:
-    (package / "brief.launch").write_text(LAUNCH.format(one=one, status=status, seconds=seconds))
+    (package / "brief.launch").write_text(LAUNCH.format(one=one, status=status, seconds=seconds), encoding="utf-8")
     return main(["launch", str(package / "brief.launch"), "--for", "10"])
 
 

@@ -78,10 +78,10 @@ def flown(
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     folder = tmp_path / "taker"
     folder.mkdir()
-    (folder / "package.xml").write_text(MANIFEST)
-    (folder / "CMakeLists.txt").write_text("project(taker)\nadd_executable(taker taker.cpp)\n")
-    (folder / "taker.cpp").write_text(NODE)
-    (folder / "all.launch").write_text(LAUNCH.format(negative=str(negative).lower()))
+    (folder / "package.xml").write_text(MANIFEST, encoding="utf-8")
+    (folder / "CMakeLists.txt").write_text("project(taker)\nadd_executable(taker taker.cpp)\n", encoding="utf-8")
+    (folder / "taker.cpp").write_text(NODE, encoding="utf-8")
+    (folder / "all.launch").write_text(LAUNCH.format(negative=str(negative).lower()), encoding="utf-8")
     status = main(["launch", str(folder / "all.launch"), "--for", "1", "--cpp-nodes", profile, "--console"])
     shown = capfd.readouterr().out
     said = [line.partition("]: ")[2] for line in shown.splitlines() if line.startswith("[/taker] [ INFO]")]

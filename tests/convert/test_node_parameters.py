@@ -54,9 +54,9 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     folder = tmp_path / "knobs"
     folder.mkdir()
-    (folder / "package.xml").write_text(MANIFEST)
-    (folder / "CMakeLists.txt").write_text("project(knobs)\nadd_executable(knob knob.cpp)\n")
-    (folder / "knob.cpp").write_text(NODE)
+    (folder / "package.xml").write_text(MANIFEST, encoding="utf-8")
+    (folder / "CMakeLists.txt").write_text("project(knobs)\nadd_executable(knob knob.cpp)\n", encoding="utf-8")
+    (folder / "knob.cpp").write_text(NODE, encoding="utf-8")
     return folder
 
 
@@ -70,9 +70,9 @@ def launched(package: Path, tmp_path: Path) -> Iterator[Mission]:
     """A mission with the node in a launch file, and a table file for it."""
     folder = tmp_path / "mission"
     folder.mkdir()
-    (folder / "startup.scr").write_text("!\n")
-    (folder / "mission.yaml").write_text("launch: [knob.launch]\n")
-    (folder / "knob.launch").write_text(LAUNCH.format("launch"))
+    (folder / "startup.scr").write_text("!\n", encoding="utf-8")
+    (folder / "mission.yaml").write_text("launch: [knob.launch]\n", encoding="utf-8")
+    (folder / "knob.launch").write_text(LAUNCH.format("launch"), encoding="utf-8")
     params = read_mission(str(folder)).ros.params
     (folder / "knob.tbl").write_bytes(table({**params, "knob": {"text": "ground"}}))
     with Mission(read_mission(str(folder), build=built_node), console=Console(quiet=True)) as mission:
@@ -120,8 +120,10 @@ def test_what_was_built_for_cfe_brings_its_parameters(package: Path, tmp_path: P
     folder = tmp_path / "mission"
     folder.mkdir()
     shutil.copy(built.library, folder / "knob.so")
-    (folder / "startup.scr").write_text(f"CFE_APP, knob, {built.entry}, KNOB, 60, 65536, 0x0, 0;\n!\n")
-    (folder / "mission.yaml").write_text(f"params: {there}\n")
+    (folder / "startup.scr").write_text(
+        f"CFE_APP, knob, {built.entry}, KNOB, 60, 65536, 0x0, 0;\n!\n", encoding="utf-8"
+    )
+    (folder / "mission.yaml").write_text(f"params: {there}\n", encoding="utf-8")
     with Mission(str(folder), console=Console(quiet=True)) as mission:
         mission.run_for(2)
         assert texts(mission) == (["own", "own"] if there == "{}" else ["mission", "mission"])

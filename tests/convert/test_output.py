@@ -54,7 +54,7 @@ def test_a_list_of_files_removes_nothing_elsewhere(name: str, tmp_path: Path) ->
     out.mkdir()
     (tmp_path / "victim").write_bytes(b"mine")
     (out / "link").symlink_to(tmp_path)
-    (out / MANIFEST).write_text(json.dumps({name: sha256(b"mine").hexdigest()}))
+    (out / MANIFEST).write_text(json.dumps({name: sha256(b"mine").hexdigest()}), encoding="utf-8")
     if name.startswith("link"):
         with pytest.raises(UsageError, match="through a symbolic link"):
             write_files(out, {"a": b"1"}, force=True)
@@ -65,9 +65,9 @@ def test_a_list_of_files_removes_nothing_elsewhere(name: str, tmp_path: Path) ->
 
 @pytest.mark.parametrize("text", ["[" * 100_000, "{", "[1]", '{"a": 1}', "\0"])
 def test_a_list_of_files_that_is_none_is_written_anew(text: str, tmp_path: Path) -> None:
-    (tmp_path / MANIFEST).write_text(text)
+    (tmp_path / MANIFEST).write_text(text, encoding="utf-8")
     write_files(tmp_path, {"a": b"1"})
-    assert list(json.loads((tmp_path / MANIFEST).read_text())) == ["a"]
+    assert list(json.loads((tmp_path / MANIFEST).read_text(encoding="utf-8"))) == ["a"]
 
 
 WORDS = (
@@ -92,7 +92,7 @@ def test_a_word_means_itself_to_cmake(word: str, tmp_path: Path) -> None:
         pytest.skip("there is no cmake")
     script = tmp_path / "x.cmake"
     script.write_text(f'function(show)\nlist(LENGTH ARGN n)\nmessage("${{n}}:${{ARGN}}")\nendfunction()\n'
-                      f"show({cmake_word(word, PACKAGE)})\n")  # fmt: skip
+                      f"show({cmake_word(word, PACKAGE)})\n", encoding="utf-8")  # fmt: skip
     done = subprocess.run([cmake, "-P", str(script)], capture_output=True, text=True, check=True)
     assert done.stderr.rstrip("\n") == f"1:{word}"
 

@@ -59,18 +59,18 @@ def mission(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder for a mission, beside the package ping, whose sender writes two texts."""
     package = ping_package(tmp_path)
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
-    (package / "scripts/talker.py").write_text(TALKER)
+    (package / "scripts/talker.py").write_text(TALKER, encoding="utf-8")
     (package / "scripts/talker.py").chmod(0o755)
-    (package / "src/sender.cpp").write_text(WRITER)
+    (package / "src/sender.cpp").write_text(WRITER, encoding="utf-8")
     folder = tmp_path / "mission"
     folder.mkdir()
-    (folder / "startup.scr").write_text("!\n")
+    (folder / "startup.scr").write_text("!\n", encoding="utf-8")
     return folder
 
 
 def fill(folder: Path, talker: str = "talker.py", arena: int = 65536, word: int = 20) -> str:
-    (folder / "all.launch").write_text(LAUNCH.format(talker=talker))
-    (folder / "mission.yaml").write_text(MISSION.format(arena=arena, word=word))
+    (folder / "all.launch").write_text(LAUNCH.format(talker=talker), encoding="utf-8")
+    (folder / "mission.yaml").write_text(MISSION.format(arena=arena, word=word), encoding="utf-8")
     return str(folder)
 
 
@@ -100,7 +100,7 @@ def test_a_small_arena_ends_the_node(mission: Path, capfd: pytest.CaptureFixture
 def test_a_mistake_in_the_mission_file_ends_the_run(mission: Path, capfd: pytest.CaptureFixture[str]) -> None:
     fill(mission)
     file = mission / "mission.yaml"
-    file.write_text(file.read_text().replace("word:", "wort:"))
+    file.write_text(file.read_text(encoding="utf-8").replace("word:", "wort:"), encoding="utf-8")
     assert main(["run", str(mission), "--for", "1"]) == 2
     error = "mission.yaml:6: cpp_nodes.capacities.ping/Beat.wort: is no field of ping/Beat; did you mean word?"
     assert error in capfd.readouterr().err
@@ -124,9 +124,9 @@ def test_the_folder_for_cfe_has_both(mission: Path, capfd: pytest.CaptureFixture
     made = mission.parent / "made"
     launch = str(mission / "all.launch")
     assert main(["convert", launch, "--cpp-nodes", fill(mission, "sender", word=12), "-o", str(made)]) == 0
-    assert "roscfe::FixedString<12>" in (made / "roscfe/msg/ping/Beat.h").read_text()
+    assert "roscfe::FixedString<12>" in (made / "roscfe/msg/ping/Beat.h").read_text(encoding="utf-8")
     assert "\n    target_compile_definitions(${ROSCFE_LIBRARY} PRIVATE ROSCFE_ARENA_BYTES=65536)\n" in (
-        (made / "roscfe/roscfe.cmake").read_text()
+        (made / "roscfe/roscfe.cmake").read_text(encoding="utf-8")
     )
     capfd.readouterr()
     assert main(["run", str(made / "mission"), "--for", "3"]) == 1  # the mission in it is built in the same way

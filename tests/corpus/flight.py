@@ -66,14 +66,14 @@ class Flight:
     def _prepare(self) -> MissionSpec:
         scenario, folder = self._scenario, self._folder
         told = {"observe": scenario.observe, "stimulus": scenario.stimulus}
-        (folder / "scenario.json").write_text(json.dumps({**told, "seconds": scenario.seconds}))
+        (folder / "scenario.json").write_text(json.dumps({**told, "seconds": scenario.seconds}), encoding="utf-8")
         for name in ("observer.py", "driving.py"):
             shutil.copy(Path(__file__).with_name(name), folder / name)
         programs = {f"HELPER{number}": helper for number, helper in enumerate(scenario.helpers)}
         programs[NODE] = scenario.node
         files = {OBSERVER: "observer.py", **{app: self._place(app, program) for app, program in programs.items()}}
         startup = folder / "startup.scr"
-        startup.write_text("".join(map(_line, files, files.values())) + "!\n")
+        startup.write_text("".join(map(_line, files, files.values())) + "!\n", encoding="utf-8")
         nodes = {app: self._config(app, program) for app, program in programs.items()}
         nodes[OBSERVER] = NodeConfig(OBSERVER, args=(str(folder),), env=self._environment())
         params: dict[str, Any] = {}
@@ -133,7 +133,7 @@ class Flight:
         result = self._folder / "result.json"
         failure = {"stimulus failed": next((line for line in lines if "Error" in line), "the observer did not end")}
         nothing = {"N": {}, "T": {}, "R": failure, "rate": {}}
-        seen = json.loads(result.read_text()) if result.is_file() else nothing
+        seen = json.loads(result.read_text(encoding="utf-8")) if result.is_file() else nothing
         files = {f"@TMP/{path.name}": path.stat().st_size for path in self._folder.iterdir() if path.is_file()}
         helpers = [app for app in names if app not in (NODE, OBSERVER)]
         return Outcome(

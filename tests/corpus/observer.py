@@ -28,7 +28,7 @@ LONGEST = 64  # items of a sequence that are kept whole
 OF_ROSCORE = ("/rosdistro", "/rosversion", "/run_id")
 
 folder = sys.argv[1]
-with open(os.path.join(folder, "scenario.json")) as _file:
+with open(os.path.join(folder, "scenario.json"), encoding="utf-8") as _file:
     S = json.load(_file)
 N = dict.fromkeys(S["observe"], 0)
 T = {topic: [] for topic in S["observe"]}
@@ -145,7 +145,7 @@ def waitsub(topic, timeout=8):
 
 
 def write(name, text=""):
-    with open(os.path.join(folder, name), "w") as file:
+    with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
         file.write(text)
 
 

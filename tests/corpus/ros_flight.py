@@ -79,7 +79,7 @@ class RosFlight:
     def _start_observer(self) -> subprocess.Popen[bytes]:
         scenario = self._scenario
         told = {"observe": scenario.observe, "stimulus": scenario.stimulus, "seconds": scenario.seconds}
-        (self._folder / "scenario.json").write_text(json.dumps(told))
+        (self._folder / "scenario.json").write_text(json.dumps(told), encoding="utf-8")
         return self._start("observer", [PYTHON, str(HERE / "observer.py"), str(self._folder)])
 
     def _start_program(self, name: str, program: Program, namespace: str) -> subprocess.Popen[bytes]:
@@ -130,9 +130,9 @@ class RosFlight:
 
     def _outcome(self, status: int | None, ended_itself: bool, wall_s: float) -> Outcome:
         result = self._folder / "result.json"
-        failure = {"stimulus failed": (self._folder / "observer.out").read_text(errors="replace")}
+        failure = {"stimulus failed": (self._folder / "observer.out").read_text(errors="replace", encoding="utf-8")}
         nothing: dict[str, Any] = {"N": {}, "T": {}, "R": failure, "rate": {}}
-        seen = json.loads(result.read_text()) if result.is_file() else nothing
+        seen = json.loads(result.read_text(encoding="utf-8")) if result.is_file() else nothing
         return Outcome(
             counts=seen["N"],
             messages=seen["T"],
@@ -140,7 +140,7 @@ class RosFlight:
             rates=seen["rate"],
             status=status,
             ended_itself=ended_itself,
-            out=_without(OF_HOST, (self._folder / "node.out").read_text(errors="replace")),
+            out=_without(OF_HOST, (self._folder / "node.out").read_text(errors="replace", encoding="utf-8")),
             wall_s=wall_s,
         )
 

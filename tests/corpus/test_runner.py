@@ -43,10 +43,10 @@ def sources(tmp_path: Path) -> Sources:
     package = tmp_path / "sources" / "us+robots" / "own_msgs"
     (package / "srv").mkdir(parents=True)
     (package / "scripts").mkdir()
-    (package / "package.xml").write_text("<package><name>own_msgs</name></package>")
-    (package / "srv" / "Count.srv").write_text("int32 a\n---\nint32 b\n")
-    (package / "scripts" / "echo.py").write_text(ECHO)
-    (package / "scripts" / "talk").write_text(TALK)
+    (package / "package.xml").write_text("<package><name>own_msgs</name></package>", encoding="utf-8")
+    (package / "srv" / "Count.srv").write_text("int32 a\n---\nint32 b\n", encoding="utf-8")
+    (package / "scripts" / "echo.py").write_text(ECHO, encoding="utf-8")
+    (package / "scripts" / "talk").write_text(TALK, encoding="utf-8")
     return Sources(tmp_path / "sources")
 
 
@@ -111,7 +111,7 @@ def test_scenarios_run_in_processes_of_their_own(tmp_path: Path) -> None:
     scenario = read_corpus().scenarios["rt_talker"]
     script = Sources(tmp_path).folder(scenario.node.repo) / scenario.node.path
     script.parent.mkdir(parents=True)
-    script.write_text("print('not the talker')")
+    script.write_text("print('not the talker')", encoding="utf-8")
     verdict = run_all([scenario], Sources(tmp_path), 1, "thread")["rt_talker"]
     assert "'hello world' in out" in verdict.reason
     assert verdict.wall_s > 0
@@ -136,17 +136,17 @@ def test_fetching_a_commit(tmp_path: Path) -> None:
 
     git("init", "--quiet")
     (origin / "nodes").mkdir()
-    (origin / "nodes" / "talk").write_text(TALK)
-    (origin / "mesh.STL").write_text("large")
+    (origin / "nodes" / "talk").write_text(TALK, encoding="utf-8")
+    (origin / "mesh.STL").write_text("large", encoding="utf-8")
     git("add", ".")
     git("commit", "--quiet", "-m", "one")
     commit = git("rev-parse", "HEAD")
-    (origin / "nodes" / "talk").write_text("later")
+    (origin / "nodes" / "talk").write_text("later", encoding="utf-8")
     git("commit", "--quiet", "-am", "two")
     sources = Sources(tmp_path / "sources")
     assert sources.fetch_all({"us/robots": commit}, tmp_path / "mirrors") == ["us/robots"]
     assert [path.name for path in sources.folder("us/robots").rglob("*") if path.is_file()] == ["talk"]
-    assert (sources.folder("us/robots") / "nodes" / "talk").read_text() == TALK
+    assert (sources.folder("us/robots") / "nodes" / "talk").read_text(encoding="utf-8") == TALK
     assert sources.fetch_all({"us/robots": commit}, tmp_path / "mirrors") == []
     with pytest.raises(UsageError, match="git ls-tree"):
         sources.fetch("us/none", commit, tmp_path / "mirrors")
@@ -176,7 +176,11 @@ def test_the_page_has_a_row_for_each_scenario() -> None:
 
 
 def test_the_page_in_docs_is_about_these_scenarios() -> None:
-    rows = [line.split("|")[1].strip() for line in report.PAGE.read_text().splitlines() if line.startswith("| ")][1:]
+    rows = [
+        line.split("|")[1].strip()
+        for line in report.PAGE.read_text(encoding="utf-8").splitlines()
+        if line.startswith("| ")
+    ][1:]
     assert rows == list(read_corpus().scenarios)
 
 
@@ -216,7 +220,8 @@ def test_what_a_node_printed_that_never_ends(sources: Sources, tmp_path: Path) -
     script = sources.script(Program("us/robots", "own_msgs/scripts/echo.py", ()))
     stubborn = script[0] / Path(script[1]).with_name("stubborn.py")
     stubborn.write_text(
-        "import rospy, time\nprint('first')\nrospy.init_node('mule')\nprint('then')\nwhile True:\n    time.sleep(1)\n"
+        "import rospy, time\nprint('first')\nrospy.init_node('mule')\nprint('then')\nwhile True:\n    time.sleep(1)\n",
+        encoding="utf-8",
     )
     outcome = fly(scenario_of(sources, "stubborn.py"), sources, tmp_path)
     assert (outcome.out, outcome.status, outcome.ended_itself) == ("first\nthen\n", None, False)

@@ -30,7 +30,7 @@ rospy.logerr("that is all")
 def plan(tmp_path: Path) -> RunPlan:
     """A run of a node that publishes numbers and words."""
     script = tmp_path / "talker.py"
-    script.write_text(TALKER)
+    script.write_text(TALKER, encoding="utf-8")
     return RunPlan((str(script),), command="node", seconds=3)
 
 

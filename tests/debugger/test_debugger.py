@@ -37,7 +37,7 @@ BOTH = pytest.mark.parametrize("tasks", ["thread", "greenlet"])
 def plan(tmp_path: Path) -> RunPlan:
     """A run of a node that counts, and dies."""
     script = tmp_path / "counter.py"
-    script.write_text(COUNTER)
+    script.write_text(COUNTER, encoding="utf-8")
     return RunPlan((str(script),), command="node", seconds=3)
 
 
@@ -112,8 +112,8 @@ def test_pdb_where_an_exception_ends_the_application(plan: RunPlan) -> None:
 
 
 def test_pdb_where_an_exception_ends_a_cfe_app(tmp_path: Path) -> None:
-    (tmp_path / "faulty.py").write_text("def main(cfe):\n    height = 0\n    return 1 / height\n")
-    (tmp_path / "startup.scr").write_text("CFE_APP, faulty, main, FAULTY, 50, 16384, 0x0, 0;\n!\n")
+    (tmp_path / "faulty.py").write_text("def main(cfe):\n    height = 0\n    return 1 / height\n", encoding="utf-8")
+    (tmp_path / "startup.scr").write_text("CFE_APP, faulty, main, FAULTY, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     plan = RunPlan((str(tmp_path),), seconds=1, schedule=Schedule.parse("random:1"))
     said, _ = debugged(plan, "p height\nq\n", app="FAULTY", stops=["0x1FFF"])
     assert "FAULTY: ZeroDivisionError: division by zero" in said

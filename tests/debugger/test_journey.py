@@ -51,7 +51,7 @@ STEPS = 1000
 def plan(tmp_path: Path) -> RunPlan:
     """A run of a node that counts, in two threads."""
     script = tmp_path / "counter.py"
-    script.write_text(COUNTER)
+    script.write_text(COUNTER, encoding="utf-8")
     return RunPlan((str(script),), command="node", seconds=1.2, tasks="greenlet")
 
 

@@ -212,7 +212,7 @@ def with_programs(folder: Path) -> None:
     folder.mkdir()
     for name, words in PROGRAMS.items():
         start = f'PYTHONPATH="{import_path()}" exec "{sys.executable}" {words} "$@"'
-        (folder / name).write_text(f"#!/bin/sh\n{start}\n")
+        (folder / name).write_text(f"#!/bin/sh\n{start}\n", encoding="utf-8")
         (folder / name).chmod(0o755)
     os.environ["PATH"] = f"{folder}:{os.environ['PATH']}"
 

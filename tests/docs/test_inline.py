@@ -20,7 +20,7 @@ from tests.test_docs import FENCE
 INLINE = re.compile(r"`([^`]+)`")
 PLACEHOLDER = re.compile(r"^[A-Z][A-Z_]*$|[<>|\[\]]|\.\.\.|\bFIELD=|\bNAME\b|\bFILE\b")
 OUTPUT = re.compile(r"cfepy fault \S+: ")  # what a run says
-EXTRAS = set(tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"])
+EXTRAS = set(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"])
 
 
 def spans(page: Path, start: str) -> Iterator[str]:

@@ -41,8 +41,10 @@ class Lab:
     """A mission that has booted, with room for applications."""
 
     def __init__(self, folder: Path, tasks: str = "thread", **mains: Main) -> None:
-        (folder / "startup.scr").write_text("!\n")
-        (folder / "mission.yaml").write_text('cfe_version: "7.0.0"\n')  # what tests compare with was recorded on it
+        (folder / "startup.scr").write_text("!\n", encoding="utf-8")
+        (folder / "mission.yaml").write_text(
+            'cfe_version: "7.0.0"\n', encoding="utf-8"
+        )  # what tests compare with was recorded on it
         self.mission = Mission(str(folder), console=Console(quiet=True), tasks=tasks)
         self.cfe = self.mission.cfe
         self.es = self.cfe.es

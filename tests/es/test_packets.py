@@ -11,7 +11,7 @@ from cfepy.msg import Telemetry
 from tests.es.harness import Lab
 from tests.layouts import DATA, assert_same
 
-RECORDED = json.loads((DATA / "packets.json").read_text())["telemetry"]
+RECORDED = json.loads((DATA / "packets.json").read_text(encoding="utf-8"))["telemetry"]
 
 
 def test_layouts_are_nasas() -> None:

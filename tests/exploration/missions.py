@@ -132,10 +132,10 @@ LATE = """
 def write_late(folder: Path) -> Path:
     """Write the mission of LATE."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "apps.py").write_text(textwrap.dedent(LATE).lstrip())
+    (folder / "apps.py").write_text(textwrap.dedent(LATE).lstrip(), encoding="utf-8")
     entries = ("Listener", "Talker")
     lines = [f"CFE_APP, apps, {name}, {name.upper()}, 50, 8192, 0, 0;\n" for name in entries]
-    (folder / "startup.scr").write_text("".join(lines) + "!\n")
+    (folder / "startup.scr").write_text("".join(lines) + "!\n", encoding="utf-8")
     return folder
 
 
@@ -150,9 +150,9 @@ def write(folder: Path, nodes: Mapping[str, str], yaml: str = "") -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     lines = []
     for name, source in nodes.items():
-        (folder / f"{name.lower()}.py").write_text(textwrap.dedent(source).lstrip())
+        (folder / f"{name.lower()}.py").write_text(textwrap.dedent(source).lstrip(), encoding="utf-8")
         lines.append(f"CFE_APP, {name.lower()}.py, __main__, {name}, 100, 16384, 0x0, 0;\n")
-    (folder / "startup.scr").write_text("".join(lines) + "!\n")
+    (folder / "startup.scr").write_text("".join(lines) + "!\n", encoding="utf-8")
     if yaml:
-        (folder / "mission.yaml").write_text(textwrap.dedent(yaml).lstrip())
+        (folder / "mission.yaml").write_text(textwrap.dedent(yaml).lstrip(), encoding="utf-8")
     return folder

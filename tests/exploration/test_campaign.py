@@ -239,7 +239,7 @@ def test_a_second_run_does_only_what_is_missing(tmp_path: Path, jobs: int) -> No
     second, tally = run(trial, 30, crew(), ResultsFile(path, IDENTITY))
     assert tally == Tally(done=30, failed=2, resumed=10)
     assert second[:10] == first
-    assert sorted(map(int, log.read_text().split())) == list(range(30))
+    assert sorted(map(int, log.read_text(encoding="utf-8").split())) == list(range(30))
     third, tally = run(trial, 30, crew(), ResultsFile(path, IDENTITY))
     assert (third, tally) == (second, Tally(done=30, failed=2, resumed=30))
     assert sorted(number for number, _ in read_results(path)[1]) == list(range(30))

@@ -27,7 +27,7 @@ SLACK_KB = 24 * 1024  # garbage of a batch of missions, which comes and goes
 
 def resident_kb(pid: int | str) -> int:
     """Memory of a process."""
-    lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    lines = Path(f"/proc/{pid}/status").read_text(encoding="utf-8").splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith("VmRSS:"))
 
 

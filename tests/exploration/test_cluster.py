@@ -174,7 +174,7 @@ def open_ports() -> list[tuple[str, int]]:
             sockets.add(os.readlink(descriptor))
     found = []
     for table in ("tcp", "tcp6"):
-        for line in Path(f"/proc/self/net/{table}").read_text().splitlines()[1:]:
+        for line in Path(f"/proc/self/net/{table}").read_text(encoding="utf-8").splitlines()[1:]:
             _, local, _, state, *_, inode = line.split()[:10]
             if state == "0A" and f"socket:[{inode}]" in sockets:
                 address, _, port = local.rpartition(":")
@@ -185,7 +185,7 @@ def open_ports() -> list[tuple[str, int]]:
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux tells the ports")
 def test_a_cluster_of_this_computer_opens_no_well_known_port() -> None:
-    first_of_any = int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text().split()[0])
+    first_of_any = int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text(encoding="utf-8").split()[0])
     before = set(open_ports())
     environ = dict(os.environ)
     crew = Cluster("local:1")

@@ -45,9 +45,9 @@ EYE = """
 
 @pytest.fixture
 def plan(tmp_path: Path) -> RunPlan:
-    (tmp_path / "startup.scr").write_text(SCRIPT + "!\n")
+    (tmp_path / "startup.scr").write_text(SCRIPT + "!\n", encoding="utf-8")
     for app, source in (("base", BASE), ("arm", ARM), ("eye", EYE)):
-        (tmp_path / f"{app}.py").write_text(dedent(source))
+        (tmp_path / f"{app}.py").write_text(dedent(source), encoding="utf-8")
     return RunPlan((str(tmp_path),), seconds=1.0, tasks="greenlet")
 
 

@@ -80,7 +80,7 @@ class Same:
 def test_a_file_in_the_working_directory_is_no_module_of_a_worker(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "random.py").write_text("open('executed', 'w').close()\n")
+    (tmp_path / "random.py").write_text("open('executed', 'w').close()\n", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     told: list[Verdict] = []
     search = make_search("all", None, 100, Schedule())

@@ -44,8 +44,8 @@ class LateSeeds(Seeds):
 @pytest.fixture
 def crash(tmp_path: Path) -> Trial:
     """A mission whose process is killed by the operating system."""
-    (tmp_path / "startup.scr").write_text(STARTUP)
-    (tmp_path / "crash.py").write_text(CRASH)
+    (tmp_path / "startup.scr").write_text(STARTUP, encoding="utf-8")
+    (tmp_path / "crash.py").write_text(CRASH, encoding="utf-8")
     return Trial(RunPlan((str(tmp_path),), seconds=1.0, tasks="greenlet"))
 
 

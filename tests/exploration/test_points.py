@@ -103,8 +103,8 @@ Plans = Callable[[str, str], RunPlan]
 @pytest.fixture
 def plan_of(tmp_path: Path) -> Plans:
     def write(name: str, source: str) -> RunPlan:
-        (tmp_path / f"{name}.py").write_text(dedent(source))
-        (tmp_path / "startup.scr").write_text(SCRIPT.format(name, name.upper()))
+        (tmp_path / f"{name}.py").write_text(dedent(source), encoding="utf-8")
+        (tmp_path / "startup.scr").write_text(SCRIPT.format(name, name.upper()), encoding="utf-8")
         return RunPlan((str(tmp_path),), seconds=1.0)
 
     return write
@@ -165,7 +165,7 @@ def test_a_run_with_points_is_the_same_on_greenlets(plan_of: Plans) -> None:
 @pytest.mark.slow
 def test_apps_have_points_too(plan_of: Plans) -> None:
     folder = Path(plan_of("app", APP).words[0])
-    (folder / "startup.scr").write_text("CFE_APP, app, main, APP, 100, 16384, 0x0, 0;\n!\n")
+    (folder / "startup.scr").write_text("CFE_APP, app, main, APP, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     plan = RunPlan((str(folder),), seconds=1.0)
     assert explored(plan, "").findings == []
     assert explored(plan, "attributes").findings != []

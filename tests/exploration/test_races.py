@@ -20,12 +20,12 @@ Races = Callable[..., dict[str, str]]
 @pytest.fixture
 def races_of(tmp_path: Path) -> Races:
     """Flies a program under a schedule: what it races for, and the details."""
-    (tmp_path / "startup.scr").write_text(SCRIPT)
+    (tmp_path / "startup.scr").write_text(SCRIPT, encoding="utf-8")
 
     def fly(source: str, schedule: str = "at", prelude: str = PRELUDE) -> dict[str, str]:
-        (tmp_path / "main.py").write_text(prelude + source)
+        (tmp_path / "main.py").write_text(prelude + source, encoding="utf-8")
         if prelude == APP_PRELUDE:
-            (tmp_path / "startup.scr").write_text(SCRIPT.replace("__main__", "main"))
+            (tmp_path / "startup.scr").write_text(SCRIPT.replace("__main__", "main"), encoding="utf-8")
         plan = RunPlan((str(tmp_path),), seconds=1.5, races=True)
         verdict = Trial(plan).run(Schedule.parse(schedule))
         others = [failure for failure in verdict.failures if failure.kind != "data race"]
@@ -80,8 +80,8 @@ both(one, other)
 
 
 def test_looking_for_races_changes_nothing(tmp_path: Path) -> None:
-    (tmp_path / "startup.scr").write_text(SCRIPT)
-    (tmp_path / "main.py").write_text(PRELUDE + RACY["two topics"][1])
+    (tmp_path / "startup.scr").write_text(SCRIPT, encoding="utf-8")
+    (tmp_path / "main.py").write_text(PRELUDE + RACY["two topics"][1], encoding="utf-8")
     plans = [RunPlan((str(tmp_path),), seconds=1.5, races=races) for races in (False, True)]
     plain, watched = (fly(plan).trace for plan in plans)
     assert plain == watched
@@ -89,8 +89,8 @@ def test_looking_for_races_changes_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_an_exploration_tells_a_race_once(tmp_path: Path) -> None:
-    (tmp_path / "startup.scr").write_text(SCRIPT)
-    (tmp_path / "main.py").write_text(PRELUDE + RACY["two locks"][1])
+    (tmp_path / "startup.scr").write_text(SCRIPT, encoding="utf-8")
+    (tmp_path / "main.py").write_text(PRELUDE + RACY["two locks"][1], encoding="utf-8")
     plan = RunPlan((str(tmp_path),), seconds=1.0, races=True)
     report = Expedition(plan, seeds=6, policy="random", jobs=1, points="attributes").run()
     (told,) = report.findings

@@ -50,14 +50,16 @@ def test_what_is_gone_is_told_apart_from_what_is_still_there(
     assert found[2].verdict.missed == ("NOBODY@550=BANK",)
     assert [each.command.split()[:4] for each in found] == [["cfepy", "run", "--for", "0.7"]] * 3
     source = mission / "bank.py"
-    source.write_text("# mended\n\n" + source.read_text().replace("rospy.get_time()", "pass"))
+    source.write_text(
+        "# mended\n\n" + source.read_text(encoding="utf-8").replace("rospy.get_time()", "pass"), encoding="utf-8"
+    )
     assert main(["explore", "--replay-all", str(path), "--json", str(tmp_path / "f.json"), "--jobs", "1"]) == 0
     told = capsys.readouterr().out.splitlines()
     assert told[0] == "schedule no longer applies: too little"
     lost = "BANK.bank.1@550/pay.get_time/3=BANK, BANK.bank.1@550/next=BANK.bank.2"
     assert told[1] == f"  0 of its 2 moves were possible; not possible: {lost}"
     assert told[-1] == "3 failures: 3 whose schedule no longer applies"
-    plain = json.loads((tmp_path / "f.json").read_text())["failures"]
+    plain = json.loads((tmp_path / "f.json").read_text(encoding="utf-8"))["failures"]
     assert [each["state"] for each in plain] == [NOT_POSSIBLE] * 3
 
 
@@ -74,7 +76,7 @@ def test_an_exploration_keeps_the_shrunk_schedule_and_a_mended_mission_is_not_re
     assert expedition.run().tally.resumed == 12
     assert main(["explore", "--replay-all", str(path), "--jobs", "1"]) == 1
     source = mission / "bank.py"
-    source.write_text(source.read_text() + "\n# one more line\n")
+    source.write_text(source.read_text(encoding="utf-8") + "\n# one more line\n", encoding="utf-8")
     assert main(["explore", "--replay-all", str(path), "--jobs", "1"]) == 1
 
 
@@ -99,7 +101,7 @@ def test_the_last_line_about_a_failure_counts_and_other_readers_leave_them_out(t
 def test_a_line_that_is_no_failure_is_told(tmp_path: Path) -> None:
     path = tmp_path / "f.results"
     ResultsFile(path, {"a": 1}).close()
-    path.write_text(path.read_text() + '{"failure": {"group": "x"}}\n')
+    path.write_text(path.read_text(encoding="utf-8") + '{"failure": {"group": "x"}}\n', encoding="utf-8")
     with pytest.raises(UsageError, match=r"f\.results:2"):
         read_failures(path)
     with pytest.raises(UsageError, match="does not say which mission"):

@@ -87,10 +87,10 @@ def test_another_campaign_is_refused(path: Path, change: dict[str, object], told
 
 @pytest.mark.parametrize("text", ["groceries: milk", "groceries: milk\n", '{"a": 1}\n', "[1]\n", '{"format": 3, "'])
 def test_other_files_are_left_alone(path: Path, text: str) -> None:
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     with pytest.raises(UsageError, match="is not a"):
         ResultsFile(path, IDENTITY)
-    assert path.read_text() == text
+    assert path.read_text(encoding="utf-8") == text
 
 
 @pytest.mark.parametrize(
@@ -98,8 +98,8 @@ def test_other_files_are_left_alone(path: Path, text: str) -> None:
 )
 def test_a_damaged_line_in_the_middle_is_told(path: Path, line: str) -> None:
     write(path, 0, 1)
-    lines = path.read_text().splitlines()
-    path.write_text("\n".join([lines[0], line, *lines[2:], ""]))
+    lines = path.read_text(encoding="utf-8").splitlines()
+    path.write_text("\n".join([lines[0], line, *lines[2:], ""]), encoding="utf-8")
     with pytest.raises(UsageError) as caught:
         ResultsFile(path, IDENTITY)
     assert (caught.value.file, caught.value.line) == (str(path), 2)
@@ -131,7 +131,7 @@ def test_a_file_that_cannot_be(tmp_path: Path) -> None:
 
 def test_lines_are_json(path: Path) -> None:
     write(path, 5)
-    head, line = map(json.loads, path.read_text().splitlines())
+    head, line = map(json.loads, path.read_text(encoding="utf-8").splitlines())
     assert head == {"format": "cfepy exploration 1", "campaign": IDENTITY}
     assert line == {"number": 5, "verdict": {"schedule": "random:5"}}
 

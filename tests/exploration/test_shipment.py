@@ -44,7 +44,7 @@ def package(tmp_path: Path) -> Path:
         "launch/greet.launch": LAUNCH_FILE,
     }.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(text)
+        (folder / name).write_text(text, encoding="utf-8")
     (folder / "scripts/greeter.py").chmod(0o755)
     return folder
 

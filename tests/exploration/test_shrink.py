@@ -52,8 +52,10 @@ def test_another_failure_that_is_always_there_does_not_end_it_early(tmp_path: Pa
     folder = missions.write_late(tmp_path)
     with (folder / "apps.py").open("a") as apps:
         apps.write("\n\ndef Grumbler(cfe):\n    cfe.evs.register()\n    cfe.evs.send_err(9, 'as always')\n")
-    startup = (folder / "startup.scr").read_text()
-    (folder / "startup.scr").write_text(f"CFE_APP, apps, Grumbler, GRUMBLER, 40, 8192, 0, 0;\n{startup}")
+    startup = (folder / "startup.scr").read_text(encoding="utf-8")
+    (folder / "startup.scr").write_text(
+        f"CFE_APP, apps, Grumbler, GRUMBLER, 40, 8192, 0, 0;\n{startup}", encoding="utf-8"
+    )
     late = Trial(RunPlan((str(folder),), seconds=0.7, tasks="greenlet"))
     (always,) = late.run(Schedule()).failures
     verdict = next(found for seed in range(30) if len((found := late.run(Schedule("random", seed))).failures) > 1)
@@ -82,7 +84,7 @@ def test_the_timeline_shows_both_tasks_up_to_the_failure(bank: Path) -> None:
     failure = shrunk.verdict.failure(group)
     assert failure is not None
     lines = story_of(shrunk.trial, shrunk.verdict, failure, shrunk.moves).lines()
-    golden = Path(__file__).with_name("golden_timeline.txt").read_text().splitlines()
+    golden = Path(__file__).with_name("golden_timeline.txt").read_text(encoding="utf-8").splitlines()
     assert lines == golden
     assert max(map(len, lines)) <= 100
 

@@ -205,9 +205,9 @@ def test_who_waits_for_a_pipe_is_idle(tmp_path: Path) -> None:
 def test_an_application_that_waits_for_a_pipe_is_idle_and_one_that_waits_for_a_semaphore_is_not(tmp_path: Path) -> None:
     app = "def Pipe(cfe):\n    cfe.sb.receive_buffer(cfe.sb.create_pipe(4, 'WORK'))\n"
     app += "def Semaphore(cfe):\n    cfe.os.bin_sem_take(cfe.os.bin_sem_create('WORK', 0))\n"
-    (tmp_path / "idle.py").write_text(app)
+    (tmp_path / "idle.py").write_text(app, encoding="utf-8")
     lines = [f"CFE_APP, idle, {name}, {name.upper()}, 50, 8192, 0, 0;\n" for name in ("Pipe", "Semaphore")]
-    (tmp_path / "startup.scr").write_text("".join(lines) + "!\n")
+    (tmp_path / "startup.scr").write_text("".join(lines) + "!\n", encoding="utf-8")
     (left,) = waits_of(RunPlan((str(tmp_path),)), 500_000_000, None).left
     assert left.place[0] == "SEMAPHORE"
 

@@ -110,6 +110,6 @@ def test_objects_of_osal_are_called_by_their_names(tmp_path: Path) -> None:
     missions.write_late(tmp_path)
     with (tmp_path / "apps.py").open("a") as apps:
         apps.write(missions.textwrap.dedent(OSAL))
-    (tmp_path / "startup.scr").write_text("CFE_APP, apps, Keeper, KEEPER, 50, 8192, 0, 0;\n!\n")
+    (tmp_path / "startup.scr").write_text("CFE_APP, apps, Keeper, KEEPER, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
     rows = [row.text for row in looked_at(tmp_path, "greenlet").rows if row.kind == DOES]
     assert rows[:4] == ["has mutex CARD", "takes semaphore FULL", "gives semaphore FULL", "releases mutex CARD"]

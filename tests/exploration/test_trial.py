@@ -175,8 +175,8 @@ def Ring(cfe):
 
 
 def test_mutexes_in_a_circle_are_one_deadlock_whoever_closes_it(tmp_path: Path) -> None:
-    (tmp_path / "apps.py").write_text(MUTEXES)
-    (tmp_path / "startup.scr").write_text("CFE_APP, apps, Ring, RING, 50, 8192, 0, 0;\n!\n")
+    (tmp_path / "apps.py").write_text(MUTEXES, encoding="utf-8")
+    (tmp_path / "startup.scr").write_text("CFE_APP, apps, Ring, RING, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
     verdicts = [trial(tmp_path, 1.0).run(Schedule("random", seed)) for seed in range(30)]
     found = [verdict.failures[0] for verdict in verdicts if verdict.failed]
     assert {(failure.kind, failure.who, failure.text) for failure in found} == {
@@ -188,9 +188,11 @@ def test_mutexes_in_a_circle_are_one_deadlock_whoever_closes_it(tmp_path: Path) 
 
 def app(tmp_path: Path, name: str, action: int = 0, yaml: str = "") -> Trial:
     if yaml:
-        (tmp_path / "mission.yaml").write_text(yaml)
-    (tmp_path / "apps.py").write_text(APPS)
-    (tmp_path / "startup.scr").write_text(f"CFE_APP, apps, {name}, {name.upper()}, 50, 8192, 0, {action};\n!\n")
+        (tmp_path / "mission.yaml").write_text(yaml, encoding="utf-8")
+    (tmp_path / "apps.py").write_text(APPS, encoding="utf-8")
+    (tmp_path / "startup.scr").write_text(
+        f"CFE_APP, apps, {name}, {name.upper()}, 50, 8192, 0, {action};\n!\n", encoding="utf-8"
+    )
     return trial(tmp_path, 1.0)
 
 
@@ -233,7 +235,7 @@ def test_which_events_count_can_be_chosen(tmp_path: Path, level: str, count: int
 
 def test_a_step_of_the_script_that_fails(tmp_path: Path) -> None:
     script = tmp_path / "checks.txt"
-    script.write_text("expect app COMPLAINS RUNNING within 1\nexpect event COMPLAINS 6 within 1\n")
+    script.write_text("expect app COMPLAINS RUNNING within 1\nexpect event COMPLAINS 6 within 1\n", encoding="utf-8")
     found = app(tmp_path, "Complains")
     found = replace(found, plan=replace(found.plan, script=str(script), seconds=None), events="none")
     (failure,) = found.run(Schedule()).failures
@@ -264,21 +266,21 @@ def test_a_systematic_search_gets_the_widths(bank: Path) -> None:
 @pytest.mark.parametrize("action", [0, 1])
 def test_a_crash_that_a_fault_plan_asks_for_is_no_failure(tmp_path: Path, action: int) -> None:
     app(tmp_path, "Waits", action)
-    (tmp_path / "plan.yaml").write_text("faults: [{crash: WAITS, at: 0.7}]")
+    (tmp_path / "plan.yaml").write_text("faults: [{crash: WAITS, at: 0.7}]", encoding="utf-8")
     plan = RunPlan((str(tmp_path),), seconds=1.0, faults=str(tmp_path / "plan.yaml"))
     assert Trial(plan).run(Schedule()).failures == ()
 
 
 def test_nor_is_that_of_a_node(tmp_path: Path) -> None:
     node = missions.write(tmp_path, {"ECHO": HALF_MADE})
-    (node / "plan.yaml").write_text("faults: [{crash: ECHO, at: 0.6}]")
+    (node / "plan.yaml").write_text("faults: [{crash: ECHO, at: 0.6}]", encoding="utf-8")
     plan = RunPlan((str(node),), seconds=1.0, faults=str(node / "plan.yaml"))
     assert Trial(plan).run(Schedule()).failures == ()
 
 
 def test_a_task_that_does_not_give_up_the_cpu_is_a_failure_of_its_schedule(tmp_path: Path) -> None:
-    (tmp_path / "startup.scr").write_text("CFE_APP, app, main, SPIN, 50, 16384, 0x0, 0;\n!\n")
-    (tmp_path / "app.py").write_text("def main(cfe):\n    while True:\n        pass\n")
+    (tmp_path / "startup.scr").write_text("CFE_APP, app, main, SPIN, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
+    (tmp_path / "app.py").write_text("def main(cfe):\n    while True:\n        pass\n", encoding="utf-8")
     plan = RunPlan((str(tmp_path),), seconds=1, stall=0.2)
     found = Trial(plan).run(Schedule())
     assert [failure.kind for failure in found.failures] == ["stalled"]

@@ -72,7 +72,7 @@ FAULTS = {"crash": CRASH, "drop": DROP, "reset": "faults:\n  - {reset: processor
 def plan_of(folder: Path, faults: str, how: str = LATE, tasks: str = "greenlet") -> RunPlan:
     """The vote's mission with a fault."""
     write_mission(folder, STARTUP, voter=VOTER.replace("PERSIST", how), candidates=CANDIDATES, mission_yaml=MISSION)
-    (folder / "faults.yaml").write_text(faults)
+    (folder / "faults.yaml").write_text(faults, encoding="utf-8")
     return RunPlan((str(folder),), seconds=1.9, tasks=tasks, faults=str(folder / "faults.yaml"))
 
 
@@ -172,7 +172,9 @@ def test_what_cannot_be_explored(fault: str, text: str) -> None:
 def test_a_call_that_may_fail_is_a_place_where_others_get_in_all_the_same(tmp_path: Path) -> None:
     mission = str(write_mission(tmp_path, worlds.STARTUP, source=worlds.SOURCE, taker=worlds.TAKER, other=worlds.TAKER))
     never = tmp_path / "never.yaml"
-    never.write_text("faults: [{fail: OS_TaskDelay, after: 1000}, {fail: CFE_SB_ReceiveBuffer, after: 1000}]\n")
+    never.write_text(
+        "faults: [{fail: OS_TaskDelay, after: 1000}, {fail: CFE_SB_ReceiveBuffer, after: 1000}]\n", encoding="utf-8"
+    )
     schedule = Schedule.parse("random:1:any")
     plain, faulty = (Trial(RunPlan((mission,), seconds=2, faults=f)).run(schedule) for f in (None, str(never)))
     assert faulty.decisions == plain.decisions > 0

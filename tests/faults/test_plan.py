@@ -46,7 +46,7 @@ faults:
 
 def write(folder: Path, text: str) -> Path:
     path = folder / "plan.yaml"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     return path
 
 

@@ -154,12 +154,16 @@ def test_no_field_of_a_segment_can_be_set(tmp_path: Path) -> None:
 
 def test_a_node_of_a_launch_file_comes_back(tmp_path: Path) -> None:
     (tmp_path / "beat.py").write_text(
-        "#!/usr/bin/env python3\nimport rospy\nrospy.init_node('beat')\nprint('begins')\nrospy.spin()\n"
+        "#!/usr/bin/env python3\nimport rospy\nrospy.init_node('beat')\nprint('begins')\nrospy.spin()\n",
+        encoding="utf-8",
     )
     (tmp_path / "beat.py").chmod(0o755)
     launch = tmp_path / "beat.launch"
-    (tmp_path / "package.xml").write_text("<package><name>beats</name></package>")
-    launch.write_text('<launch><node pkg="beats" type="beat.py" name="beat" respawn="true" output="screen"/></launch>')
+    (tmp_path / "package.xml").write_text("<package><name>beats</name></package>", encoding="utf-8")
+    launch.write_text(
+        '<launch><node pkg="beats" type="beat.py" name="beat" respawn="true" output="screen"/></launch>',
+        encoding="utf-8",
+    )
     injector = FaultInjector(FaultPlan.from_dict({"faults": [{"crash": "BEAT", "at": 2}]}))
     with Mission(read_launch(launch, {}), console=Console(quiet=True), attachments=[injector]) as mission:
         mission.run_for(4)

@@ -11,7 +11,7 @@ from cfepy.mission import MissionSpec, read_mission
 
 
 def test_a_mission_is_flown_once_as_long_as_its_files_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "startup.scr").write_text("!\n")
+    (tmp_path / "startup.scr").write_text("!\n", encoding="utf-8")
     looked: list[MissionSpec] = []
     look_at = targets.look_at
 
@@ -23,6 +23,6 @@ def test_a_mission_is_flown_once_as_long_as_its_files_stay(tmp_path: Path, monke
     first = plan_of("seed:7", read_mission(str(tmp_path)))
     assert plan_of("seed:7", read_mission(str(tmp_path))) == first
     assert len(looked) == 1
-    (tmp_path / "startup.scr").write_text("! changed\n")
+    (tmp_path / "startup.scr").write_text("! changed\n", encoding="utf-8")
     plan_of("seed:7", read_mission(str(tmp_path)))
     assert len(looked) == 2

@@ -167,7 +167,7 @@ SAMPLE = "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n
 
 
 def test_a_table_of_an_application_that_waits_for_housekeeping_requests(tmp_path: Path) -> None:
-    (tmp_path / "startup.scr").write_text(SAMPLE)
+    (tmp_path / "startup.scr").write_text(SAMPLE, encoding="utf-8")
     rows = {"Int1": 3, "Int2": 4}
     with Flight(RunPlan((str(tmp_path),))) as flight:
         flight.run_until_operational()

@@ -62,7 +62,7 @@ def test_a_run() -> None:
 
 
 def test_a_run_that_failed_shows_it_first(tmp_path: Path) -> None:
-    (tmp_path / "fails.py").write_text(FAILS)
+    (tmp_path / "fails.py").write_text(FAILS, encoding="utf-8")
     run = cfepy.run(tmp_path / "fails.py", seconds=1, tasks="greenlet")
     page = run._repr_html_()
     shown = words(page)

@@ -101,13 +101,13 @@ def test_a_flight_has_numbers_until_now(flight: cfepy.Flight) -> None:
 def test_a_picture(run: cfepy.Run, tmp_path: Path) -> None:
     picture = run.plot("/joint_states", "position[0]", file=tmp_path / "arm.svg")
     assert picture._repr_png_().startswith(b"\x89PNG")
-    assert "<svg" in (tmp_path / "arm.svg").read_text()
+    assert "<svg" in (tmp_path / "arm.svg").read_text(encoding="utf-8")
     with pytest.raises(cfepy.UsageError, match="cannot be written"):
         run.plot("/joint_states", "position[0]", file=tmp_path / "arm.nothing")
 
 
 def test_a_node_s_file_that_fails(tmp_path: Path) -> None:
-    (tmp_path / "broken.py").write_text("import sys\nsys.exit(3)\n")
+    (tmp_path / "broken.py").write_text("import sys\nsys.exit(3)\n", encoding="utf-8")
     run = cfepy.run(tmp_path / "broken.py", seconds=1, tasks="greenlet")
     assert run.problems == ["BROKEN ended with exit status 3 (node /BROKEN)"]
     assert [line for line in run.console if "BROKEN has ended with exit status 3" in line]

@@ -54,8 +54,10 @@ def digest(mission: str, tasks: str) -> str:
 def counter(tmp_path_factory: pytest.TempPathFactory) -> str:
     """A mission of one node that talks to itself."""
     folder = tmp_path_factory.mktemp("where")
-    (folder / "counter.py").write_text(NODE)
-    (folder / "startup.scr").write_text("CFE_APP, counter.py, __main__, COUNTER, 100, 65536, 0x0, 0;\n!\n")
+    (folder / "counter.py").write_text(NODE, encoding="utf-8")
+    (folder / "startup.scr").write_text(
+        "CFE_APP, counter.py, __main__, COUNTER, 100, 65536, 0x0, 0;\n!\n", encoding="utf-8"
+    )
     return str(folder)
 
 

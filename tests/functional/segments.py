@@ -16,7 +16,7 @@ LIST = HERE.parent / "data" / "functional_segments.txt"
 
 def segments() -> list[str]:
     """All segments, as in the list."""
-    return LIST.read_text().splitlines()
+    return LIST.read_text(encoding="utf-8").splitlines()
 
 
 def test_of(segment: str) -> str:
@@ -32,7 +32,7 @@ def missing() -> list[str]:
     present = {
         f"{file.name}::{node.name}"
         for file in HERE.glob("test_*.py")
-        for node in ast.parse(file.read_text()).body
+        for node in ast.parse(file.read_text(encoding="utf-8")).body
         if isinstance(node, ast.FunctionDef)
     }
     return [segment for segment in segments() if test_of(segment) not in present]

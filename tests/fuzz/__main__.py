@@ -60,7 +60,7 @@ def _cause(failed: Failed) -> str:
 
 def _limit_memory() -> None:
     """From now on the process gets so much more memory and not more; a case that wants it fails."""
-    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    pages = int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[0])
     limit = pages * resource.getpagesize() + MEMORY
     resource.setrlimit(resource.RLIMIT_AS, (limit, resource.RLIM_INFINITY))
 

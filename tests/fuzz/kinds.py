@@ -124,7 +124,7 @@ def shared_objects() -> list[bytes]:
 
 
 def shared_object(data: bytes, path: Path) -> None:
-    path.write_text("CFE_APP, BUG, BUG_Main, BUG, 50, 16384, 0x0, 0;\n!")
+    path.write_text("CFE_APP, BUG, BUG_Main, BUG, 50, 16384, 0x0, 0;\n!", encoding="utf-8")
     path.with_name("BUG.so").write_bytes(data)
     check_mission(str(path.parent))
 
@@ -178,7 +178,7 @@ def service(data: bytes, path: Path) -> None:
     for kind in ("srv", "action"):
         (folder / kind).mkdir(exist_ok=True)
         (folder / kind / f"Thing.{kind}").write_bytes(data)
-    (folder / "package.xml").write_text("<package><name>fuzz</name></package>")
+    (folder / "package.xml").write_text("<package><name>fuzz</name></package>", encoding="utf-8")
     list(check_definitions(Packages(folder / "x.py", {}), [folder.name, "fuzz"]))
 
 
@@ -331,7 +331,7 @@ def cmake_lists(data: bytes, path: Path) -> None:
     """A CMakeLists.txt, of a catkin package and of an application of cFS."""
     (path.parent / "src").mkdir(exist_ok=True)
     for name in ("src/one.cpp", "src/two.c", "one.cpp"):
-        (path.parent / name).write_text("int a;\n")
+        (path.parent / name).write_text("int a;\n", encoding="utf-8")
     package = read_package(path.parent, "demo", testing=True)
     for node_type in (*package.executables(), *package.nodelets()):
         with suppress(UsageError):
@@ -345,7 +345,7 @@ def cmake_lists(data: bytes, path: Path) -> None:
 def package_manifest(data: bytes, path: Path) -> None:
     """A package.xml, and a file of plugins."""
     (path.parent / "plugins.xml").write_bytes(data)
-    (path.parent / "CMakeLists.txt").write_text("add_library(n n.cpp)\n")
+    (path.parent / "CMakeLists.txt").write_text("add_library(n n.cpp)\n", encoding="utf-8")
     package = read_package(path.parent, "demo")
     package.executables()
     package.nodelets()
@@ -435,7 +435,10 @@ def cds_images() -> list[bytes]:
 
 def packets() -> list[bytes]:
     """Telemetry packets."""
-    return [bytes.fromhex(text) for text in _hex_in(json.loads((DATA / "golden_telemetry.json").read_text()))][:40]
+    return [
+        bytes.fromhex(text)
+        for text in _hex_in(json.loads((DATA / "golden_telemetry.json").read_text(encoding="utf-8")))
+    ][:40]
 
 
 def messages() -> list[bytes]:

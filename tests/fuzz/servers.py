@@ -56,9 +56,11 @@ class ServersRun:
         self.told: list[str] = []
         folder = Path(mkdtemp(prefix="cfepy-servers-"))
         self._open.callback(_remove, folder)
-        (folder / "mission.yaml").write_text("name: servers\n")
-        (folder / "startup.scr").write_text("CFE_APP, talker.py, __main__, TALKER, 100, 16384, 0x0, 0;\n!\n")
-        (folder / "talker.py").write_text(TALKER)
+        (folder / "mission.yaml").write_text("name: servers\n", encoding="utf-8")
+        (folder / "startup.scr").write_text(
+            "CFE_APP, talker.py, __main__, TALKER, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8"
+        )
+        (folder / "talker.py").write_text(TALKER, encoding="utf-8")
         enter, place = self._open.enter_context, ListenPlace(LOOPBACK, 0)
         self.rosbridge = RosbridgeServer(place, Admission(), PeerCounts())
         self._open.callback(self.rosbridge.close)

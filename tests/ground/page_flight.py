@@ -102,7 +102,7 @@ def parser() -> None:
     """space_packet_parser, with the program of the page."""
     install, program, enable = blocks("space_packet_parser")
     output_of(install.commands[1])
-    Path("program.py").write_text(program.text)
+    Path("program.py").write_text(program.text, encoding="utf-8")
     [fly] = blocks("The spacecraft")[0].commands
     listen = [sys.executable, "-u", "program.py"]
     with flying(fly) as craft, subprocess.Popen(listen, stdout=subprocess.PIPE, text=True) as reader:
@@ -134,7 +134,7 @@ def several() -> None:
         assert three
         [again] = taken.commands
         assert output_of(again, status=2).splitlines()[-1] == taken.text.splitlines()[-1]
-    Path("program.py").write_text(in_python.text)
+    Path("program.py").write_text(in_python.text, encoding="utf-8")
     output_of([sys.executable, "program.py"])
 
 

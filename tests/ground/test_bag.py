@@ -94,10 +94,10 @@ def fly(
     """Fly a mission of nodes, and record it if there is a bag; the digest of the trace, which `ended` gets before."""
     lines = []
     for name, code in scripts.items():
-        (folder / f"{name.lower()}.py").write_text(textwrap.dedent(code))
+        (folder / f"{name.lower()}.py").write_text(textwrap.dedent(code), encoding="utf-8")
         symbol = f"{name}_Main" if "_Main(" in code else "__main__"
         lines.append(f"CFE_APP, {name.lower()}.py, {symbol}, {name}, 100, 16384, 0x0, 0;\n")
-    (folder / "startup.scr").write_text("".join(lines) + "!\n")
+    (folder / "startup.scr").write_text("".join(lines) + "!\n", encoding="utf-8")
     ros = RosConfig({}, topics or {}, params or {})
     spec = MissionSpec("test", folder, folder / "startup.scr", None, "linux", ros)
     console = Console(quiet=True)
@@ -194,7 +194,7 @@ def test_files_that_cannot_be(tmp_path: Path) -> None:
         BagRecorder(str(tmp_path / "no" / "such.bag"))
     with pytest.raises(UsageError, match="could not be read"):
         BagReader(str(tmp_path / "none.bag"))
-    (tmp_path / "text.bag").write_text("hello\n")
+    (tmp_path / "text.bag").write_text("hello\n", encoding="utf-8")
     with pytest.raises(UsageError, match="does not appear to be a bag"):
         BagReader(str(tmp_path / "text.bag"))
     assert not is_bag(str(tmp_path / "text.bag"))
@@ -230,8 +230,10 @@ def test_a_broken_bag_is_read_or_named(whole: Path, changes: list[tuple[float, i
 
 def test_what_outside_nodes_publish_is_recorded_with_their_names(tmp_path: Path) -> None:
     """Two publishers outside of one topic: each message has the header of its own."""
-    (tmp_path / "hears.py").write_text(textwrap.dedent(HEARS))
-    (tmp_path / "startup.scr").write_text("CFE_APP, hears.py, __main__, HEARS, 100, 16384, 0x0, 0;\n!\n")
+    (tmp_path / "hears.py").write_text(textwrap.dedent(HEARS), encoding="utf-8")
+    (tmp_path / "startup.scr").write_text(
+        "CFE_APP, hears.py, __main__, HEARS, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8"
+    )
     spec = MissionSpec("test", tmp_path, tmp_path / "startup.scr", None, "linux", RosConfig({}, {}, {}))
     string, bag = message_class("std_msgs/String"), tmp_path / "run.bag"
     with (

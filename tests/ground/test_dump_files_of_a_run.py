@@ -36,7 +36,7 @@ COMMANDS = {
 def dumps(tmp_path_factory: pytest.TempPathFactory) -> dict[str, DumpFile]:
     """What the files of one run hold."""
     folder: Path = tmp_path_factory.mktemp("mission")
-    (folder / "startup.scr").write_text(STARTUP)
+    (folder / "startup.scr").write_text(STARTUP, encoding="utf-8")
     with Mission(str(folder), console=Console(quiet=True)) as mission:
         mission.run_for(2)
         mission.cfe.sb.transmit_msg(es.START_PERF_DATA.packet())

@@ -60,7 +60,7 @@ def recording(folder: Path, suffix: str) -> Path:
 
 def played(node: Path, bag: str, options: str | None = None, tasks: str = "thread") -> tuple[list[str], str]:
     """The lines of the console of a run into which a recording is played, and the digest."""
-    node.write_text(HEARS)
+    node.write_text(HEARS, encoding="utf-8")
     lines: list[str] = []
     plan = RunPlan((str(node),), NODE, seconds=4, tasks=tasks, play=bag, play_options=options)
     flown = fly(plan, console=Console(sink=lines.append))
@@ -147,7 +147,7 @@ def test_packets_of_a_raw_topic_are_played_as_they_were_recorded(tmp_path: Path)
 
 
 def test_options_need_a_bag(tmp_path: Path) -> None:
-    (tmp_path / "hears.py").write_text(HEARS)
+    (tmp_path / "hears.py").write_text(HEARS, encoding="utf-8")
     with pytest.raises(UsageError, match="give the bag, too"):
         RunPlan((str(tmp_path / "hears.py"),), NODE, play_options="--rate 2").spec()
 

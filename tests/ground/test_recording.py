@@ -460,7 +460,7 @@ def test_a_bit_that_has_flipped_loses_nothing_before_it(suffix: str, kind: str, 
 
 
 def test_what_is_no_recording(tmp_path: Path) -> None:
-    (tmp_path / "text.txt").write_text("hello")
+    (tmp_path / "text.txt").write_text("hello", encoding="utf-8")
     (tmp_path / "empty.bag").write_bytes(b"")
     (tmp_path / "noise.mcap").write_bytes(b"\x06" * 500)
     with pytest.raises(UsageError, match="is neither a bag nor an MCAP file"):

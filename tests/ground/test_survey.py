@@ -49,7 +49,8 @@ def test_names_in_an_apps_source(tmp_path: Path) -> None:
         "CMD_MID = local_cmd_topic_id_to_msg_id(0x90)\n"
         "HK_TLM_MID = 0x0891\n"
         "LATER_MID = CMD_MID + 1\n"
-        "LIMIT = 3\n"
+        "LIMIT = 3\n",
+        encoding="utf-8",
     )
     assert list(constants_in(file)) == [("CMD_MID", 0x1890), ("HK_TLM_MID", 0x0891)]
     assert list(constants_in("installed.module")) == []
@@ -98,19 +99,21 @@ def test_a_mission_whose_topics_collide_flies_once_it_is_locked(
 def test_locking_again_changes_nothing_but_adds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     mission = write_mission(tmp_path, STARTUP, n=NODE)
     main(["mids", "--lock", mission])
-    before = (tmp_path / "topics.lock").read_text()
+    before = (tmp_path / "topics.lock").read_text(encoding="utf-8")
     main(["mids", "--lock", mission])
-    assert (tmp_path / "topics.lock").read_text() == before
-    (tmp_path / "n.py").write_text((tmp_path / "n.py").read_text().replace(f'"{FIRST}")', f'"{FIRST}", "/new")'))
+    assert (tmp_path / "topics.lock").read_text(encoding="utf-8") == before
+    (tmp_path / "n.py").write_text(
+        (tmp_path / "n.py").read_text(encoding="utf-8").replace(f'"{FIRST}")', f'"{FIRST}", "/new")'), encoding="utf-8"
+    )
     main(["mids", "--lock", mission])
     assert capsys.readouterr().out.endswith("1 of them new\n")
-    added = set((tmp_path / "topics.lock").read_text().splitlines()) - set(before.splitlines())
+    added = set((tmp_path / "topics.lock").read_text(encoding="utf-8").splitlines()) - set(before.splitlines())
     assert [line.split(":")[0].strip() for line in added] == ["/new"]
 
 
 def test_a_lock_that_gives_an_id_twice_is_refused(tmp_path: Path) -> None:
     mission = write_mission(tmp_path, STARTUP, n=NODE, mission_yaml="topics: {/a: {msg_id: 0x0910}, /c: {msg_id: 5}}\n")
-    (tmp_path / "topics.lock").write_text("topics:\n  /a: 0x0911\n  /b: 0x0910\nservices: {}\n")
+    (tmp_path / "topics.lock").write_text("topics:\n  /a: 0x0911\n  /b: 0x0910\nservices: {}\n", encoding="utf-8")
     with pytest.raises(UsageError, match=r"topics.lock:3: topics./b: has the MsgId 0x0910 of /a; remove one"):
         read_mission(mission)
     assert [(found.file.name, found.line) for found in check_mission(mission)] == [("topics.lock", 3)]
@@ -118,5 +121,5 @@ def test_a_lock_that_gives_an_id_twice_is_refused(tmp_path: Path) -> None:
 
 def test_the_mission_file_comes_before_the_lock(tmp_path: Path) -> None:
     mission = write_mission(tmp_path, STARTUP, n=NODE, mission_yaml="topics: {/a: {msg_id: 0x0910}}\n")
-    (tmp_path / "topics.lock").write_text("topics: {/a: 0x0911, /b: 0x0911}\n")
+    (tmp_path / "topics.lock").write_text("topics: {/a: 0x0911, /b: 0x0911}\n", encoding="utf-8")
     assert read_mission(mission).ros.locked_topics == {"/b": 0x0911}

@@ -122,7 +122,7 @@ def test_a_marked_file_is_marked_again(tmp_path: Path) -> None:
     file = file_of(PLAN, PLAN.pack([{"MsgId": 1}])).marked()
     assert document(file)["mark"] is True
     path = tmp_path / "table.yaml"
-    path.write_text(table_yaml.write(document(file)).replace("MsgId: 0x0001", "MsgId: 0x0002"))
+    path.write_text(table_yaml.write(document(file)).replace("MsgId: 0x0001", "MsgId: 0x0002"), encoding="utf-8")
     changed = table_yaml.read(path, find)
     assert changed.is_marked
     assert changed.table.reserved != file.table.reserved
@@ -130,7 +130,8 @@ def test_a_marked_file_is_marked_again(tmp_path: Path) -> None:
 
 def test_a_layout_in_the_file(tmp_path: Path) -> None:
     path = tmp_path / "own.yaml"
-    path.write_text("""
+    path.write_text(
+        """
         table: MINE.Gains   # a comment
         layout:
           Id: u8
@@ -140,7 +141,9 @@ def test_a_layout_in_the_file(tmp_path: Path) -> None:
         count: 2
         rows:
         - {Id: 1, Gains: [0.5], Limits: {Low: -1}, Steps: [{At: 1, Go: 2}]}
-    """)
+    """,
+        encoding="utf-8",
+    )
     file = table_yaml.read(path, find)
     step = Layout("Step", [("At", "u8"), ("Go", "u16")])
     limits = Layout("Limits", [("Low", "i16"), ("High", "i16")])
@@ -177,7 +180,7 @@ def test_a_layout_in_the_file(tmp_path: Path) -> None:
 )
 def test_errors_say_where(text: str, line: int, field: str | None, words: str, tmp_path: Path) -> None:
     path = tmp_path / "bad.yaml"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     with pytest.raises(UsageError, match=words) as caught:
         table_yaml.read(path, find)
     assert (caught.value.line, caught.value.field) == (line, field)

@@ -73,7 +73,7 @@ class Export:
             self.dictionary.learn(topics_of(mission))
         self.text = xtce_of(spec.name, self.dictionary)
         self.file = folder / "mission.xml"
-        self.file.write_text(self.text)
+        self.file.write_text(self.text, encoding="utf-8")
         self.definition = XtcePacketDefinition.from_xtce(self.file)
 
     def _take(self, seen: Seen) -> None:
@@ -192,7 +192,7 @@ def read_with(packets: list[Telemetry | Topic], folder: Path, packet: bytes) -> 
     """What the library makes of a packet by the document of a few."""
     found = Dictionary()
     found.add(packets)
-    (folder / "few.xml").write_text(xtce_of("few", found))
+    (folder / "few.xml").write_text(xtce_of("few", found), encoding="utf-8")
     return dict(XtcePacketDefinition.from_xtce(folder / "few.xml").parse_bytes(packet))
 
 

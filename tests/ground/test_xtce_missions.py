@@ -45,7 +45,7 @@ def declared_telemetry(dictionary: Dictionary) -> Iterator[Telemetry]:
 def read_back(name: str, folder: Path, times: int) -> int:
     """Let the other reader check the document and decode random packets; how many fields were compared."""
     dictionary, file = dictionary_named(name), folder / "mission.xml"
-    file.write_text(xtce_of(name, dictionary))
+    file.write_text(xtce_of(name, dictionary), encoding="utf-8")
     result = validate_xtce(file, level="all", raise_on_error=False)
     assert result.valid, [str(error) for error in result.errors[:5]]
     definition = XtcePacketDefinition.from_xtce(file)
@@ -79,5 +79,7 @@ def test_much_random_telemetry_is_read_field_by_field(name: str, tmp_path: Path)
 def test_a_document_with_a_mistake_is_found(tmp_path: Path) -> None:
     """The schema is at hand, and looked at."""
     file = tmp_path / "bad.xml"
-    file.write_text(xtce_of("m", dictionary_named(ALL_TYPES)).replace("SequenceContainer", "SequentialContainer"))
+    file.write_text(
+        xtce_of("m", dictionary_named(ALL_TYPES)).replace("SequenceContainer", "SequentialContainer"), encoding="utf-8"
+    )
     assert not validate_xtce(file, level="schema", raise_on_error=False).valid

@@ -54,19 +54,22 @@ def install(home: Path) -> None:
     (home / "lib").symlink_to(INSTALLED.resolve() / "lib")
     files = [block.text for block in blocks("Yamcs") if block.language == "yaml"]
     for name, text in zip(("yamcs.yaml", f"yamcs.{LAB}.yaml", "processor.yaml"), files, strict=True):
-        (home / "etc" / name).write_text(text)
+        (home / "etc" / name).write_text(text, encoding="utf-8")
 
 
 def add_instances(home: Path, names: Iterable[str]) -> None:
     """Give it other instances than the page's, each with its links at ports of its own (`ports_of`)."""
-    names, page = list(names), (home / f"etc/yamcs.{LAB}.yaml").read_text()
+    names, page = list(names), (home / f"etc/yamcs.{LAB}.yaml").read_text(encoding="utf-8")
     server = home / "etc/yamcs.yaml"
-    server.write_text(server.read_text().replace(f"instances: [{LAB}]", f"instances: {json.dumps(names)}"))
+    server.write_text(
+        server.read_text(encoding="utf-8").replace(f"instances: [{LAB}]", f"instances: {json.dumps(names)}"),
+        encoding="utf-8",
+    )
     for number, name in enumerate(names):
         tm_port, tc_port = ports_of(number)
         text = page.replace(f"mdb/{LAB}.xml", f"mdb/{name}.xml")
         text = text.replace(f"port: {TM_PORT}", f"port: {tm_port}").replace(f"port: {TC_PORT}", f"port: {tc_port}")
-        (home / f"etc/yamcs.{name}.yaml").write_text(text)
+        (home / f"etc/yamcs.{name}.yaml").write_text(text, encoding="utf-8")
 
 
 def ports_of(number: int) -> tuple[int, int]:

@@ -69,7 +69,7 @@ class Comparison:
         self._tm = (LOOPBACK, tm_port)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.bind((LOOPBACK, tc_port))
-        (home / f"mdb/{self.name}.xml").write_text(xtce_of(self.name, self.dictionary))
+        (home / f"mdb/{self.name}.xml").write_text(xtce_of(self.name, self.dictionary), encoding="utf-8")
 
     def commands(self, times: int) -> int:
         """Let Yamcs send each command; how many packets were compared."""
@@ -147,7 +147,7 @@ class Topics:
         folder.mkdir()
         self._export = Export(folder)
         self._tm = (LOOPBACK, yamcs.ports_of(number)[0])
-        (home / f"mdb/{self.name}.xml").write_text(self._export.text)
+        (home / f"mdb/{self.name}.xml").write_text(self._export.text, encoding="utf-8")
 
     def compare(self) -> int:
         """Send one message of each topic to Yamcs; how many values were compared."""

@@ -89,8 +89,8 @@ class Session:
 
 @contextmanager
 def session(folder: Path, script: str, ci_port: int = 0, ports: Mapping[int, int] | None = None) -> Iterator[Session]:
-    (folder / "startup.scr").write_text(script)
-    (folder / "apps.py").write_text(APPS)
+    (folder / "startup.scr").write_text(script, encoding="utf-8")
+    (folder / "apps.py").write_text(APPS, encoding="utf-8")
     told: list[str] = []
     records: list[bytes] = []
     with (
@@ -130,7 +130,7 @@ def test_three_spacecraft_side_by_side(tmp_path: Path) -> None:
         for number in numbers:
             folder = tmp_path / str(number)
             folder.mkdir()
-            (folder / "mission.yaml").write_text(f"limits: {{spacecraft_id: {number}}}\n")
+            (folder / "mission.yaml").write_text(f"limits: {{spacecraft_id: {number}}}\n", encoding="utf-8")
             crafts.append(stack.enter_context(session(folder, LAB)))
         assert len({craft.ground.getsockname() for craft in crafts}) == len(crafts)
         for craft in crafts:

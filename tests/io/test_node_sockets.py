@@ -15,7 +15,7 @@ NODE = "CFE_APP, node.py, __main__, NODE, 100, 16384, 0x0, 0;\n!\n"
 
 
 def write_node(folder: Path, source: str) -> None:
-    (folder / "node.py").write_text(textwrap.dedent(source))
+    (folder / "node.py").write_text(textwrap.dedent(source), encoding="utf-8")
 
 
 def test_a_program_connects_with_a_node(tmp_path: Path) -> None:
@@ -129,7 +129,7 @@ def test_a_node_commands_the_computer_over_ci_lab(tmp_path: Path) -> None:
 
 def test_in_virtual_time_sockets_are_refused(tmp_path: Path) -> None:
     write_node(tmp_path, "import socket\nsocket.socket()\n")
-    (tmp_path / "startup.scr").write_text(NODE)
+    (tmp_path / "startup.scr").write_text(NODE, encoding="utf-8")
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
         mission.run_for(1)
         text = "socket.socket is not available on the simulated computer; run the mission with --realtime"

@@ -33,7 +33,7 @@ def test_nobody_has_typed_yet() -> None:
 
 
 def test_a_stream_that_cannot_be_read() -> None:
-    with open(os.devnull, "w") as stream:
+    with open(os.devnull, "w", encoding="utf-8") as stream:
         lines = TypedLines(stream)
         assert lines.next(LONG_S) is None
         assert lines.at_end

@@ -87,7 +87,7 @@ def race(folder: Path) -> str:
 
 def paths(folder: Path) -> str:
     """A node that says where it is, reads and writes beside it, and dies in a module of its own."""
-    (folder / "data.txt").write_text("from disk")
+    (folder / "data.txt").write_text("from disk", encoding="utf-8")
     startup = NODE.format(name="paths", app="PATHS") + "!"
     return write_mission(folder, startup, paths=PATHS, helper=HELPER)
 

@@ -72,7 +72,7 @@ def test_files_can_be_left_out(tmp_path: Path) -> None:
     journal = read_journal(tmp_path / "run.cfepy")
     assert all(each.data is None for each in journal.files.values())
     assert replay(journal).verdict.same
-    (folder / "race.py").write_text("print('another one')")
+    (folder / "race.py").write_text("print('another one')", encoding="utf-8")
     other = replay(journal).verdict
     assert not other.same
     assert other.difference is not None
@@ -144,7 +144,7 @@ def test_a_length_that_no_frame_has_is_damage_and_not_a_cut_off_end(
 
 
 def test_other_files_and_other_formats_are_told(run: Path, tmp_path: Path) -> None:
-    (tmp_path / "text").write_text("CFE_APP, x")
+    (tmp_path / "text").write_text("CFE_APP, x", encoding="utf-8")
     with pytest.raises(JournalError, match="is no journal"):
         read_journal(tmp_path / "text")
     with pytest.raises(JournalError, match="cannot be read: No such file"):

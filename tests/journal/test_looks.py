@@ -48,7 +48,7 @@ def place(tmp_path: Path) -> Path:
     found = tmp_path / "place"
     (found / "folder").mkdir(parents=True)
     (found / "empty").mkdir(mode=0o700)
-    (found / "folder" / "inside").write_text("text")
+    (found / "folder" / "inside").write_text("text", encoding="utf-8")
     (found / "there").write_bytes(b"0123456789")
     os.utime(found / "there", (1000, 1000))
     (found / "there").chmod(0o640)
@@ -84,10 +84,10 @@ def test_a_computer_without_them_gives_the_run_again(kind: str, place: Path, tmp
 @pytest.mark.parametrize("kind", ["node", "app"])
 def test_a_computer_with_others_gives_the_run_again(kind: str, place: Path, tmp_path: Path) -> None:
     journal, trace = recorded(kind, place, tmp_path)
-    (place / "gone").write_text("now there")
-    (place / "settings").write_text("others")
+    (place / "gone").write_text("now there", encoding="utf-8")
+    (place / "settings").write_text("others", encoding="utf-8")
     (place / "nowhere").mkdir()
-    (place / "there").write_text("longer than it was")
+    (place / "there").write_text("longer than it was", encoding="utf-8")
     shutil.rmtree(place / "empty")
     (place / "link").unlink()
     (place / "link").mkdir()

@@ -36,7 +36,7 @@ def test_schedules_on_a_board_where_calls_take_time(schedule: str, tmp_path: Pat
 
 def test_a_script_is_done_again(tmp_path: Path) -> None:
     script = tmp_path / "noop.txt"
-    script.write_text("at 1  send CFE_ES_NOOP\n      expect event CFE_ES 3 within 0.5\n")
+    script.write_text("at 1  send CFE_ES_NOOP\n      expect event CFE_ES 3 within 0.5\n", encoding="utf-8")
     outcome = assert_replays(plan_for("lab", script=str(script)), tmp_path).outcome
     assert outcome is not None
     assert outcome.ok
@@ -44,7 +44,9 @@ def test_a_script_is_done_again(tmp_path: Path) -> None:
 
 def test_faults_happen_again(tmp_path: Path) -> None:
     faults = tmp_path / "faults.yaml"
-    faults.write_text("faults:\n  - {drop: /joint_states, probability: 0.2}\n  - {crash: MAIN_CTRL, at: 0.9}\n")
+    faults.write_text(
+        "faults:\n  - {drop: /joint_states, probability: 0.2}\n  - {crash: MAIN_CTRL, at: 0.9}\n", encoding="utf-8"
+    )
     flown = assert_replays(plan_for("capture", 1.2, faults=str(faults)), tmp_path)
     assert any(app.name == "MAIN_CTRL" and app.deaths for app in flown.results.apps)
     assert flown.results.problems == []  # a crash that a fault plan asks for is none
@@ -60,12 +62,14 @@ def test_the_seed_counts(tmp_path: Path) -> None:
 def test_a_node_and_a_launch_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     paths(tmp_path)
     (tmp_path / "both.launch").write_text(
-        '<launch><node pkg="p" type="race.py" name="one"/><param name="home" value="$(env SOMEWHERE)"/></launch>'
+        '<launch><node pkg="p" type="race.py" name="one"/><param name="home" value="$(env SOMEWHERE)"/></launch>',
+        encoding="utf-8",
     )
-    (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
+    (tmp_path / "package.xml").write_text("<package><name>p</name></package>", encoding="utf-8")
     race = tmp_path / "race.py"
     race.write_text(
-        "#!/usr/bin/env python3\nimport os, rospy\nprint(rospy.get_param('/home'), os.environ['SOMEWHERE'])\n"
+        "#!/usr/bin/env python3\nimport os, rospy\nprint(rospy.get_param('/home'), os.environ['SOMEWHERE'])\n",
+        encoding="utf-8",
     )
     race.chmod(0o755)
     monkeypatch.setenv("SOMEWHERE", "here")
@@ -95,7 +99,7 @@ def test_the_files_of_the_journal_are_enough(mission: str, change: str, tmp_path
     else:
         (folder / "out.txt").unlink(missing_ok=True)
         for path in folder.glob("*.py"):
-            path.write_text("raise SystemExit('another file')\n")
+            path.write_text("raise SystemExit('another file')\n", encoding="utf-8")
     again = replay(read_journal(tmp_path / "run.cfepy"))
     assert again.verdict.same, again.verdict
     assert again.flown.trace == flown.trace

@@ -73,7 +73,7 @@ class Session:
 def session(folder: Path, schedule: str = "fifo", board: str = "linux", port: int = 0) -> Iterator[Session]:
     """A mission that is recorded into run.cfepy, and then interrupted."""
     for name, text in (("startup.scr", STARTUP), ("apps.py", ECHO), ("caller.py", CALLER)):
-        (folder / name).write_text(text)
+        (folder / name).write_text(text, encoding="utf-8")
     plan = plan_for(str(folder), schedule=schedule, board=board)
     with JournalRecorder(folder / "run.cfepy", plan, paced=FAST) as recorder:
         mission = Mission(
@@ -182,8 +182,8 @@ def answer(run: Session, server: socket.socket) -> None:
 
 def broken_off(folder: Path, plan: RunPlan, at_ns: int, paced: float | None = None) -> Journal:
     """The journal of a run that ends with Ctrl-C in the middle of a task."""
-    (folder / "startup.scr").write_text("CFE_APP, spin, __main__, SPIN, 100, 16384, 0, 0;!")
-    (folder / "spin.py").write_text("import time\ntime.sleep(20)\n")
+    (folder / "startup.scr").write_text("CFE_APP, spin, __main__, SPIN, 100, 16384, 0, 0;!", encoding="utf-8")
+    (folder / "spin.py").write_text("import time\ntime.sleep(20)\n", encoding="utf-8")
     path = folder.with_suffix(".cfepy")
     with JournalRecorder(path, plan, paced=paced) as recorder:
         mission = Mission(plan.spec(), console=Console(quiet=True), attachments=[recorder])

@@ -37,7 +37,7 @@ def masked(lines: list[str], but: list[tuple[str, str]]) -> list[str]:
 
 def golden(name: str, last: str) -> list[str]:
     """The lines of a recorded console up to the one that contains `last`."""
-    lines = (DATA / name).read_text().splitlines()
+    lines = (DATA / name).read_text(encoding="utf-8").splitlines()
     end = max(number for number, line in enumerate(lines) if last in line)
     return masked(lines[: end + 1], ONLY_THEIRS)
 

@@ -19,6 +19,6 @@ def write_mission(folder: Path, startup: str, **sources: str) -> str:
     """
     for stem, source in sources.items():
         name = "mission.yaml" if stem == "mission_yaml" else f"{stem}.py"
-        (folder / name).write_text(textwrap.dedent(source))
-    (folder / "startup.scr").write_text(textwrap.dedent(startup))
+        (folder / name).write_text(textwrap.dedent(source), encoding="utf-8")
+    (folder / "startup.scr").write_text(textwrap.dedent(startup), encoding="utf-8")
     return str(folder)

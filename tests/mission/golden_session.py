@@ -48,13 +48,13 @@ class Session(NamedTuple):
 
 def commands() -> list[dict[str, Any]]:
     """The recorded commands: what, when in s, bytes, events."""
-    found: list[dict[str, Any]] = json.loads((DATA / "command_events.json").read_text())
+    found: list[dict[str, Any]] = json.loads((DATA / "command_events.json").read_text(encoding="utf-8"))
     return found
 
 
 def recorded_telemetry() -> list[dict[str, Any]]:
     """The recorded packets: name, MsgId, bytes."""
-    found: list[dict[str, Any]] = json.loads((DATA / "golden_telemetry.json").read_text())
+    found: list[dict[str, Any]] = json.loads((DATA / "golden_telemetry.json").read_text(encoding="utf-8"))
     return found
 
 

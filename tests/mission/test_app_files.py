@@ -63,8 +63,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The working directory of a run, with two files."""
     home = tmp_path / "home"
     home.mkdir()
-    (home / "starts").write_text("xx")
-    (home / "old").write_text("y")
+    (home / "starts").write_text("xx", encoding="utf-8")
+    (home / "old").write_text("y", encoding="utf-8")
     monkeypatch.chdir(home)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))  # where runs have their own files
     return home
@@ -82,7 +82,9 @@ def plan(mission: str, tasks: str = "thread", seed: int = 0) -> RunPlan:
 
 def unchanged(folder: Path) -> bool:
     names = {path.name for path in folder.parent.iterdir() if path.suffix != ".cfepy"}
-    return names == {"home", "mission"} and {path.name: path.read_text() for path in folder.iterdir()} == {
+    return names == {"home", "mission"} and {
+        path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()
+    } == {
         "starts": "xx",
         "old": "y",
     }
@@ -103,7 +105,7 @@ def test_what_an_application_writes_goes_with_the_run(mission: str, folder: Path
 def test_its_journal_has_what_it_read(mission: str, folder: Path, tmp_path: Path) -> None:
     flown = record(plan(mission), tmp_path / "run.cfepy")
     assert str(folder / "starts") in read_journal(tmp_path / "run.cfepy").files
-    (folder / "starts").write_text("another computer")
+    (folder / "starts").write_text("another computer", encoding="utf-8")
     (folder / "old").unlink()
     assert_same_again(read_journal(tmp_path / "run.cfepy"), flown.trace)
 
@@ -111,9 +113,9 @@ def test_its_journal_has_what_it_read(mission: str, folder: Path, tmp_path: Path
 def test_it_can_be_kept(mission: str, folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert main(["run", mission, "--for", "1", "--quiet", "--save-files", str(out)]) == 0
-    assert (out / str(folder).lstrip("/") / "starts").read_text() == "xxx"
+    assert (out / str(folder).lstrip("/") / "starts").read_text(encoding="utf-8") == "xxx"
     (log,) = out.glob("tmp/tmp*/log")
-    assert log.read_text() == "first one\nsecond one\n"
+    assert log.read_text(encoding="utf-8") == "first one\nsecond one\n"
 
 
 def test_nothing_of_it_is_past_the_simulated_computer(
@@ -146,9 +148,11 @@ def test_apps_and_nodes_have_one_set_of_files(folder: Path, tmp_path: Path) -> N
 def test_parts_of_a_package_have_them_too(folder: Path, tmp_path: Path) -> None:
     package = tmp_path / "other" / "app"
     (package / "inner").mkdir(parents=True)
-    (package / "__init__.py").write_text("from .inner import keep\nfrom . import words\nMain = keep.Main\n")
-    (package / "words.py").write_text("def text():\n    return open('starts').read()\n")
-    (package / "inner" / "__init__.py").write_text("")
+    (package / "__init__.py").write_text(
+        "from .inner import keep\nfrom . import words\nMain = keep.Main\n", encoding="utf-8"
+    )
+    (package / "words.py").write_text("def text():\n    return open('starts').read()\n", encoding="utf-8")
+    (package / "inner" / "__init__.py").write_text("", encoding="utf-8")
     main_function = """
 from .. import words
 from ..words import text
@@ -157,15 +161,15 @@ def Main(cfe):
     open("starts", "w").close()
     cfe.os.printf(f"{text()!r} {words.__name__.rpartition('_')[2]}\\n")
 """
-    (package / "inner" / "keep.py").write_text(main_function)
+    (package / "inner" / "keep.py").write_text(main_function, encoding="utf-8")
     assert "'' 1.words" in flown_with(tmp_path, ONE)
-    assert (folder / "starts").read_text() == "xx"
+    assert (folder / "starts").read_text(encoding="utf-8") == "xx"
 
 
 def test_a_missing_part_is_told_as_python_does(folder: Path, tmp_path: Path) -> None:
     package = tmp_path / "other" / "app"
     package.mkdir(parents=True)
-    (package / "__init__.py").write_text("from . import words\n")
+    (package / "__init__.py").write_text("from . import words\n", encoding="utf-8")
     lines = flown_with(tmp_path, ONE)
     assert any("ImportError: cannot import name 'words' from 'cfepy_app_" in line for line in lines)
 

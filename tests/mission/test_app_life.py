@@ -160,7 +160,9 @@ def test_a_mission_can_be_closed_while_an_app_refuses_to_die(tmp_path: Path) -> 
 
 @pytest.mark.parametrize("name", ["a_talker_without_suffix", "a_script_with_a_long_name.py"])
 def test_nodes_may_be_called_what_ros_scripts_are_called(tmp_path: Path, name: str) -> None:
-    (tmp_path / name).write_text("#!/usr/bin/env python\nprint(__name__, __file__.rpartition('/')[2])\n")
+    (tmp_path / name).write_text(
+        "#!/usr/bin/env python\nprint(__name__, __file__.rpartition('/')[2])\n", encoding="utf-8"
+    )
     startup = f"CFE_APP, {name}, __main__, TALKER, 60, 16384, 0, 0;\n!"
     with fly(write_mission(tmp_path, startup), 1) as mission:
         assert f"[TALKER] __main__ {name}" in text_of(mission)
@@ -168,8 +170,8 @@ def test_nodes_may_be_called_what_ros_scripts_are_called(tmp_path: Path, name: s
 
 
 def test_a_script_without_suffix_is_not_the_one_with_suffix_beside_it(tmp_path: Path) -> None:
-    (tmp_path / "talker").write_text("print('the one that is meant')\n")
-    (tmp_path / "talker.py").write_text("print('another one')\n")
+    (tmp_path / "talker").write_text("print('the one that is meant')\n", encoding="utf-8")
+    (tmp_path / "talker.py").write_text("print('another one')\n", encoding="utf-8")
     with fly(write_mission(tmp_path, "CFE_APP, talker, __main__, TALKER, 60, 16384, 0, 0;\n!"), 1) as mission:
         assert "[TALKER] the one that is meant" in text_of(mission)
 

@@ -93,9 +93,9 @@ def flight(folder: Path, startup: str, files: dict[str, str] = APPS) -> list[str
     """The console lines of three seconds of a mission made of `files`."""
     for name, source in files.items():
         lines = source.splitlines()
-        (folder / name).write_text("\n".join(line.removeprefix(" " * 8) for line in lines) + "\n")
-    (folder / "startup.scr").write_text(startup)
-    (folder / "mission.yaml").write_text('cfe_version: "7.0.0"')
+        (folder / name).write_text("\n".join(line.removeprefix(" " * 8) for line in lines) + "\n", encoding="utf-8")
+    (folder / "startup.scr").write_text(startup, encoding="utf-8")
+    (folder / "mission.yaml").write_text('cfe_version: "7.0.0"', encoding="utf-8")
     (folder / "to_lab_sub.tbl").write_bytes(wrong_table())
     console = Console(quiet=True)
     with Mission(str(folder), console=console) as mission:

@@ -36,8 +36,10 @@ def main(cfe):
 
 @pytest.mark.parametrize("policy", ["random:{}", "pct:{}:2:60"])
 def test_what_comes_right_after_letting_go_is_found(tmp_path: Path, policy: str) -> None:
-    (tmp_path / "counting.py").write_text(LETS_GO_TOO_EARLY)
-    (tmp_path / "startup.scr").write_text("CFE_APP, counting, main, COUNTING, 50, 16384, 0x0, 0;\n!\n")
+    (tmp_path / "counting.py").write_text(LETS_GO_TOO_EARLY, encoding="utf-8")
+    (tmp_path / "startup.scr").write_text(
+        "CFE_APP, counting, main, COUNTING, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8"
+    )
     schedules = [Schedule.parse(policy.format(seed)) for seed in range(20)]
     found = [fly(RunPlan((str(tmp_path),), seconds=0.8, schedule=each)).results for each in schedules]
     assert any("somebody else counts on" in problem for results in found for problem in results.problems)
@@ -77,13 +79,13 @@ with lock:
 
 
 def test_an_observer_is_told_of_calls_of_services_and_of_locks(tmp_path: Path) -> None:
-    (tmp_path / "counting.py").write_text(LETS_GO_TOO_EARLY)
-    (tmp_path / "locking.py").write_text(LOCKS)
+    (tmp_path / "counting.py").write_text(LETS_GO_TOO_EARLY, encoding="utf-8")
+    (tmp_path / "locking.py").write_text(LOCKS, encoding="utf-8")
     lines = (
         "CFE_APP, counting, main, COUNTING, 50, 16384, 0x0, 0;",
         "CFE_APP, locking.py, __main__, LOCKING, 50, 16384, 0, 0;",
     )
-    (tmp_path / "startup.scr").write_text("\n".join([*lines, "!\n"]))
+    (tmp_path / "startup.scr").write_text("\n".join([*lines, "!\n"]), encoding="utf-8")
     plan = RunPlan((str(tmp_path),), seconds=0.8, schedule=Schedule("at"))
     bare, listener = fly(plan), Listener()
     assert fly(plan, attachments=[listener]).trace == bare.trace

@@ -52,7 +52,7 @@ PRINTED = """
 @pytest.mark.parametrize(("yaml", "times"), [("", (0, 0, 20)), ("{work: 5 ms, ~reset: 1 ms}", (5, 1, 20))])
 def test_callbacks_handlers_and_nodes_take_their_time(tmp_path: Path, yaml: str, times: tuple[int, ...]) -> None:
     folder = missions.write(tmp_path, {"SLOW": PRINTED})
-    (folder / "mission.yaml").write_text(f"nodes: {{SLOW: {{compute: {yaml or '{}'}}}}}\n")
+    (folder / "mission.yaml").write_text(f"nodes: {{SLOW: {{compute: {yaml or '{}'}}}}}\n", encoding="utf-8")
     run = cfepy.run(str(folder), seconds=1)
     message, request, compute = times
     printed = [line.partition("] ")[2] for line in run.console if line.startswith("[slow] ")]
@@ -60,8 +60,8 @@ def test_callbacks_handlers_and_nodes_take_their_time(tmp_path: Path, yaml: str,
 
 
 def test_an_application_takes_its_time(tmp_path: Path) -> None:
-    (tmp_path / "work.py").write_text(APP)
-    (tmp_path / "startup.scr").write_text("CFE_APP, work, Work, WORK, 50, 8192, 0, 0;\n!\n")
+    (tmp_path / "work.py").write_text(APP, encoding="utf-8")
+    (tmp_path / "startup.scr").write_text("CFE_APP, work, Work, WORK, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
     with cfepy.boot(str(tmp_path)) as flight:
         flight.run_for(1)
         flight.expect_event("WORK", 1, text="30000 us", within=0)
@@ -69,7 +69,7 @@ def test_an_application_takes_its_time(tmp_path: Path) -> None:
 
 def test_a_time_that_cannot_be(tmp_path: Path) -> None:
     folder = missions.write(tmp_path, {"SLOW": "import cfepy\ncfepy.compute(-1)\n"})
-    (folder / "mission.yaml").write_text("nodes: {SLOW: {compute: {work: soon}}}\n")
+    (folder / "mission.yaml").write_text("nodes: {SLOW: {compute: {work: soon}}}\n", encoding="utf-8")
     with pytest.raises(cfepy.UsageError, match=r"mission.yaml:1: nodes.SLOW.compute.work: "):
         cfepy.run(str(folder), seconds=1)
     (folder / "mission.yaml").unlink()

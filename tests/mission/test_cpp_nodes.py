@@ -23,7 +23,7 @@ SECTION = """cpp_nodes:
 
 
 def read(folder: Path, text: str) -> CppNodesConfig:
-    (folder / "mission.yaml").write_text(text)
+    (folder / "mission.yaml").write_text(text, encoding="utf-8")
     return read_sections(str(folder / "mission.yaml")).cpp_nodes
 
 
@@ -63,4 +63,6 @@ def test_errors_say_where(tmp_path: Path, old: str, new: str, error: str) -> Non
 
 
 def test_the_library_has_the_same_arena_where_nothing_is_said() -> None:
-    assert f"#define ROSCFE_ARENA_BYTES {ARENA_BYTES}\n" in (library_folder() / "src/heap.cpp").read_text()
+    assert f"#define ROSCFE_ARENA_BYTES {ARENA_BYTES}\n" in (library_folder() / "src/heap.cpp").read_text(
+        encoding="utf-8"
+    )

@@ -20,7 +20,7 @@ def folder(tmp_path: Path) -> str:
     for name in names:
         shutil.copy(NODES / f"{name}.py", tmp_path)
     startup = "".join(f"CFE_APP, {name}.py, __main__, {name.upper()}, 100, 16384, 0x0, 0;\n" for name in names)
-    (tmp_path / "startup.scr").write_text(startup + "!\n")
+    (tmp_path / "startup.scr").write_text(startup + "!\n", encoding="utf-8")
     return str(tmp_path)
 
 

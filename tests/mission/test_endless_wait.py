@@ -223,10 +223,10 @@ def in_node(folder: Path, source: str, tasks: str = "greenlet") -> EndlessWaits:
 
 
 def in_app(folder: Path, source: str) -> EndlessWaits:
-    (folder / "rw.py").write_text(source)
+    (folder / "rw.py").write_text(source, encoding="utf-8")
     entries = [("RW", "RW"), *([("Other", "OTHER")] if "Other" in source else [])]
     lines = [f"CFE_APP, rw, {entry}, {name}, 50, 8192, 0, 0;\n" for entry, name in entries]
-    (folder / "startup.scr").write_text("".join(lines) + "!\n")
+    (folder / "startup.scr").write_text("".join(lines) + "!\n", encoding="utf-8")
     return found_in(folder)
 
 

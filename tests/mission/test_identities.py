@@ -36,7 +36,7 @@ CFE_PSP: Default CPU Name: cpu1
 
 
 def booted(folder: Path, mission_file: str = "", **ids: int) -> Mission:
-    (folder / "mission.yaml").write_text(mission_file)
+    (folder / "mission.yaml").write_text(mission_file, encoding="utf-8")
     spec = RunPlan((str(write_mission(folder, LAB)),), **ids).spec()  # type: ignore[arg-type]  # ids are all integers
     mission = Mission(spec, console=Console(quiet=True))
     mission.run_for(1)
@@ -80,7 +80,9 @@ def test_a_mission_file_says_what_it_was_built_with(tmp_path: Path) -> None:
 
 
 def test_an_id_is_no_capacity_that_a_board_could_limit(tmp_path: Path) -> None:
-    (tmp_path / "numbered.yaml").write_text("name: numbered\nlimits: {spacecraft_id: 5, processor_id: 7}\n")
+    (tmp_path / "numbered.yaml").write_text(
+        "name: numbered\nlimits: {spacecraft_id: 5, processor_id: 7}\n", encoding="utf-8"
+    )
     said = "board: numbered.yaml\nlimits: {spacecraft_id: 4294967295, processor_id: 0}\n"
     with booted(tmp_path, said) as mission:
         assert (mission.config.spacecraft_id, mission.config.processor_id) == (0xFFFF_FFFF, 0)

@@ -32,11 +32,11 @@ def folder(tmp_path: Path) -> Path:
     """A mission of one node, OWN, with a package `pack` beside it."""
     pack = tmp_path / "pack"
     pack.mkdir()
-    (pack / "package.xml").write_text("<package><name>pack</name></package>")
-    (pack / "say.py").write_text(SAY)
-    (pack / "nodes.launch").write_text(textwrap.dedent(LAUNCH))
-    (tmp_path / "own.py").write_text(SAY)
-    (tmp_path / "startup.scr").write_text("CFE_APP, own, __main__, OWN, 100, 16384, 0x0, 0;\n!\n")
+    (pack / "package.xml").write_text("<package><name>pack</name></package>", encoding="utf-8")
+    (pack / "say.py").write_text(SAY, encoding="utf-8")
+    (pack / "nodes.launch").write_text(textwrap.dedent(LAUNCH), encoding="utf-8")
+    (tmp_path / "own.py").write_text(SAY, encoding="utf-8")
+    (tmp_path / "startup.scr").write_text("CFE_APP, own, __main__, OWN, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     return tmp_path
 
 
@@ -49,7 +49,9 @@ def fly(folder: Path) -> list[str]:
 
 
 def test_nodes_of_a_launch_file_run_beside_the_missions_own(folder: Path) -> None:
-    (folder / "mission.yaml").write_text("launch: [{file: pack/nodes.launch, args: {who: somebody}}]\n")
+    (folder / "mission.yaml").write_text(
+        "launch: [{file: pack/nodes.launch, args: {who: somebody}}]\n", encoding="utf-8"
+    )
     assert fly(folder) == [
         "[say] /say of the launch file",
         "[somebody] /somebody of the launch file",
@@ -58,7 +60,9 @@ def test_nodes_of_a_launch_file_run_beside_the_missions_own(folder: Path) -> Non
 
 
 def test_the_mission_file_has_the_last_word(folder: Path) -> None:
-    (folder / "mission.yaml").write_text("launch: [pack/nodes.launch]\nparams: {shared: mine, only: {too: 2}}\n")
+    (folder / "mission.yaml").write_text(
+        "launch: [pack/nodes.launch]\nparams: {shared: mine, only: {too: 2}}\n", encoding="utf-8"
+    )
     spec = read_mission(str(folder))
     assert spec.ros.params["shared"] == "mine"
     assert spec.ros.params["only"] == {"here": 1, "too": 2}
@@ -80,8 +84,8 @@ def test_the_mission_file_has_the_last_word(folder: Path) -> None:
     ],
 )
 def test_errors_have_a_place(folder: Path, text: str, said: str) -> None:
-    (folder / "mission.yaml").write_text(text)
-    (folder / "bad.launch").write_text('<launch><node name="n" type="t"/></launch>')
+    (folder / "mission.yaml").write_text(text, encoding="utf-8")
+    (folder / "bad.launch").write_text('<launch><node name="n" type="t"/></launch>', encoding="utf-8")
     with pytest.raises(UsageError) as raised:
         read_mission(str(folder))
     assert said.format(folder=folder) in str(raised.value)
@@ -91,7 +95,7 @@ def test_errors_have_a_place(folder: Path, text: str, said: str) -> None:
 
 def test_a_mission_in_memory_has_room_for_its_nodes(tmp_path: Path) -> None:
     script = tmp_path / "idle.py"
-    script.write_text("import rospy\nrospy.init_node('idle', anonymous=True)\nrospy.spin()\n")
+    script.write_text("import rospy\nrospy.init_node('idle', anonymous=True)\nrospy.spin()\n", encoding="utf-8")
     nodes = {f"N{number}": NodeConfig(f"N{number}", script=script) for number in range(40)}
     with Mission(spec_of(script, nodes, {}), console=Console(quiet=True)) as mission:
         mission.run_for(2)
@@ -107,7 +111,8 @@ def test_a_burst_waits_as_on_a_pc(tmp_path: Path) -> None:
         "rospy.Subscriber('t', UInt32, lambda message: seen.append(message.data))\n"
         "publisher = rospy.Publisher('t', UInt32, queue_size=1000)\n"
         "for number in range(1000):\n    publisher.publish(number)\n"
-        "rospy.sleep(1)\nprint(seen == list(range(1000)))\n"
+        "rospy.sleep(1)\nprint(seen == list(range(1000)))\n",
+        encoding="utf-8",
     )
     console = Console(quiet=True)
     with Mission(spec_of(script, {"BURST": NodeConfig("BURST", script=script)}, {}), console=console) as mission:

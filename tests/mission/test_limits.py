@@ -87,7 +87,7 @@ def test_all_of_everything(tmp_path: Path, board: str | None) -> None:
         es.delete_app(es.get_app_id_by_name("TAKER"))
         mission.run_for(8)
         kept = left(mission)
-    (tmp_path / "startup.scr").write_text("!")
+    (tmp_path / "startup.scr").write_text("!", encoding="utf-8")
     with Mission(folder, console=Console(quiet=True), board=board) as empty:
         empty.run_for(3)
         assert kept == left(empty)

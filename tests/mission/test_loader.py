@@ -59,7 +59,9 @@ class Removed(CompiledApps):
 
 @pytest.fixture
 def files(tmp_path: Path) -> FileSystem:
-    (tmp_path / "hk.py").write_text("def Main(cfe):\n    return 'python', cfe\n\n\ndef Init(cfe):\n    return 0\n")
+    (tmp_path / "hk.py").write_text(
+        "def Main(cfe):\n    return 'python', cfe\n\n\ndef Init(cfe):\n    return 0\n", encoding="utf-8"
+    )
     return FileSystem(tmp_path)
 
 

@@ -19,7 +19,7 @@ READY = "    cfe.evs.register()\n    cfe.es.run_loop()\n    cfe.os.task_delay(70
 
 def fly(folder: Path, source: str, startup: str = APP, seconds: float = 3.0, tasks: str = "thread") -> Mission:
     write_mission(folder, startup + "!")
-    (folder / "app.py").write_text(source)
+    (folder / "app.py").write_text(source, encoding="utf-8")
     with Mission(str(folder), console=Console(quiet=True), tasks=tasks) as mission:
         mission.run_for(seconds)
     return mission

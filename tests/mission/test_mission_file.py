@@ -40,7 +40,7 @@ invariants: 3
 
 
 def read(folder: Path, text: str, mistakes: Mistakes) -> MissionSections:
-    (folder / "mission.yaml").write_text(text)
+    (folder / "mission.yaml").write_text(text, encoding="utf-8")
     return read_mission_file(folder / "mission.yaml", mistakes)
 
 
@@ -85,9 +85,9 @@ def test_what_is_no_mapping_at_all(tmp_path: Path) -> None:
 
 
 def test_demands_are_kept_as_they_stand(tmp_path: Path) -> None:
-    (tmp_path / "startup.scr").write_text("!")
+    (tmp_path / "startup.scr").write_text("!", encoding="utf-8")
     text = "invariants: {a: 1}\nresults: {b: 2}\ndeadlines: {c: 3}\ninversions: 4\n"
-    (tmp_path / "mission.yaml").write_text(text)
+    (tmp_path / "mission.yaml").write_text(text, encoding="utf-8")
     demands = read_mission(str(tmp_path)).demands
     assert {name: section.plain() for name, section in demands.items()} == dict(
         zip(DEMANDS, ({"a": 1}, {"b": 2}, {"c": 3}, 4), strict=True)
@@ -96,7 +96,9 @@ def test_demands_are_kept_as_they_stand(tmp_path: Path) -> None:
 
 def test_the_startup_script_is_read_once(tmp_path: Path) -> None:
     script = tmp_path / "startup.scr"
-    script.write_text("CFE_APP, a, Main, A, 50, 8192, 0, 0;\nCFE_APP, n, __main__, N, 50, 8192, 0, 0;!")
+    script.write_text(
+        "CFE_APP, a, Main, A, 50, 8192, 0, 0;\nCFE_APP, n, __main__, N, 50, 8192, 0, 0;!", encoding="utf-8"
+    )
     spec = MissionSpec("m", tmp_path, script, None, "linux", RosConfig())
     assert [entry.name for entry in spec.entries] == ["A", "N"]
     script.unlink()

@@ -78,7 +78,9 @@ def test_check_says_which_line_asks_for_too_much_and_which_limit_to_raise(tmp_pa
         (27, "N26 is one application too many, linux takes 26; start fewer, or raise limits.es_max_applications in "
          "the mission file")
     ]  # fmt: skip
-    (tmp_path / "mission.yaml").write_text("limits:\n  os_max_tasks: 40\n  os_max_pipes: 3\n  sb_max_pipes: 70000\n")
+    (tmp_path / "mission.yaml").write_text(
+        "limits:\n  os_max_tasks: 40\n  os_max_pipes: 3\n  sb_max_pipes: 70000\n", encoding="utf-8"
+    )
     texts = [f"{found.line}: {found.text}" for found in check_mission(mission, "rx64m")]
     assert any(text.startswith("3: limits.os_max_pipes: is not known here") for text in texts), texts
     assert "4: limits.sb_max_pipes: is 70000, it must be at most 65534" in texts

@@ -24,9 +24,9 @@ while not rospy.is_shutdown():
 
 def mission_with(folder: Path, keys: str, script: str = TELEOP) -> str:
     """Write a mission of one node."""
-    (folder / "teleop.py").write_text(script)
-    (folder / "startup.scr").write_text("CFE_APP, teleop.py, __main__, TELEOP, 100, 16384, 0, 0;!")
-    (folder / "mission.yaml").write_text(f"nodes:\n  TELEOP: {{keys: {keys}}}\n")
+    (folder / "teleop.py").write_text(script, encoding="utf-8")
+    (folder / "startup.scr").write_text("CFE_APP, teleop.py, __main__, TELEOP, 100, 16384, 0, 0;!", encoding="utf-8")
+    (folder / "mission.yaml").write_text(f"nodes:\n  TELEOP: {{keys: {keys}}}\n", encoding="utf-8")
     return str(folder)
 
 

@@ -17,7 +17,7 @@ STARTUP = "CFE_APP, n, __main__, N, 100, 16384, 0x0, 0;\n!\n"
 
 def mission_with(folder: Path, text: str, **files: str) -> str:
     for name, content in files.items():
-        (folder / f"{name}.yaml").write_text(content)
+        (folder / f"{name}.yaml").write_text(content, encoding="utf-8")
     return write_mission(folder, STARTUP, n="import rospy\n", mission_yaml=text)
 
 

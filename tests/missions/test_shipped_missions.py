@@ -120,8 +120,8 @@ def with_rate(folder: Path, rate: int) -> str:
     """The rx64m mission with nodes of another rate."""
     copy = folder / f"rate{rate}"
     shutil.copytree(MISSIONS / "rx64m_pubsub", copy)
-    text = (copy / "mission.yaml").read_text()
-    (copy / "mission.yaml").write_text(text.replace("rate: 100", f"rate: {rate}"))
+    text = (copy / "mission.yaml").read_text(encoding="utf-8")
+    (copy / "mission.yaml").write_text(text.replace("rate: 100", f"rate: {rate}"), encoding="utf-8")
     return str(copy)
 
 
@@ -164,8 +164,8 @@ def test_everything_on_the_rx64m_happens_at_ticks() -> None:
 
 def test_over_the_boards_memory_the_report_says_who_uses_what(tmp_path: Path) -> None:
     folder = Path(with_rate(tmp_path, 100))
-    script = (folder / "startup.scr").read_text()
-    (folder / "startup.scr").write_text(script.replace("RIGHT, 100, 8192", "RIGHT, 100, 500000"))
+    script = (folder / "startup.scr").read_text(encoding="utf-8")
+    (folder / "startup.scr").write_text(script.replace("RIGHT, 100, 8192", "RIGHT, 100, 500000"), encoding="utf-8")
     flight, lines = fly(str(folder), 3)
     text = "\n".join(lines)
     assert "CFE_ES_StartAppTask: AppCreate Error: TaskCreate RIGHT Failed." in text
@@ -184,8 +184,8 @@ def test_work_costs_virtual_time_on_the_board() -> None:
 
 def test_an_application_that_does_not_fit_fails_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = Path(with_rate(tmp_path, 100))
-    script = (folder / "startup.scr").read_text()
-    (folder / "startup.scr").write_text(script.replace("RIGHT, 100, 8192", "RIGHT, 100, 500000"))
+    script = (folder / "startup.scr").read_text(encoding="utf-8")
+    (folder / "startup.scr").write_text(script.replace("RIGHT, 100, 8192", "RIGHT, 100, 500000"), encoding="utf-8")
     assert main(["run", str(folder), "--for", "1", "--quiet"]) == 1
     captured = capsys.readouterr()
     assert "NOT STARTED" in captured.out

@@ -33,8 +33,8 @@ deadlines:
 
 
 def mission(folder: Path, text: str) -> MissionSpec:
-    (folder / "startup.scr").write_text("!")
-    (folder / "mission.yaml").write_text(text)
+    (folder / "startup.scr").write_text("!", encoding="utf-8")
+    (folder / "mission.yaml").write_text(text, encoding="utf-8")
     return read_mission(str(folder))
 
 

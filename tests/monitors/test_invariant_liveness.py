@@ -25,7 +25,9 @@ BEATS = """
 def violations(folder: Path, invariant: str, seconds: float = 2.0) -> list[str]:
     """What a run with beats from 0.65 s to 1.35 s says of an invariant."""
     path = missions.write(folder, {"HEART": BEATS})
-    (path / "mission.yaml").write_text(f"nodes: {{HEART: {{name: heart}}}}\ninvariants:\n  it: {invariant}\n")
+    (path / "mission.yaml").write_text(
+        f"nodes: {{HEART: {{name: heart}}}}\ninvariants:\n  it: {invariant}\n", encoding="utf-8"
+    )
     run = cfepy.run(str(path), seconds=seconds)
     return [line.partition("at ")[2] for line in run.console if line.startswith("invariant 'it'")]
 

@@ -72,16 +72,18 @@ def watched(folder: Path) -> Mission:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    (tmp_path / "counter.py").write_text(COUNTER)
-    (tmp_path / "checks.py").write_text(CHECKS)
-    (tmp_path / "startup.scr").write_text("CFE_APP, counter.py, __main__, COUNTER, 100, 16384, 0x0, 0;\n!\n")
+    (tmp_path / "counter.py").write_text(COUNTER, encoding="utf-8")
+    (tmp_path / "checks.py").write_text(CHECKS, encoding="utf-8")
+    (tmp_path / "startup.scr").write_text(
+        "CFE_APP, counter.py, __main__, COUNTER, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8"
+    )
     return tmp_path
 
 
 def held(folder: Path, invariants: str, seconds: float = 1.5) -> dict[str, InvariantRecord]:
     """What became of the invariants, by name."""
     text = textwrap.indent(textwrap.dedent(invariants).strip(), "  ")
-    (folder / "mission.yaml").write_text(f"invariants:\n{text}\n")
+    (folder / "mission.yaml").write_text(f"invariants:\n{text}\n", encoding="utf-8")
     with watched(folder) as mission:
         mission.run_for(seconds)
         mission.conclude()
@@ -194,7 +196,9 @@ def test_the_run_is_that_without_invariants_as_long_as_they_hold(folder: Path) -
             return mission.trace.digest()
 
     without = digest()
-    (folder / "mission.yaml").write_text('invariants: {small: {topic: /count, holds: "msg.data < 100"}}\n')
+    (folder / "mission.yaml").write_text(
+        'invariants: {small: {topic: /count, holds: "msg.data < 100"}}\n', encoding="utf-8"
+    )
     assert digest() == without
 
 
@@ -219,7 +223,7 @@ def test_the_run_is_that_without_invariants_as_long_as_they_hold(folder: Path) -
     ],
 )
 def test_mistakes_are_told_with_their_place(folder: Path, text: str, error: str) -> None:
-    (folder / "mission.yaml").write_text(f"invariants:\n  {text}\n")
+    (folder / "mission.yaml").write_text(f"invariants:\n  {text}\n", encoding="utf-8")
     with pytest.raises(UsageError) as caught:
         demands_of(read_mission(str(folder)))
     assert error in str(caught.value)
@@ -235,7 +239,8 @@ def test_a_processor_reset_begins_anew(tmp_path: Path) -> None:
                 cfe.sb.transmit_msg(cfe.msg.telemetry(0x0890, bytes([count])))
                 cfe.os.task_delay(100)
             cfe.es.reset_cfe(1)
-    """)
+    """),
+        encoding="utf-8",
     )
     (tmp_path / "checks.py").write_text(
         textwrap.dedent("""
@@ -246,15 +251,17 @@ def test_a_processor_reset_begins_anew(tmp_path: Path) -> None:
             def __call__(self, message):
                 self.seen += 1
                 return self.seen < 4 and message.msg.data == bytes([self.seen - 1])
-    """)
+    """),
+        encoding="utf-8",
     )
-    (tmp_path / "startup.scr").write_text("CFE_APP, apps, Resets, RESETS, 50, 8192, 0, 0;\n!\n")
+    (tmp_path / "startup.scr").write_text("CFE_APP, apps, Resets, RESETS, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
     (tmp_path / "mission.yaml").write_text(
         textwrap.dedent("""
         invariants:
           few: {packet: 0x0890, file: checks.py, function: Grows}
           fresh: {packet: 0x0890, when: "msg.data == bytes(1)", holds: "latest['0x0890'] is None"}
-    """)
+    """),
+        encoding="utf-8",
     )
     with watched(tmp_path) as mission:
         mission.run_for(2.0)
@@ -276,8 +283,8 @@ def Asks(cfe):
 
 
 def test_times_are_meant_to_the_nanosecond(tmp_path: Path) -> None:
-    (tmp_path / "asks.py").write_text(ASKS)
-    (tmp_path / "startup.scr").write_text("CFE_APP, asks, Asks, ASKS, 50, 8192, 0, 0;\n!\n")
+    (tmp_path / "asks.py").write_text(ASKS, encoding="utf-8")
+    (tmp_path / "startup.scr").write_text("CFE_APP, asks, Asks, ASKS, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
     text = "never: {packet: 0x0890, holds: 'False'}"
     asked = held(tmp_path, text)["never"].first
     answered = held(tmp_path, text.replace("0x0890", "0x0891"))["never"].first

@@ -11,7 +11,7 @@ from tests.layouts import DATA
 
 @cache
 def _packets() -> dict[str, list[dict[str, Any]]]:
-    loaded: dict[str, list[dict[str, Any]]] = json.loads((DATA / "packets.json").read_text())
+    loaded: dict[str, list[dict[str, Any]]] = json.loads((DATA / "packets.json").read_text(encoding="utf-8"))
     return loaded
 
 

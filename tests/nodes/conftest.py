@@ -57,7 +57,7 @@ def start(context: str, tmp_path: Path) -> Iterator[Callable[..., Program]]:
 
         def begin(source: str, name: str = "node", **options: Any) -> Program:
             script = tmp_path / f"{name}.py"
-            script.write_text(textwrap.dedent(source))
+            script.write_text(textwrap.dedent(source), encoding="utf-8")
             universe = Universe(kernel, name=name, script=script, **options)
             universe.spawn()
             return Program(kernel, universe)

@@ -58,11 +58,11 @@ def test_addresses_of_objects_are_left_out(text: str, plain: str) -> None:
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
 def test_they_are_in_nothing_that_a_run_shows(tasks: str, tmp_path: Path) -> None:
-    (tmp_path / "node.py").write_text(NODE)
-    (tmp_path / "app.py").write_text(APP)
+    (tmp_path / "node.py").write_text(NODE, encoding="utf-8")
+    (tmp_path / "app.py").write_text(APP, encoding="utf-8")
     line = "CFE_APP, {}, {}, {}, 90, 16384, 0, 0;\n"
     startup = line.format("node", "__main__", "NODE") + line.format("app", "Main", "APP") + "!\n"
-    (tmp_path / "startup.scr").write_text(startup)
+    (tmp_path / "startup.scr").write_text(startup, encoding="utf-8")
     digests = set()
     for _ in range(3):
         kept = [bytearray(100) for _ in range(len(digests) * 1000)]

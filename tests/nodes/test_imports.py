@@ -17,11 +17,15 @@ def package(tmp_path):
     """A package `robot` beside the script, with relative imports and a module that imports it back."""
     folder = tmp_path / "robot"
     (folder / "parts").mkdir(parents=True)
-    (folder / "__init__.py").write_text("from .arm import Arm\nfrom . import parts\n__all__ = ['arm', 'leg']\n")
-    (folder / "arm.py").write_text("import robot\nfrom .parts.joint import LIMIT\nclass Arm:\n    limit = LIMIT\n")
-    (folder / "leg.py").write_text("from robot import arm\nname = __name__\n")
-    (folder / "parts" / "__init__.py").write_text("")
-    (folder / "parts" / "joint.py").write_text("from .. import arm as above\nLIMIT = 5\n")
+    (folder / "__init__.py").write_text(
+        "from .arm import Arm\nfrom . import parts\n__all__ = ['arm', 'leg']\n", encoding="utf-8"
+    )
+    (folder / "arm.py").write_text(
+        "import robot\nfrom .parts.joint import LIMIT\nclass Arm:\n    limit = LIMIT\n", encoding="utf-8"
+    )
+    (folder / "leg.py").write_text("from robot import arm\nname = __name__\n", encoding="utf-8")
+    (folder / "parts" / "__init__.py").write_text("", encoding="utf-8")
+    (folder / "parts" / "joint.py").write_text("from .. import arm as above\nLIMIT = 5\n", encoding="utf-8")
     return folder
 
 
@@ -66,7 +70,7 @@ def test_what_to_do_about_a_module_that_is_nowhere(run):
 
 
 def test_an_import_that_fails_leaves_nothing_behind(run, tmp_path):
-    (tmp_path / "bad.py").write_text("1 / 0\n")
+    (tmp_path / "bad.py").write_text("1 / 0\n", encoding="utf-8")
     program = run("""
         import sys
         for _ in range(2):
@@ -81,7 +85,7 @@ def test_an_import_that_fails_leaves_nothing_behind(run, tmp_path):
 def test_search_paths_given_and_added(run, tmp_path):
     for folder in ("given", "added"):
         (tmp_path / folder).mkdir()
-        (tmp_path / folder / f"from_{folder}.py").write_text("import time\nclock = time\n")
+        (tmp_path / folder / f"from_{folder}.py").write_text("import time\nclock = time\n", encoding="utf-8")
     program = run(
         """
         import os, sys, time
@@ -95,15 +99,15 @@ def test_search_paths_given_and_added(run, tmp_path):
 
 
 def test_a_module_beside_the_script_goes_before_a_library(run, tmp_path):
-    (tmp_path / "queue.py").write_text("mine = True\n")
-    (tmp_path / "yaml.py").write_text("mine = True\n")
+    (tmp_path / "queue.py").write_text("mine = True\n", encoding="utf-8")
+    (tmp_path / "yaml.py").write_text("mine = True\n", encoding="utf-8")
     assert run("import queue, yaml\nprint(queue.mine, yaml.mine)").lines == ["True True"]
 
 
 def test_mere_folders_are_packages_but_hide_nothing(run, tmp_path):
     for folder in ("models", "logging", "yaml"):
         (tmp_path / folder).mkdir()
-    (tmp_path / "models" / "car.py").write_text("wheels = 4\n")
+    (tmp_path / "models" / "car.py").write_text("wheels = 4\n", encoding="utf-8")
     program = run("""
         import logging, models.car, yaml
         from models import car
@@ -114,14 +118,14 @@ def test_mere_folders_are_packages_but_hide_nothing(run, tmp_path):
 
 def test_edited_modules_are_read_again(start, tmp_path):
     for value in (1, 22):
-        (tmp_path / "edited.py").write_text(f"value = {value}\n")
+        (tmp_path / "edited.py").write_text(f"value = {value}\n", encoding="utf-8")
         program = start("import edited\nprint(edited.value)", name=f"node{value}")
         program.kernel.run()
         assert program.lines == [str(value)]
 
 
 def test_reload(run, tmp_path):
-    (tmp_path / "counted.py").write_text("count = globals().get('count', 0) + 1\n")
+    (tmp_path / "counted.py").write_text("count = globals().get('count', 0) + 1\n", encoding="utf-8")
     program = run("""
         import counted, importlib
         print(importlib.reload(counted) is counted, counted.count)
@@ -130,7 +134,7 @@ def test_reload(run, tmp_path):
 
 
 def test_spec_from_file_location_executes_in_the_node(run, tmp_path):
-    (tmp_path / "odd-name.py").write_text("import time\nclock = time\n")
+    (tmp_path / "odd-name.py").write_text("import time\nclock = time\n", encoding="utf-8")
     program = run("""
         import importlib.util, os, time
         file = os.path.join(os.path.dirname(__file__), "odd-name.py")
@@ -178,8 +182,8 @@ def test_given_modules_and_packages(run):
 def test_load_file_makes_a_package_of_the_universe(tmp_path, run):
     folder = tmp_path / "elsewhere" / "shim"
     folder.mkdir(parents=True)
-    (folder / "__init__.py").write_text("import threading\nfrom .part import value\n")
-    (folder / "part.py").write_text("value = 8\n")
+    (folder / "__init__.py").write_text("import threading\nfrom .part import value\n", encoding="utf-8")
+    (folder / "part.py").write_text("value = 8\n", encoding="utf-8")
 
     def shim(universe):
         return universe.importer.load_file("shim", str(folder / "__init__.py"), str(folder))

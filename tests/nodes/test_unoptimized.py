@@ -34,7 +34,7 @@ def test_compiled_source_keeps_asserts_and_docstrings() -> None:
 
 @pytest.mark.parametrize("option", ["-O", "-OO"])
 def test_node_is_the_same_under_an_optimizing_python(tmp_path: Path, option: str) -> None:
-    (tmp_path / "node.py").write_text(NODE)
+    (tmp_path / "node.py").write_text(NODE, encoding="utf-8")
     shown = [
         subprocess.run(
             [sys.executable, *options, "-m", "cfepy", "run", str(tmp_path / "node.py"), "--for", "1"],

@@ -23,13 +23,13 @@ KEPT = {"restore": "actions/cache/restore", "save": "actions/cache/save", "artif
 
 def job_of(file: Path, name: str) -> dict[str, Any]:
     """A job of a workflow."""
-    found: dict[str, Any] = yaml.safe_load(file.read_text())["jobs"][name]
+    found: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8"))["jobs"][name]
     return found
 
 
 def test_the_page_shows_the_workflow_of_the_example() -> None:
-    page = (ROOT / "docs" / "ci.md").read_text()
-    assert f"```yaml\n{WORKFLOW.read_text()}```\n" in page
+    page = (ROOT / "docs" / "ci.md").read_text(encoding="utf-8")
+    assert f"```yaml\n{WORKFLOW.read_text(encoding='utf-8')}```\n" in page
 
 
 def test_what_is_kept_is_what_steps_write() -> None:
@@ -60,7 +60,7 @@ def test_the_steps_work_with_and_without_what_an_earlier_run_left(tmp_path: Path
     tools.mkdir()
     for name, module in (("cfepy", "cfepy"), ("python", "")):  # as in an environment with cfepy
         words = f"-m {module}" if module else ""
-        (tools / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" {words} "$@"\n')
+        (tools / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" {words} "$@"\n', encoding="utf-8")
         (tools / name).chmod(0o755)
     environment = {**os.environ, **{name: str(value) for name, value in job["env"].items()}}
     environment |= {"BUDGET": "3", "PATH": f"{tools}:{os.environ['PATH']}", "PYTHONPATH": import_path()}

@@ -62,8 +62,8 @@ def test_a_wheel_with_other_files_than_git_has_is_refused(tmp_path: Path) -> Non
 def checkout(tmp_path: Path) -> Path:
     """A small checkout."""
     (tmp_path / "cfepy").mkdir()
-    (tmp_path / "cfepy" / "__init__.py").write_text('__version__ = "0.2.0"\n')
-    (tmp_path / "pyproject.toml").write_text('[project]\ndynamic = ["version"]\n')
+    (tmp_path / "cfepy" / "__init__.py").write_text('__version__ = "0.2.0"\n', encoding="utf-8")
+    (tmp_path / "pyproject.toml").write_text('[project]\ndynamic = ["version"]\n', encoding="utf-8")
     committed(tmp_path)
     return tmp_path
 
@@ -86,7 +86,7 @@ def test_the_version_is_in_one_place(checkout: Path) -> None:
         check_version(checkout, "0.2.1")
     with pytest.raises(UsageError, match="no version such as"):
         check_version(checkout, "two")
-    (checkout / "pyproject.toml").write_text('[project]\nversion = "0.2.0"\n')
+    (checkout / "pyproject.toml").write_text('[project]\nversion = "0.2.0"\n', encoding="utf-8")
     with pytest.raises(UsageError, match=r"alone, and is in cfepy/__init__\.py, pyproject\.toml"):
         check_version(checkout, "0.2.0")
 
@@ -96,7 +96,7 @@ def test_a_checkout_with_changes_or_the_tag_is_refused(checkout: Path) -> None:
     git(checkout, "tag", "v0.2.0")
     with pytest.raises(UsageError, match=r"there is a tag v0\.2\.0"):
         check_clean(checkout, "0.2.0")
-    (checkout / "new.txt").write_text("new")
+    (checkout / "new.txt").write_text("new", encoding="utf-8")
     with pytest.raises(UsageError, match=r"(?s)has changes.*new\.txt"):
         check_clean(checkout, "0.2.0")
 
@@ -118,7 +118,7 @@ def test_one_command_makes_a_version_ready(tmp_path: Path) -> None:
     assert done.stdout.splitlines()[-1] == f"python -m twine upload dist/{wheel} dist/{sdist}"
     assert {path.name for path in (copy / "dist").iterdir()} == {wheel, sdist}
     assert git(copy, "tag", "--list").split() == [f"v{__version__}"]
-    assert "unreleased" not in (copy / "CHANGELOG.md").read_text().partition("### ")[0]
+    assert "unreleased" not in (copy / "CHANGELOG.md").read_text(encoding="utf-8").partition("### ")[0]
     again = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, check=False)
     assert again.returncode == 1
     assert again.stdout.splitlines()[-1].startswith(f"no release: there is a tag v{__version__} already")

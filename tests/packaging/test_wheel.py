@@ -75,7 +75,7 @@ def test_the_wheel_brings_everything_along(wheel: Path) -> None:
 
 def test_the_capture_mission_flies_as_in_the_checkout(home: Path) -> None:
     output = cfepy(home, "run", "capture", "--for", "1", "--quiet", "--json", "numbers.json")
-    numbers = json.loads((home / "numbers.json").read_text())
+    numbers = json.loads((home / "numbers.json").read_text(encoding="utf-8"))
     assert output.splitlines()[-1] == f"trace: {numbers['trace']}"
     assert {topic["name"] for topic in numbers["topics"]} >= {"/joint_states", "/motor_command"}
     with Mission("capture", console=Console(quiet=True)) as mission:
@@ -111,7 +111,7 @@ def test_engine_kernel_and_bus_are_compiled_where_they_are_wanted(home: Path, tm
     (packages,) = tmp_path.glob("venv/lib/python*/site-packages")
     assert list((packages / "cfepy" / "c").glob("_engine.*"))
     (tags,) = packages.glob("cfepy-*.dist-info/WHEEL")
-    assert "Root-Is-Purelib: false" in tags.read_text()
+    assert "Root-Is-Purelib: false" in tags.read_text(encoding="utf-8")
     assert cfepy(home, "--version") == f"cfepy {__version__} (kernel and bus interpreted)\n"
     assert cfepy(tmp_path, "--version") == f"cfepy {__version__} (kernel and bus compiled)\n"
     flights = [cfepy(each, "run", "capture", "--for", "1", "--quiet") for each in (home, tmp_path)]

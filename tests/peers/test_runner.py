@@ -65,13 +65,13 @@ def sources(tmp_path: Path) -> Sources:
     """Sources of one repository with a package of tests."""
     package = tmp_path / "sources" / "us+robots" / "own"
     (package / "test" / "unit").mkdir(parents=True)
-    (package / "package.xml").write_text("<package><name>own</name></package>")
-    (package / "test" / "unit" / "__init__.py").write_text("")
-    (package / "test" / "unit" / "test_all.py").write_text(UNIT_FILE)
-    (package / "test" / "helpers.py").write_text(HELPERS)
-    (package / "test" / "unit" / "broken.py").write_text("import no_such_module\n")
-    (package / "test" / "check.py").write_text(CHECK)
-    (package / "test" / "check.test").write_text(LAUNCH)
+    (package / "package.xml").write_text("<package><name>own</name></package>", encoding="utf-8")
+    (package / "test" / "unit" / "__init__.py").write_text("", encoding="utf-8")
+    (package / "test" / "unit" / "test_all.py").write_text(UNIT_FILE, encoding="utf-8")
+    (package / "test" / "helpers.py").write_text(HELPERS, encoding="utf-8")
+    (package / "test" / "unit" / "broken.py").write_text("import no_such_module\n", encoding="utf-8")
+    (package / "test" / "check.py").write_text(CHECK, encoding="utf-8")
+    (package / "test" / "check.test").write_text(LAUNCH, encoding="utf-8")
     return Sources(tmp_path / "sources")
 
 
@@ -123,7 +123,7 @@ def test_as_many_as_on_ros_but_a_twentieth() -> None:
 
 def test_the_list_can_be_read_and_chosen_from() -> None:
     peers = read_peers()
-    assert len(peers.files) == FILE.read_text().count('"name": ')
+    assert len(peers.files) == FILE.read_text(encoding="utf-8").count('"name": ')
     assert {peer.repo for peer in peers.files.values()} <= set(peers.commits)
     assert all(len(commit) == 40 for commit in peers.commits.values())
     assert {peer.name for peer in peers.chosen(["genmsg/"])} == {name for name in peers.files if "genmsg/" in name}

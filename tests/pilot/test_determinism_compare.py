@@ -82,7 +82,8 @@ def test_suspicious_lines(tmp_path: Path) -> None:
         "        if 'a' in self.seen: self.seen.pop()\n"
         "        for name in sorted(self.seen): print(name, len(self.seen))\n"
         "        for name in self.seen - {'c'}: print(name)\n"
-        "        return ','.join(names), [x for x in self.other], id(self), self.id(3), hash('a')\n"
+        "        return ','.join(names), [x for x in self.other], id(self), self.id(3), hash('a')\n",
+        encoding="utf-8",
     )
     found = [(each.line, each.why) for each in suspects(str(file))]
     assert found == [
@@ -100,7 +101,8 @@ def test_suspicious_lines(tmp_path: Path) -> None:
         "import os.path\n"
         "kept = WeakSet()\n"
         "base = sqlite3.connect('x'); here = np.empty(3), date('now'), date('2026-01-01'), gc.get_count()\n"
-        "there = np.zeros(3), os.path.empty(3), kept.connect('x')\n"
+        "there = np.zeros(3), os.path.empty(3), kept.connect('x')\n",
+        encoding="utf-8",
     )
     assert [(each.line, each.why) for each in suspects(str(file))] == [
         (5, "is a set in the order of addresses"),
@@ -109,5 +111,5 @@ def test_suspicious_lines(tmp_path: Path) -> None:
         (6, "counts what else Python keeps"),
         (6, "has what lay in memory before"),
     ]
-    file.write_text("this is = no program")
+    file.write_text("this is = no program", encoding="utf-8")
     assert suspects(str(file)) == suspects(str(tmp_path / "none.py")) == []

@@ -105,6 +105,6 @@ def test_sweep_is_not_clean_when_its_topic_never_came(tmp_path: Path, capsys: py
 def test_page_tells_of_an_invariant_that_was_never_judged(tmp_path: Path) -> None:
     demands, page = next(iter(DEMANDS)), tmp_path / "page.html"
     main(["report", str(mission(tmp_path, demands)), "--for", "1.5", "-o", str(page)])
-    text = page.read_text()
+    text = page.read_text(encoding="utf-8")
     assert "No problems" in text
     assert f"<li>{escaped(DEMANDS[demands])}</li>" in text

@@ -61,12 +61,16 @@ def test_the_command_line_does_the_same_run(tmp_path: Path, capsys: pytest.Captu
     flown = fly(plan)
     numbers = tmp_path / "numbers.json"
     assert main([*shlex.split(plan.command_line())[1:], "--quiet", "--json", str(numbers)]) == 0
-    assert json.loads(numbers.read_text())["trace"] == flown.trace != fly(RunPlan(("capture",), seconds=0.7)).trace
+    assert (
+        json.loads(numbers.read_text(encoding="utf-8"))["trace"]
+        == flown.trace
+        != fly(RunPlan(("capture",), seconds=0.7)).trace
+    )
 
 
 def test_a_node_gets_its_time_from_its_start(tmp_path: Path) -> None:
     script = tmp_path / "teller.py"
-    script.write_text(NODE)
+    script.write_text(NODE, encoding="utf-8")
     flown = fly(RunPlan((str(script),), command="node", seconds=5))
     assert "[teller] told at True" in flown.mission.console.lines
     assert flown.results.virtual_s < 3  # it is over when its node is
@@ -74,7 +78,7 @@ def test_a_node_gets_its_time_from_its_start(tmp_path: Path) -> None:
 
 def test_a_script_is_flown_to_its_end(tmp_path: Path) -> None:
     script = tmp_path / "ask.txt"
-    script.write_text("at 2 send CFE_ES_NOOP\nexpect event CFE_ES 3 within 1\n")
+    script.write_text("at 2 send CFE_ES_NOOP\nexpect event CFE_ES 3 within 1\n", encoding="utf-8")
     flown = fly(RunPlan(("capture",), script=str(script)))
     assert flown.outcome is not None
     assert flown.outcome.ok

@@ -41,9 +41,9 @@ WALL_NS = 500_000_000
 
 
 def results_of(folder: Path, *entry_points: str, seconds: float = 3) -> Results:
-    (folder / "apps.py").write_text(APP)
+    (folder / "apps.py").write_text(APP, encoding="utf-8")
     lines = [f"CFE_APP, apps, {name}, {name.upper()}, 50, 8192, 0, 0;\n" for name in entry_points]
-    (folder / "startup.scr").write_text("".join(lines) + "!\n")
+    (folder / "startup.scr").write_text("".join(lines) + "!\n", encoding="utf-8")
     with Mission(str(folder), seed=4, console=Console(quiet=True)) as mission:
         mission.run_for(seconds)
         at = mark(mission, WALL_NS)
@@ -101,7 +101,7 @@ def test_it_is_plain_enough_for_json(tmp_path: Path) -> None:
 
 
 def test_a_mission_that_is_over_leaves_no_modules_behind(tmp_path: Path) -> None:
-    (tmp_path / "startup.scr").write_text("CFE_APP, hk, HK_AppMain, HK, 50, 16384, 0, 0;\n!")
+    (tmp_path / "startup.scr").write_text("CFE_APP, hk, HK_AppMain, HK, 50, 16384, 0, 0;\n!", encoding="utf-8")
     before = set(sys.modules)
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
         mission.run_for(1)

@@ -64,8 +64,8 @@ def test_the_console_says_that_there_are_ports(psp: Psp) -> None:
 
 def test_a_profile_declares_ports(tmp_path: Path) -> None:
     file = tmp_path / "board.yaml"
-    file.write_text("name: b\nports:\n  - {name: gpio, address: 0x8C000, size: 1 KiB}\n")
+    file.write_text("name: b\nports:\n  - {name: gpio, address: 0x8C000, size: 1 KiB}\n", encoding="utf-8")
     assert load_profile(file).ports == (PortRange("gpio", GPIO, 1024),)
-    file.write_text("name: b\nports:\n  - {name: gpio, size: 64}\n")
+    file.write_text("name: b\nports:\n  - {name: gpio, size: 64}\n", encoding="utf-8")
     with pytest.raises(UsageError, match="has no address"):
         load_profile(file)

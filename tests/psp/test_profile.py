@@ -51,7 +51,7 @@ def test_rx64m_pools_and_core_stacks_fit_its_memory() -> None:
 
 def write(path: Path, text: str) -> Path:
     file = path / "board.yaml"
-    file.write_text(text)
+    file.write_text(text, encoding="utf-8")
     return file
 
 
@@ -127,6 +127,6 @@ def test_unknown_boards() -> None:
 )
 def test_absurd_boards(tmp_path: Path, text: str, said: str) -> None:
     board = tmp_path / "board.yaml"
-    board.write_text(f"name: absurd\n{text}\n")
+    board.write_text(f"name: absurd\n{text}\n", encoding="utf-8")
     with pytest.raises(UsageError, match=said):
         load_profile(board)

@@ -58,14 +58,16 @@ class Bug:
         """
         fixed = target / self.name
         shutil.copytree(self.folder, fixed, ignore=shutil.ignore_patterns("__pycache__", "fix.yaml"))
-        changes: dict[str, list[dict[str, Any]]] = yaml.safe_load((self.folder / "fix.yaml").read_text())
+        changes: dict[str, list[dict[str, Any]]] = yaml.safe_load(
+            (self.folder / "fix.yaml").read_text(encoding="utf-8")
+        )
         for file, replacements in changes.items():
-            text = (fixed / file).read_text()
+            text = (fixed / file).read_text(encoding="utf-8")
             for each in replacements:
                 if text.count(each["old"]) != 1:
                     raise ValueError(f"{self.name}/fix.yaml: {file} has not exactly one {each['old']!r}")
                 text = text.replace(each["old"], each["new"])
-            (fixed / file).write_text(text)
+            (fixed / file).write_text(text, encoding="utf-8")
         return fixed
 
 

@@ -44,14 +44,14 @@ def measure(names: Sequence[str]) -> None:
     Args:
         names: of the missions; all of them when empty.
     """
-    measured: Measured = json.loads(MEASURED.read_text()) if MEASURED.is_file() else {}
+    measured: Measured = json.loads(MEASURED.read_text(encoding="utf-8")) if MEASURED.is_file() else {}
     for kind, mission, policy in _cells():
         cells = measured.setdefault(f"{kind} {mission.name}", {})
         if policy not in cells and (not names or mission.name in names):
             cells[policy] = _cell(kind, mission, policy)
-            MEASURED.write_text(json.dumps(measured, indent=1) + "\n")
+            MEASURED.write_text(json.dumps(measured, indent=1) + "\n", encoding="utf-8")
             print(kind, mission.name, policy, cells[policy], flush=True)
-    PAGE.write_text(page(measured))
+    PAGE.write_text(page(measured), encoding="utf-8")
 
 
 def _cells() -> list[tuple[str, Bug, str]]:

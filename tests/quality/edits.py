@@ -58,11 +58,11 @@ def edits_of(folder: Path) -> Iterator[Edit]:
     Args:
         folder: of the mission.
     """
-    sources = {path.name: path.read_text() for path in sorted(folder.glob("*.py"))}
+    sources = {path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.py"))}
 
     def comment(copy: Path) -> None:
         for name, text in sources.items():
-            (copy / name).write_text(COMMENT + text)
+            (copy / name).write_text(COMMENT + text, encoding="utf-8")
 
     yield Edit("two lines of comment at the top of each file", "", comment)
     for name, text in sources.items():
@@ -77,7 +77,7 @@ def edits_of(folder: Path) -> Iterator[Edit]:
             place, statement = _boot(text, PUBLISHES, "")
             kind = "another topic advertised and published to, in one of the nodes"
             yield _inserting(kind, name, text, place, statement)
-    script = (folder / SCRIPT).read_text()
+    script = (folder / SCRIPT).read_text(encoding="utf-8")
     for is_first in (True, False):
         yield _with_another_node(script, is_first)
 
@@ -87,7 +87,7 @@ def _inserting(kind: str, name: str, text: str, line: int, statement: str) -> Ed
     indent = lines[line - 1][: len(lines[line - 1]) - len(lines[line - 1].lstrip())]
     inserted = [f"{indent}{each}\n" for each in statement.splitlines()]
     changed = "".join([*lines[: line - 1], *inserted, *lines[line - 1 :]])
-    return Edit(kind, f"{name}:{line}", lambda copy: (copy / name).write_text(changed))
+    return Edit(kind, f"{name}:{line}", lambda copy: (copy / name).write_text(changed, encoding="utf-8"))
 
 
 def _with_another_node(script: str, is_first: bool) -> Edit:
@@ -95,8 +95,8 @@ def _with_another_node(script: str, is_first: bool) -> Edit:
     changed = f"{BUSY_LINE if is_first else ''}{head}{'' if is_first else BUSY_LINE}{mark}{rest}"
 
     def make(copy: Path) -> None:
-        (copy / "busy.py").write_text(BUSY_NODE)
-        (copy / SCRIPT).write_text(changed)
+        (copy / "busy.py").write_text(BUSY_NODE, encoding="utf-8")
+        (copy / SCRIPT).write_text(changed, encoding="utf-8")
 
     kind = "another node in the startup script, first or last, which publishes at 100 Hz to itself"
     return Edit(kind, "first" if is_first else "last", make)

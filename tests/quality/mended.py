@@ -37,7 +37,7 @@ MISSIONS: tuple[Bug, ...] = (*BUGS, *PROGRAMS)
 
 def load() -> Measured:
     """What has been flown so far."""
-    measured: Measured = json.loads(MEASURED.read_text()) if MEASURED.is_file() else {}
+    measured: Measured = json.loads(MEASURED.read_text(encoding="utf-8")) if MEASURED.is_file() else {}
     return measured
 
 
@@ -57,7 +57,7 @@ def measure(names: list[str], jobs: int, most: int) -> None:
             known["flown"] = flown_of(known) + flown
             known["failed"] = failed_of(known) + failed
             ordered = {each.name: measured[each.name] for each in MISSIONS if each.name in measured}
-            MEASURED.write_text(json.dumps(ordered, indent=1) + "\n")
+            MEASURED.write_text(json.dumps(ordered, indent=1) + "\n", encoding="utf-8")
             print(f"{name}: {known['flown']}", *failed, sep="\n  ", flush=True)
 
 

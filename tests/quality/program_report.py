@@ -27,7 +27,7 @@ Measured = dict[str, dict[str, Any]]
 
 def load() -> Measured:
     """What has been measured so far."""
-    measured: Measured = json.loads(MEASURED.read_text()) if MEASURED.is_file() else {}
+    measured: Measured = json.loads(MEASURED.read_text(encoding="utf-8")) if MEASURED.is_file() else {}
     return measured
 
 
@@ -45,7 +45,7 @@ def measure(names: list[str]) -> None:
                 value = _measured(column, program)
                 measured.setdefault(program.name, {})[column] = value
                 ordered = {each.name: measured[each.name] for each in PROGRAMS if each.name in measured}
-                MEASURED.write_text(json.dumps(ordered, indent=1) + "\n")
+                MEASURED.write_text(json.dumps(ordered, indent=1) + "\n", encoding="utf-8")
                 print(f"{program.name}: {column}: {value}", flush=True)
     write(measured)
 
@@ -53,7 +53,7 @@ def measure(names: list[str]) -> None:
 def write(measured: Measured) -> None:
     """Write the page, if nothing is missing."""
     if complete(measured):
-        PAGE.write_text(page(measured))
+        PAGE.write_text(page(measured), encoding="utf-8")
 
 
 def _measured(column: str, program: Program) -> Any:

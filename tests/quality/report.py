@@ -38,7 +38,7 @@ Measured = dict[str, dict[str, dict[str, Any]]]
 
 def load() -> Measured:
     """What has been measured so far."""
-    measured: Measured = json.loads(MEASURED.read_text()) if MEASURED.is_file() else {}
+    measured: Measured = json.loads(MEASURED.read_text(encoding="utf-8")) if MEASURED.is_file() else {}
     return measured
 
 
@@ -50,7 +50,7 @@ def save(measured: Measured) -> None:
         for bug in BUGS
         if bug.name in measured
     }
-    MEASURED.write_text(json.dumps(ordered, indent=1) + "\n")
+    MEASURED.write_text(json.dumps(ordered, indent=1) + "\n", encoding="utf-8")
 
 
 def measure(names: list[str], jobs: int, most: int) -> None:
@@ -71,7 +71,7 @@ def measure(names: list[str], jobs: int, most: int) -> None:
 def write(measured: Measured) -> None:
     """Write the page, if nothing is missing."""
     if complete(measured):
-        PAGE.write_text(page(measured))
+        PAGE.write_text(page(measured), encoding="utf-8")
 
 
 def _keep(measured: Measured, cells: Iterator[tuple[str, str, dict[str, Any]]]) -> None:

@@ -30,7 +30,7 @@ class Story(NamedTuple):
 
 def read() -> dict[str, Story]:
     """The stories by the names of the bugs."""
-    lines = [line for line in STORIES.read_text().splitlines() if line]
+    lines = [line for line in STORIES.read_text(encoding="utf-8").splitlines() if line]
     found = {}
     for head, cause in zip(lines[::2], lines[1::2], strict=True):
         name, schedule = head.split(maxsplit=1)
@@ -71,4 +71,4 @@ def write(names: list[str]) -> None:
         assert story is not None, f"{schedule} does not show {bug.name}"
         stories[bug.name] = Story(schedule, story.cause)
     blocks = (f"{bug.name} {stories[bug.name].schedule}\n    {stories[bug.name].cause or NOTHING}\n" for bug in BUGS)
-    STORIES.write_text("\n".join(blocks))
+    STORIES.write_text("\n".join(blocks), encoding="utf-8")

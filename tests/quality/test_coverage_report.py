@@ -12,7 +12,7 @@ from tests.quality.coverage_report import MEASURED, PAGE, first, median, page
 
 
 def test_the_page_shows_what_was_measured() -> None:
-    assert page(json.loads(MEASURED.read_text())) == PAGE.read_text()
+    assert page(json.loads(MEASURED.read_text(encoding="utf-8"))) == PAGE.read_text(encoding="utf-8")
 
 
 def test_a_median_counts_what_found_nothing() -> None:

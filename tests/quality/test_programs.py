@@ -20,7 +20,7 @@ FOUND = pytest.mark.parametrize(
 
 
 def test_the_page_is_what_was_measured() -> None:
-    assert PAGE.read_text() == page(load()), "run python -m tests.quality programs"
+    assert PAGE.read_text(encoding="utf-8") == page(load()), "run python -m tests.quality programs"
 
 
 def test_most_are_found() -> None:

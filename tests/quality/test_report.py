@@ -20,7 +20,7 @@ def test_everything_was_measured() -> None:
 
 
 def test_the_page_is_what_was_measured() -> None:
-    assert PAGE.read_text() == page(load()), "run python -m tests.quality report"
+    assert PAGE.read_text(encoding="utf-8") == page(load()), "run python -m tests.quality report"
 
 
 def test_every_bug_is_found_and_half_of_them_soon() -> None:

@@ -44,8 +44,10 @@ def OWNERS_Main(cfe: Cfe) -> None:
 
 
 def test_pools_of_cfe_are_told_by_the_applications_whose_tables_and_blocks_are_in_them(tmp_path: Path) -> None:
-    (tmp_path / "owners.py").write_text(OWNERS)
-    (tmp_path / "startup.scr").write_text("CFE_APP, owners.py, OWNERS_Main, OWNERS, 50, 8192, 0, 0;\n!\n")
+    (tmp_path / "owners.py").write_text(OWNERS, encoding="utf-8")
+    (tmp_path / "startup.scr").write_text(
+        "CFE_APP, owners.py, OWNERS_Main, OWNERS, 50, 8192, 0, 0;\n!\n", encoding="utf-8"
+    )
     fit = fit_of(RunPlan((str(tmp_path),), seconds=1, board="rx64m"))
     rows = {(row.pool, row.owner, row.what): row.size for row in fit.pools}
     # a block is as large as the next size of NASA's pools, and 24 bytes more; tables' blocks lie on multiples of 16
@@ -69,10 +71,10 @@ def test_the_changes_make_capture_fit(tmp_path: Path) -> None:
         ("startup.scr:4", 172_032),
     ]
     folder = shutil.copytree(CAPTURE, tmp_path / "capture")
-    script = (folder / "startup.scr").read_text()
+    script = (folder / "startup.scr").read_text(encoding="utf-8")
     for name in ("MAIN_CTRL", "HK_MONITOR"):
         script = re.sub(rf"({name}, +\d+, )65536", r"\g<1>8192", script)
-    (folder / "startup.scr").write_text(script)
+    (folder / "startup.scr").write_text(script, encoding="utf-8")
     changed = RunPlan((str(folder),), seconds=2, board="rx64m")
     assert fit_of(changed).missing == 0
     assert all(app.state == "RUNNING" for app in pilot.fly(changed).results.apps)
@@ -80,7 +82,9 @@ def test_the_changes_make_capture_fit(tmp_path: Path) -> None:
 
 def test_fewest_changes_take_the_largest_first_and_no_more_than_is_missing(tmp_path: Path) -> None:
     board = tmp_path / "small.yaml"
-    board.write_text((shipped("boards") / "gr716.yaml").read_text().replace("192 KiB}", "200 KiB}"))
+    board.write_text(
+        (shipped("boards") / "gr716.yaml").read_text(encoding="utf-8").replace("192 KiB}", "200 KiB}"), encoding="utf-8"
+    )
     fit = fit_of(RunPlan(("capture/rx64m.scr",), seconds=1, board=str(board)))
     assert fit.changes[0].text.startswith("limits: {sb_buf_memory_bytes: 16384} in place of 49152; ")
     assert fit.fits_changed

@@ -72,7 +72,7 @@ def test_the_numbers_are_there_for_programs_too(shown: Shown) -> None:
 def test_a_script_and_its_numbers_are_on_it(tmp_path: Path) -> None:
     mission = looked_at.busy_mission(tmp_path)
     script = tmp_path / "noop.script"
-    script.write_text("send CFE_ES_NOOP\nat 2 expect app SLOW RUNNING\n")
+    script.write_text("send CFE_ES_NOOP\nat 2 expect app SLOW RUNNING\n", encoding="utf-8")
     collector = Collector()
     flown = looked_at.fly(mission, collector, script=str(script))
     assert flown.outcome is not None
@@ -86,7 +86,7 @@ def test_faults_and_invariants_are_on_it(tmp_path: Path) -> None:
     more = "invariants: {never hello: {topic: /chat, holds: msg.data != 'hello'}}\n"
     mission = looked_at.busy_mission(tmp_path, looked_at.DEADLINES + more)
     plan = tmp_path / "faults.yaml"
-    plan.write_text("faults:\n  - {drop: /chat, number: 3}\n  - {drop: /nobody}\n")
+    plan.write_text("faults:\n  - {drop: /chat, number: 3}\n  - {drop: /nobody}\n", encoding="utf-8")
     collector = Collector()
     flown = looked_at.fly(mission, collector, faults=str(plan))
     page = page_of(flown, collector, About("", "fifo", mission))
@@ -196,7 +196,7 @@ def test_deaths_bad_ends_and_failed_steps_have_their_times(tmp_path: Path) -> No
     startup = "CFE_APP, dies, main, DIES, 50, 16384, 0x0, 0;\nCFE_APP, exits, main, EXITS, 50, 16384, 0x0, 0;\n!\n"
     mission = write_mission(tmp_path, startup, dies=DIES, exits=EXITS)
     script = tmp_path / "script.txt"
-    script.write_text("expect event DIES 1 within 1\n")
+    script.write_text("expect event DIES 1 within 1\n", encoding="utf-8")
     collector = Collector()
     flown = looked_at.fly(mission, collector, seconds=2, script=str(script))
     booted_s = flown.results.booted_s
@@ -235,8 +235,8 @@ def test_a_failure_is_told_as_a_story(tmp_path: Path) -> None:
     mission, page = str(Path(__file__).parents[1] / "quality" / "missions" / "lock_order"), tmp_path / "report.html"
     words = ["report", mission, "--for", "1.3", "--tasks", "greenlet", "-o", str(page)]
     assert main([*words, "--schedule", "moves:MAPPER.scan@660/on_scan.__enter__/2=MAPPER.odom"]) == 0
-    text = page.read_text()
+    text = page.read_text(encoding="utf-8")
     assert '<a href="#story">What happened</a>: MAPPER.scan.1 has self.map_lock (mapper.py:11) and wants' in text
     assert '<strong class="switch">=== PREEMPTED by MAPPER.odom.2 ===</strong>' in text
     assert main([*words, "--schedule", "moves:MAPPER.scan@660/on_scan.__enter__=MAPPER.odom"]) == 0  # does not fail
-    assert "What happened" not in page.read_text()
+    assert "What happened" not in page.read_text(encoding="utf-8")

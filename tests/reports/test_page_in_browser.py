@@ -62,7 +62,7 @@ def test_it_loads_without_an_error_or_a_request(opened: Browser) -> None:
 def test_the_errors_and_requests_of_a_page_are_noticed(browser: Browser, tmp_path: Path) -> None:
     """Or the test above could not fail."""
     page = tmp_path / "bad.html"
-    page.write_text("<link rel=icon href='data:,'><img src='other.png'><script>nothing()</script>")
+    page.write_text("<link rel=icon href='data:,'><img src='other.png'><script>nothing()</script>", encoding="utf-8")
     browser.errors.clear()
     browser.requests.clear()
     browser.open(page)
@@ -188,7 +188,9 @@ def test_a_problem_leads_to_its_story_and_that_to_the_timeline(browser: Browser,
         "B got in", ("A", "B"), [*rows, StoryRow(1_000_000_001, 1, "has lock"), StoryRow(None, None, "x 4")], ""
     )
     page = tmp_path / "story.html"
-    page.write_text(page_of(shown.flown, shown.collector, About("", "at:1=1", shown.mission, (), story)))
+    page.write_text(
+        page_of(shown.flown, shown.collector, About("", "at:1=1", shown.mission, (), story)), encoding="utf-8"
+    )
     browser.errors.clear()
     browser.open(page)
     assert browser.errors == []

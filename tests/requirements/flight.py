@@ -81,7 +81,7 @@ class Flight:
             (folder / name).write_bytes(data)
         board = folder / "board.yaml"
         lines = [f"  {name}: {str(value).lower()}\n" for name, value in limits.items()]
-        board.write_text("name: bench\n" + ("limits:\n" + "".join(lines) if lines else ""))
+        board.write_text("name: bench\n" + ("limits:\n" + "".join(lines) if lines else ""), encoding="utf-8")
         self.mission = Mission(path, board=str(board), console=Console(quiet=True))
         self._boot()
 

@@ -42,14 +42,14 @@ anew; a test fails when it is stale.
 
 def ids() -> list[str]:
     """All ids, in the order of NASA's lists."""
-    return IDS.read_text().split()
+    return IDS.read_text(encoding="utf-8").split()
 
 
 def evidence() -> dict[str, list[str]]:
     """Id to its tests, as "test_es.py::test_cES1000_..."."""
     found: dict[str, list[str]] = {}
     for file in sorted(Path(__file__).parent.glob("test_*.py")):
-        for test in _tests(ast.parse(file.read_text())):
+        for test in _tests(ast.parse(file.read_text(encoding="utf-8"))):
             for each in _ids_of(test):
                 found.setdefault(each, []).append(f"{file.name}::{test.name}")
     return found

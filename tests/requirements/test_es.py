@@ -228,12 +228,12 @@ def test_cES1007_2_restart_and_reload_need_the_file(ground: Ground) -> None:
 def test_cES1007_3_an_application_that_does_not_start_again_is_gone(ground: Ground, action: str, event: int) -> None:
     """The file is there, but the entry point is not in it any more."""
     folder = Path(ground.mission.spec.folder)
-    (folder / "empty.py").write_text("nothing = 0\n")
+    (folder / "empty.py").write_text("nothing = 0\n", encoding="utf-8")
     errors = counters(ground)[1]
     if action == "Reload":
         events = ground.command(pk.RELOAD_APP, 8, Application="LOOPER", AppFileName="/cf/empty.so")
     else:
-        (folder / "looper.py").write_text("nothing = 0\n")
+        (folder / "looper.py").write_text("nothing = 0\n", encoding="utf-8")
         ground.mission.files.volume("/cf").clear()
         events = ground.command(pk.RESTART_APP, 8, Application="LOOPER")
     assert events[-1] == f"CFE_ES {event}: {action} Application LOOPER Failed: AppCreate Error 0xC8000005."

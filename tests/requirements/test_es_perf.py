@@ -34,7 +34,7 @@ START, CENTER, END = 0, 1, 2
 @pytest.fixture
 def ground(tmp_path: Path) -> Iterator[Ground]:
     board = tmp_path / "small.yaml"
-    board.write_text("name: small\nlimits:\n  es_perf_data_buffer_size: 100\n")
+    board.write_text("name: small\nlimits:\n  es_perf_data_buffer_size: 100\n", encoding="utf-8")
     folder = write_mission(tmp_path, STARTUP, worker=WORKER)
     with Mission(folder, board=str(board), console=Console(quiet=True)) as mission:
         mission.run_for(1.05)

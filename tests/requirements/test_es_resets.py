@@ -133,7 +133,7 @@ def test_cES1709_exceptions_count_too(ground: Ground) -> None:
 
 def test_cES1510_a_reset_by_the_watchdog_is_told_apart(tmp_path: Path) -> None:
     board = tmp_path / "dog.yaml"
-    board.write_text("name: dog\nwatchdog_max_ms: 5000\n")
+    board.write_text("name: dog\nwatchdog_max_ms: 5000\n", encoding="utf-8")
     sleeper = """
         def main(cfe):
             cfe.es.run_loop()

@@ -8,7 +8,7 @@ from tests.requirements.report import PAGE, evidence, ids, page
 
 
 def test_the_page_is_up_to_date() -> None:
-    assert PAGE.read_text() == page(), "run python -m tests.requirements.report"
+    assert PAGE.read_text(encoding="utf-8") == page(), "run python -m tests.requirements.report"
 
 
 def test_every_id_has_a_test_or_a_reason() -> None:

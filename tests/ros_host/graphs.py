@@ -112,7 +112,9 @@ def mission_of(folder: Path) -> Path:
     mission = folder / "mission"
     mission.mkdir()
     shutil.copy(TALKER, mission / "talker.py")
-    (mission / "startup.scr").write_text("CFE_APP, talker.py, __main__, TALKER, 100, 16384, 0x0, 0;\n!\n")
+    (mission / "startup.scr").write_text(
+        "CFE_APP, talker.py, __main__, TALKER, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8"
+    )
     return mission
 
 

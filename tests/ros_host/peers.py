@@ -212,11 +212,11 @@ def joined(
     world: Callable[[RosHost], RosWorld] = lambda host: ServedMaster(host, 0),
 ) -> Iterator[Joined]:
     """A mission of nodes, by their application's name, with a master on a free port; more lines of its script."""
-    (folder / "mission.yaml").write_text(mission_file or "name: joined\n")
+    (folder / "mission.yaml").write_text(mission_file or "name: joined\n", encoding="utf-8")
     lines = [f"CFE_APP, {app.lower()}.py, __main__, {app}, 100, 16384, 0x0, 0;\n" for app in nodes]
-    (folder / "startup.scr").write_text("".join(lines) + more + "!\n")
+    (folder / "startup.scr").write_text("".join(lines) + more + "!\n", encoding="utf-8")
     for app, source in nodes.items():
-        (folder / f"{app.lower()}.py").write_text(source)
+        (folder / f"{app.lower()}.py").write_text(source, encoding="utf-8")
     told: list[str] = []
     with (
         Mission(str(folder), console=Console(quiet=True)) as mission,

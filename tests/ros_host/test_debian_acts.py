@@ -159,7 +159,7 @@ def test_a_bag_is_played_alike(real: RosGraph, mission: RosGraph) -> None:
 
 def contents(graph: RosGraph, bag: str) -> list[str]:
     """All of a bag but its times, and the number in the name of rosbag's node."""
-    (graph.folder / "dump.py").write_text(DUMP)
+    (graph.folder / "dump.py").write_text(DUMP, encoding="utf-8")
     told = graph.run(f"rosbag info {bag}; {PYTHON} dump.py {bag}")
     lines = re.sub(r"/play_\d+", "/play_N", told).splitlines()
     return [line for line in lines if not line.startswith(("duration:", "start:", "end:"))]

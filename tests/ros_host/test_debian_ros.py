@@ -70,7 +70,7 @@ def test_a_parameter_is_set_asked_for_and_deleted(real: RosGraph, mission: RosGr
 
 
 def test_rqt_graph_has_the_same_picture(real: RosGraph, mission: RosGraph) -> None:
-    (real.folder / "picture.py").write_text(PICTURE)
+    (real.folder / "picture.py").write_text(PICTURE, encoding="utf-8")
     command = f"{PYTHON} {real.folder / 'picture.py'}"
     mission.wait_for("rosnode ping -c 1 /talker", "xmlrpc reply")
     assert "/talker" in real.run(command)

@@ -41,7 +41,7 @@ def test_each_packet_has_a_type_and_is_built(capsys: pytest.CaptureFixture[str],
     names = {path.stem for path in (package / "msg").iterdir()}
     wanted = {name.removeprefix("cfe_tlm/") for name in types_of("lab")}
     assert "CFE_ES_HK_TLM" in wanted <= names
-    build = (package / "CMakeLists.txt").read_text()
+    build = (package / "CMakeLists.txt").read_text(encoding="utf-8")
     assert {line.strip() for line in build.splitlines() if line.endswith(".msg")} == {f"{name}.msg" for name in names}
     manifest = ElementTree.parse(package / "package.xml").getroot()
     assert [each.text for each in manifest.findall("name")] == ["cfe_tlm"]
@@ -49,7 +49,7 @@ def test_each_packet_has_a_type_and_is_built(capsys: pytest.CaptureFixture[str],
 
 
 def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "taken").write_text("")
+    (tmp_path / "taken").write_text("", encoding="utf-8")
     assert main(["export", "ros", "lab", "-o", str(tmp_path / "taken")]) == 2
     assert "--output: cannot be written" in capsys.readouterr().err
 
@@ -59,14 +59,14 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path, capsys: pytest.Cap
 def test_ros_makes_the_same_types_of_it(package: Path, tmp_path: Path) -> None:
     includes = tmp_path / "std_msgs"
     includes.mkdir()
-    (includes / "Header.msg").write_text(HEADER)
+    (includes / "Header.msg").write_text(HEADER, encoding="utf-8")
     made = tmp_path / "python" / "cfe_tlm" / "msg"
     options = ["-p", "cfe_tlm", "-o", str(made), f"-Icfe_tlm:{package / 'msg'}", f"-Istd_msgs:{includes}"]
     files = sorted((package / "msg").iterdir())
     for path in files:
         subprocess.run([PYTHON, str(GENERATOR), *options, str(path)], check=True, capture_output=True)
     subprocess.run([PYTHON, str(GENERATOR), *options, "--initpy"], check=True, capture_output=True)
-    (made.parent / "__init__.py").write_text("")
+    (made.parent / "__init__.py").write_text("", encoding="utf-8")
     done = subprocess.run(
         [PYTHON, "-c", ASK], env={"PYTHONPATH": str(made.parents[1])}, check=True, capture_output=True, text=True
     )

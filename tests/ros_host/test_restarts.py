@@ -61,7 +61,7 @@ class Survivor:
     def look(self) -> None:
         """Note what it has now."""
         of = Path(f"/proc/{self.process.pid}")
-        lines = [line.split() for line in (of / "status").read_text().splitlines()]
+        lines = [line.split() for line in (of / "status").read_text(encoding="utf-8").splitlines()]
         values = {words[0]: words[1] for words in lines if len(words) > 1}
         files = len(list((of / "fd").iterdir()))
         self.footprints.append(Footprint(int(values["VmRSS:"]), int(values["Threads:"]), files))
@@ -95,8 +95,10 @@ class Flight:
         self.folder.mkdir()
         shutil.copy(NODE, self.folder)
         nodes = f"nodes: {{MEETS: {{args: [mission, peer, {start}]}}}}\n"
-        (self.folder / "mission.yaml").write_text(f"name: meets\n{nodes}")
-        (self.folder / "startup.scr").write_text("CFE_APP, meets.py, __main__, MEETS, 100, 16384, 0x0, 0;\n!\n")
+        (self.folder / "mission.yaml").write_text(f"name: meets\n{nodes}", encoding="utf-8")
+        (self.folder / "startup.scr").write_text(
+            "CFE_APP, meets.py, __main__, MEETS, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8"
+        )
         self._report = self.folder / "report.json"
 
     def command(self, master: str) -> list[str]:
@@ -105,7 +107,7 @@ class Flight:
 
     def rows(self) -> dict[str, Any]:
         """What the report has of the peer's topics, by topic."""
-        rows = json.loads(self._report.read_text())["ros_peers"]
+        rows = json.loads(self._report.read_text(encoding="utf-8"))["ros_peers"]
         return {row["name"]: row for row in rows if row["peer"] == "/peer" and row["name"].startswith("/of_")}
 
 

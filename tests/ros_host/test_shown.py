@@ -69,7 +69,7 @@ def test_telemetry_is_a_topic_with_a_type_of_its_own(tmp_path: Path) -> None:
 
 
 def test_topics_are_heard_for_applications(tmp_path: Path) -> None:
-    (tmp_path / "hear.py").write_text(APP)
+    (tmp_path / "hear.py").write_text(APP, encoding="utf-8")
     with joined(tmp_path, {}, LISTENER, FILE) as run:
         packets = OutsideSpeaker(run, "/packets", RAW)
         assert packets.connect()["callerid"] == "/cfe"
@@ -141,16 +141,16 @@ def test_texts_structs_and_arrays() -> None:
 
 
 def test_what_is_wrong_with_the_section_is_told_with_its_line(tmp_path: Path) -> None:
-    (tmp_path / "startup.scr").write_text("!\n")
+    (tmp_path / "startup.scr").write_text("!\n", encoding="utf-8")
     (tmp_path / "mission.yaml").write_text(
-        "ros_bridge:\n  publish:\n    b: CFE_ES_HK_TLM\n    /c: {raw: true}\n  subscribe: [d]\n"
+        "ros_bridge:\n  publish:\n    b: CFE_ES_HK_TLM\n    /c: {raw: true}\n  subscribe: [d]\n", encoding="utf-8"
     )
     told = check_mission(str(tmp_path))
     assert len(told) == 3
     for line, part in ((3, 'begins with "/"'), (4, "needs a packet"), (5, 'begins with "/"')):
         assert any(each.line == line and part in each.text for each in told), told
     (tmp_path / "mission.yaml").write_text(
-        "ros_bridge:\n  publish:\n    /a: CFE_ES_HKK_TLM\n    /b: 0x0800\n  subscribe: [/d]\n"
+        "ros_bridge:\n  publish:\n    /a: CFE_ES_HKK_TLM\n    /b: 0x0800\n  subscribe: [/d]\n", encoding="utf-8"
     )
     told = check_mission(str(tmp_path))
     assert len(told) == 2
@@ -159,8 +159,8 @@ def test_what_is_wrong_with_the_section_is_told_with_its_line(tmp_path: Path) ->
 
 
 def test_a_run_does_not_begin_with_an_unknown_packet(tmp_path: Path) -> None:
-    (tmp_path / "startup.scr").write_text("!\n")
-    (tmp_path / "mission.yaml").write_text("ros_bridge: {publish: {/a: CFE_ES_HKK_TLM}}\n")
+    (tmp_path / "startup.scr").write_text("!\n", encoding="utf-8")
+    (tmp_path / "mission.yaml").write_text("ros_bridge: {publish: {/a: CFE_ES_HKK_TLM}}\n", encoding="utf-8")
     with (
         Mission(str(tmp_path), console=Console(quiet=True)) as mission,
         HostNetwork(mission),

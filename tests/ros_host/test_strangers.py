@@ -126,7 +126,9 @@ def test_clients_of_ros_are_served(run: Joined, fields: dict[str, str]) -> None:
 
 def test_own_names_are_those_of_ros_and_of_the_computer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     hosts = tmp_path / "hosts"
-    hosts.write_text("127.0.0.1 localhost\n0.0.0.0 ads.example  # none\n127.0.1.1 robot.lab.example robot arm\n")
+    hosts.write_text(
+        "127.0.0.1 localhost\n0.0.0.0 ads.example  # none\n127.0.1.1 robot.lab.example robot arm\n", encoding="utf-8"
+    )
     monkeypatch.setattr(own_names, "HOSTS", hosts)
     monkeypatch.setattr(own_names.socket, "gethostname", lambda: "robot")
     names = OwnNames(["Base.Lab.example", "10.0.0.5"])

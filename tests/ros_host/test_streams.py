@@ -37,8 +37,12 @@ def test_ten_thousand_messages_each_way_at_once_are_all_there(way: str, tmp_path
 
 def stream(folder: Path, master: str) -> None:
     shutil.copy(NODE, folder)
-    (folder / "mission.yaml").write_text(f"name: streams\nnodes: {{STREAMS: {{args: [mission, peer, {MESSAGES}]}}}}\n")
-    (folder / "startup.scr").write_text("CFE_APP, streams.py, __main__, STREAMS, 100, 16384, 0x0, 0;\n!\n")
+    (folder / "mission.yaml").write_text(
+        f"name: streams\nnodes: {{STREAMS: {{args: [mission, peer, {MESSAGES}]}}}}\n", encoding="utf-8"
+    )
+    (folder / "startup.scr").write_text(
+        "CFE_APP, streams.py, __main__, STREAMS, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8"
+    )
     report = folder / "report.json"
     with started(cfepy_run(folder, "--ros-master", master, "--json", str(report))) as mission:
         told = wait_for_line(mission, "ROS_MASTER_URI=" if master == "serve:0" else "joined the ROS master")
@@ -47,7 +51,11 @@ def stream(folder: Path, master: str) -> None:
             for process, name in ((mission, "mission"), (peer, "peer")):
                 told = wait_for_line(process, f"{name} heard ", PATIENCE_S)
                 assert told.endswith(f"heard {MESSAGES} in order"), told
-    rows = {row["name"]: row for row in json.loads(report.read_text())["ros_peers"] if row["peer"] == "/peer"}
+    rows = {
+        row["name"]: row
+        for row in json.loads(report.read_text(encoding="utf-8"))["ros_peers"]
+        if row["peer"] == "/peer"
+    }
     for topic, way in (("/of_mission", "out"), ("/of_peer", "in")):
         row = rows[topic]
         assert (row["direction"], row["dropped"], row["connections"], row["refused"]) == (way, 0, 1, 0), row

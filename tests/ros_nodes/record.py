@@ -34,12 +34,12 @@ def run(scenario: dict) -> None:
 
 
 def main() -> None:
-    record = json.loads(RECORD.read_text())
+    record = json.loads(RECORD.read_text(encoding="utf-8"))
     for scenario in record["scenarios"]:
         run(scenario)
         for node in scenario["nodes"]:
             print(scenario["name"], node["script"], node["exit_status"], *node["results"], sep="\n    ")
-    RECORD.write_text(json.dumps(record, indent=1) + "\n")
+    RECORD.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

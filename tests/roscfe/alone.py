@@ -50,12 +50,14 @@ class Alone:
     def fly(self, source: Path) -> list[str]:
         """What a node prints; it has the name, the namespace and the remappings of `tests.roscfe.probing`."""
         main = self._folder / "main.h"
-        main.write_text(main_header(True))
+        main.write_text(main_header(True), encoding="utf-8")
         ids = {f"/probes/{name}": (FIRST_ID + at, False) for at, name in enumerate(TOPICS)}
         remaps = {f"/probes/{one}": other if other[0] == "/" else f"/probes/{other}" for one, other in REMAPS.items()}
         rows = [FREE] * FREE_ROWS
         entry = self._folder / "entry.cpp"
-        entry.write_text(NodeEntry("NODE", "probe", "/probes", topics=ids, remaps=remaps, rows=rows).text())
+        entry.write_text(
+            NodeEntry("NODE", "probe", "/probes", topics=ids, remaps=remaps, rows=rows).text(), encoding="utf-8"
+        )
         node = self._objects([source], ["-std=c++17", "-Wall", "-include", str(main)], "node")
         parts = [*node, *self._objects([entry], STRICT_FLAGS), *self._library]
         wrapped = f"-Wl,--wrap={',--wrap='.join(WRAPPED)}"

@@ -106,7 +106,7 @@ def link_program(made: Path, objects: Iterable[Path], *flags: str, target: Targe
 def complaints(folder: Path, text: str, *flags: str, base: Sequence[str] = FLIGHT_FLAGS) -> str:
     """What the compiler says of a text; nothing when it is content."""
     source = folder / "text.cpp"
-    source.write_text(text)
+    source.write_text(text, encoding="utf-8")
     command = [*CPP, *base, *INCLUDE, *flags, "-fsyntax-only", str(source)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert bool(done.returncode) == bool(done.stderr), done

@@ -17,7 +17,7 @@ generate_dynamic = importlib.import_module("genpy.dynamic").generate_dynamic
 
 
 def main(name: str, text: str) -> None:
-    cls = generate_dynamic(name, Path(text).read_text())[name]
+    cls = generate_dynamic(name, Path(text).read_text(encoding="utf-8"))[name]
     given = sys.stdin.buffer
     while head := given.read(4):
         frame = given.read(*struct.unpack("<I", head))

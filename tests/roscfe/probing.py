@@ -64,9 +64,9 @@ def fly(name: str, folder: Path) -> list[str]:
     """
     package = folder / "probes"
     package.mkdir()
-    (package / "package.xml").write_text(MANIFEST)
+    (package / "package.xml").write_text(MANIFEST, encoding="utf-8")
     (package / f"{name}.cpp").write_bytes((PROBES / f"{name}.cpp").read_bytes())
-    (package / "CMakeLists.txt").write_text(f"project(probes)\nadd_executable({name} {name}.cpp)\n")
+    (package / "CMakeLists.txt").write_text(f"project(probes)\nadd_executable({name} {name}.cpp)\n", encoding="utf-8")
     remaps = "".join(f'<remap from="{one}" to="{other}"/>' for one, other in REMAPS.items())
     launch = package / "probe.launch"
     node = f'<node pkg="probes" type="{name}" name="probe" output="screen">{remaps}</node>'
@@ -74,7 +74,7 @@ def fly(name: str, folder: Path) -> list[str]:
         (package / f"{name}.py").write_bytes((PROBES / f"{name}.py").read_bytes())
         node += f'<node pkg="probes" type="{name}.py" name="partner" output="screen"/>'
     time = '<param name="/use_sim_time" value="true"/>' if name in SIMULATED else ""
-    launch.write_text(f'<launch>{time}<group ns="probes">{node}</group></launch>\n')
+    launch.write_text(f'<launch>{time}<group ns="probes">{node}</group></launch>\n', encoding="utf-8")
     with patch.dict(os.environ, {"ROS_PACKAGE_PATH": str(folder)}):
         spec = read_launch(launch, {}, build_for_flight)
     assert not spec.notes, spec.notes

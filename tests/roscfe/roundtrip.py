@@ -118,7 +118,7 @@ class Genpy(Reader):
         self._text = folder / "definition.txt"
 
     def command(self, full_name: str) -> Sequence[str]:
-        self._text.write_text(LIBRARY.full_text(full_name))
+        self._text.write_text(LIBRARY.full_text(full_name), encoding="utf-8")
         return [ROS_PYTHON, str(FOLDER / "genpy_frames.py"), full_name, str(self._text)]
 
 
@@ -150,10 +150,10 @@ class Program(Reader):
         sources = [folder / "main.cpp"]
         for at in range(0, len(types), IN_ONE_FILE):
             sources.append(folder / f"types_{at}.cpp")
-            sources[-1].write_text(_codecs(f"codecs_{at}", types[at : at + IN_ONE_FILE]))
+            sources[-1].write_text(_codecs(f"codecs_{at}", types[at : at + IN_ONE_FILE]), encoding="utf-8")
         names = [source.stem.replace("types", "codecs") for source in sources[1:]]
         declared = "\n".join(f"extern const Codec {name}[];" for name in names)
-        sources[0].write_text(MAIN % (declared, ", ".join(names)))
+        sources[0].write_text(MAIN % (declared, ", ".join(names)), encoding="utf-8")
         made = folder / "program"
         if roscpp:
             given = (f"-I{FOLDER}", "-DROSCPP", *flags)

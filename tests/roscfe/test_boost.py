@@ -33,20 +33,20 @@ int main()
 def test_locks_and_rows_print_what_is_recorded(tmp_path: Path, profile: Profile) -> None:
     sources, flags = [FOLDER / "locks.cpp", STUBS], (f"-DROSCFE_PROFILE_{profile.name}",)
     made = compile_program(tmp_path / "locks", sources, *flags, base=STRICT_FLAGS)
-    assert subprocess.check_output([made], text=True) == (FOLDER / "locks.txt").read_text()
+    assert subprocess.check_output([made], text=True) == (FOLDER / "locks.txt").read_text(encoding="utf-8")
 
 
 @needs_boost
 def test_what_is_recorded_is_what_boost_prints(tmp_path: Path) -> None:
     sources, libraries = [FOLDER / "locks.cpp"], ("-lboost_thread", "-lboost_system", "-lpthread")
     made = compile_program(tmp_path / "locks", sources, base=("-std=c++17",), include=(), libraries=libraries)
-    assert subprocess.check_output([made], text=True) == (FOLDER / "locks.txt").read_text()
+    assert subprocess.check_output([made], text=True) == (FOLDER / "locks.txt").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("profile", Profile)
 def test_a_mutex_that_would_wait_for_itself_ends_the_node(tmp_path: Path, profile: Profile) -> None:
     source = tmp_path / "twice.cpp"
-    source.write_text(TWICE)
+    source.write_text(TWICE, encoding="utf-8")
     made = compile_program(tmp_path / "twice", [source, STUBS], f"-DROSCFE_PROFILE_{profile.name}", base=STRICT_FLAGS)
     done = subprocess.run([made], capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stdout[:21]) == (3, "refused: boost::mutex")
@@ -62,6 +62,8 @@ def test_the_interface_library_compiles_with_boost_itself(tmp_path: Path) -> Non
     known = [f"{name}/{each}" for name, kind in kinds for each in LIBRARY.names(name, kind) or ()]
     write_headers(known, tmp_path, Profile.HOST, LIBRARY)
     source = tmp_path / "all.cpp"
-    source.write_text("#include <boost/signals2.hpp>\n" + "".join(f"#include <{each}>\n" for each in headers))
+    source.write_text(
+        "#include <boost/signals2.hpp>\n" + "".join(f"#include <{each}>\n" for each in headers), encoding="utf-8"
+    )
     command = [*CPP, "-std=c++17", INCLUDE[0], f"-I{tmp_path}", "-fsyntax-only", str(source)]
     assert subprocess.run(command, capture_output=True, text=True, check=False).returncode == 0

@@ -210,7 +210,8 @@ def test_the_type_on_the_bus_is_tf2s(tmp_path: Path) -> None:
         "    typedef roscfe::wire::Traits<roscfe::frames::Transforms> Ours;\n"
         "    typedef roscfe::wire::Traits<tf2_msgs::TFMessage> Theirs;\n"
         '    std::printf("%s", Ours::definition());\n'
-        "    return std::strcmp(Ours::md5(), Theirs::md5()) || std::strcmp(Ours::type(), Theirs::type());\n}\n"
+        "    return std::strcmp(Ours::md5(), Theirs::md5()) || std::strcmp(Ours::type(), Theirs::type());\n}\n",
+        encoding="utf-8",
     )
     messages = tmp_path / "messages"
     write_headers(["tf2_msgs/TFMessage"], messages, Profile.HOST, shipped())

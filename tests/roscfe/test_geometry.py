@@ -37,7 +37,7 @@ def words(line: str) -> list[str | float]:
 @pytest.mark.parametrize("options", [STRICT, ["-Wall", "-Wextra", "-Werror"]])
 def test_as_recorded(options: list[str], tmp_path: Path) -> None:
     found = answers(ours(tmp_path, *options), inputs(ON_RECORD))
-    wanted = RECORDED.read_text().splitlines()
+    wanted = RECORDED.read_text(encoding="utf-8").splitlines()
     assert len(found) == len(wanted) == 46 * ON_RECORD
     for line, other in zip(found, wanted, strict=True):
         assert [float.fromhex(word) if "0x" in word else word for word in line.split()] == words(other)

@@ -72,7 +72,7 @@ def test_a_header_of_messages_stands_by_itself(tmp_path: Path, name: str, base: 
 
 def test_depths_are_millimeters_or_meters(tmp_path: Path) -> None:
     source = tmp_path / "depths.cpp"
-    source.write_text(DEPTHS)
+    source.write_text(DEPTHS, encoding="utf-8")
     made = compile_program(tmp_path / "depths", [source])
     assert subprocess.check_output([made], text=True) == "0 1 1.5 251 0\n0 1 2 3\n"
 

@@ -239,6 +239,7 @@ def test_both_libraries_in_one_node(options: list[str], tmp_path: Path) -> None:
         + "#include <type_traits>\n"
         + 'static_assert(!std::is_same<tf::Transform, tf2::Transform>::value, "distinct");\n'
         + 'static_assert(!std::is_convertible<tf::Vector3, tf2::Vector3>::value, "distinct");\n'
-        + "int main() { return (2 * tf::Vector3(1, 2, 3))[0] == tf2::Vector3(1, 2, 3).y() ? 0 : 1; }\n"
+        + "int main() { return (2 * tf::Vector3(1, 2, 3))[0] == tf2::Vector3(1, 2, 3).y() ? 0 : 1; }\n",
+        encoding="utf-8",
     )
     assert subprocess.run([compiled(tmp_path, [source], *options)], check=False).returncode == 0

@@ -47,6 +47,6 @@ int main()
 
 def test_numbers_are_those_of_glibc(tmp_path: Path) -> None:
     source = tmp_path / "numbers.cpp"
-    source.write_text(PROGRAM)
+    source.write_text(PROGRAM, encoding="utf-8")
     made = compile_program(tmp_path / "numbers", [source, ROSCFE / "src/random.cpp"])
     assert subprocess.run([made], capture_output=True, text=True, check=True).stdout == "0 0 0 0 0 0 0 0"

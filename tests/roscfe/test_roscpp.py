@@ -43,7 +43,7 @@ def test_ours_prints_what_is_recorded(tmp_path: Path, name: str) -> None:
     write_headers(PRINTED, tmp_path, Profile.HOST, LIBRARY)
     flags = (f"-I{tmp_path}", "-O1")
     made = compile_program(tmp_path / name, [FOLDER / f"{name}.cpp"], *flags, base=STRICT_FLAGS)
-    assert output(made) == (FOLDER / f"{name}.txt").read_text()
+    assert output(made) == (FOLDER / f"{name}.txt").read_text(encoding="utf-8")
 
 
 @needs_roscpp
@@ -51,7 +51,7 @@ def test_ours_prints_what_is_recorded(tmp_path: Path, name: str) -> None:
 def test_what_is_recorded_is_what_roscpp_prints(tmp_path: Path, name: str) -> None:
     source, base = FOLDER / f"{name}.cpp", ("-std=c++17",)
     made = compile_program(tmp_path / name, [source], base=base, include=(), libraries=ROSCPP)
-    assert output(made) == (FOLDER / f"{name}.txt").read_text()
+    assert output(made) == (FOLDER / f"{name}.txt").read_text(encoding="utf-8")
 
 
 @needs_roscpp

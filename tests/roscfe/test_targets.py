@@ -63,7 +63,7 @@ class There:
 def test_what_is_recorded_of_roscpp(tmp_path: Path, target: Target) -> None:
     there = There(tmp_path, target)
     for name in PROGRAMS:
-        assert there.run(there.compile(name))[0] == (FOLDER / f"{name}.txt").read_text(), name
+        assert there.run(there.compile(name))[0] == (FOLDER / f"{name}.txt").read_text(encoding="utf-8"), name
 
 
 def test_strings_and_vectors_of_fixed_capacity(tmp_path: Path, target: Target) -> None:
@@ -88,7 +88,7 @@ def test_geometry(tmp_path: Path, target: Target) -> None:
     cases = inputs(ON_RECORD)
     given = "\n".join(" ".join(map(float.hex, case)) for case in cases)
     printed = there.run(there.compile("geometry", FOLDER / "stubs.cpp"), given=given)[0].splitlines()
-    for line, other in zip(printed, RECORDED.read_text().splitlines(), strict=True):
+    for line, other in zip(printed, RECORDED.read_text(encoding="utf-8").splitlines(), strict=True):
         found = [float.fromhex(word) if "0x" in word else word for word in line.split()]
         assert found == words(other)
 

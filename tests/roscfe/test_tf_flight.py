@@ -39,10 +39,10 @@ def package(folder: Path) -> Path:
         (folder / "where" / name).mkdir(parents=True)
     for source in NODES.iterdir():
         shutil.copy(source, folder / "where" / ("src" if source.suffix == ".cpp" else "scripts"))
-    (folder / "where/package.xml").write_text(MANIFEST)
-    (folder / "where/CMakeLists.txt").write_text(CMAKE)
+    (folder / "where/package.xml").write_text(MANIFEST, encoding="utf-8")
+    (folder / "where/CMakeLists.txt").write_text(CMAKE, encoding="utf-8")
     launch = folder / "where/launch/where.launch"
-    launch.write_text(LAUNCH)
+    launch.write_text(LAUNCH, encoding="utf-8")
     return launch
 
 

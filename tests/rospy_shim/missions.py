@@ -55,11 +55,11 @@ def run_nodes(
         if isinstance(source, Path):
             shutil.copy(source, folder / name)
         else:
-            (folder / name).write_text(textwrap.dedent(source))
+            (folder / name).write_text(textwrap.dedent(source), encoding="utf-8")
         priority = (priorities or {}).get(app, 100)
         script_lines.append(f"CFE_APP, {name}, __main__, {app}, {priority}, 16384, 0x0, 1;\n")
     startup = folder / "startup.scr"
-    startup.write_text("".join(script_lines) + "!\n")
+    startup.write_text("".join(script_lines) + "!\n", encoding="utf-8")
     ros = RosConfig(nodes or {}, topics or {}, params or {}, connection_delay_ns=connection_delay_ns)
     console = Console(quiet=True)
     spec = MissionSpec("test", folder, startup, None, "linux", ros)

@@ -22,7 +22,7 @@ def printed(folder: Path, script: str, **env: str) -> list[str]:
 
 def test_folders_of_pythonpath_come_after_the_scripts_own(tmp_path: Path) -> None:
     (tmp_path / "one").mkdir()
-    (tmp_path / "one" / "helper.py").write_text("import time\nwhere, now = 'one', time.time()")
+    (tmp_path / "one" / "helper.py").write_text("import time\nwhere, now = 'one', time.time()", encoding="utf-8")
     script = "import helper, sys, time\nprint(helper.where, helper.now > 0, sys.path[1])"
     path = str(tmp_path / "one")
     assert printed(tmp_path, script, PYTHONPATH=path) == [f"one True {path}"]
@@ -31,9 +31,9 @@ def test_folders_of_pythonpath_come_after_the_scripts_own(tmp_path: Path) -> Non
 def test_a_package_keeps_its_code_where_its_setup_says(tmp_path: Path) -> None:
     package = tmp_path / "ws" / "arm"
     (package / "python" / "arm").mkdir(parents=True)
-    (package / "python" / "arm" / "__init__.py").write_text("JOINTS = 6")
-    (package / "package.xml").write_text("<package><name>arm</name></package>")
-    (package / "setup.py").write_text(SETUP)
+    (package / "python" / "arm" / "__init__.py").write_text("JOINTS = 6", encoding="utf-8")
+    (package / "package.xml").write_text("<package><name>arm</name></package>", encoding="utf-8")
+    (package / "setup.py").write_text(SETUP, encoding="utf-8")
     script = "from arm import JOINTS\nprint(JOINTS)"
     assert printed(tmp_path, script, ROS_PACKAGE_PATH=str(tmp_path / "ws")) == ["6"]
 
@@ -59,14 +59,14 @@ def test_stand_ins_are_found_when_nothing_else_is(tmp_path: Path) -> None:
 
 def test_a_nodes_own_module_comes_before_a_stand_in(tmp_path: Path) -> None:
     (tmp_path / "own").mkdir()
-    (tmp_path / "own" / "gnupg.py").write_text("GPG = 'mine'")
+    (tmp_path / "own" / "gnupg.py").write_text("GPG = 'mine'", encoding="utf-8")
     assert printed(tmp_path, "import gnupg\nprint(gnupg.GPG)", PYTHONPATH=str(tmp_path / "own")) == ["mine"]
 
 
 def test_catkin_finds_files_of_packages(tmp_path: Path) -> None:
     package = tmp_path / "ws" / "arm"
     package.mkdir(parents=True)
-    (package / "package.xml").write_text("<package><name>arm</name></package>")
+    (package / "package.xml").write_text("<package><name>arm</name></package>", encoding="utf-8")
     script = """
         from catkin.find_in_workspaces import find_in_workspaces
         looked = []

@@ -99,7 +99,7 @@ print(String.count, numpy.count, collections.count, os.environ["COUNT"], len(log
 
 def fly(folder: Path, tasks: str, *names: str) -> Run:
     folder.mkdir()
-    (folder / "shared.py").write_text(SHARED)
+    (folder / "shared.py").write_text(SHARED, encoding="utf-8")
     sources = {"WITNESS": WITNESS, "VANDAL": VANDAL}
     return run_nodes(folder, {name: sources[name] for name in names}, seconds=4, tasks=tasks)
 

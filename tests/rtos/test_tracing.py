@@ -52,7 +52,7 @@ def test_tasks_are_traced_as_threads_are(kind: str) -> None:
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
 def test_a_function_can_be_traced_after_a_stall(tasks: str, tmp_path: Path) -> None:
     """What ends a task that spins leaves nothing behind in the interpreter; a traced function hung there."""
-    (tmp_path / "spin.py").write_text("while True:\n    pass\n")
+    (tmp_path / "spin.py").write_text("while True:\n    pass\n", encoding="utf-8")
     script = (
         "import sys, cfepy\n"
         f"assert cfepy.run({str(tmp_path / 'spin.py')!r}, stall=0.3, tasks={tasks!r}).problems\n"

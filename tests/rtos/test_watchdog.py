@@ -405,7 +405,7 @@ def test_time_in_which_others_have_the_cpu_counts(tmp_path: Path, monkeypatch: p
     }
     for thread, text in told.items():
         (tmp_path / thread).mkdir()
-        (tmp_path / thread / "schedstat").write_text(text)
+        (tmp_path / thread / "schedstat").write_text(text, encoding="utf-8")
     (tmp_path / "4").mkdir()  # a thread that has just ended
     monkeypatch.setattr(watchdog, "THREADS", str(tmp_path))
     monkeypatch.setattr(time, "process_time", lambda: 1.5)
@@ -430,13 +430,13 @@ def test_what_a_thread_was_counted_for_stays_when_it_ends(tmp_path: Path, monkey
 
     def tell(thread: str, ready_s: int) -> None:
         (tmp_path / thread).mkdir(exist_ok=True)
-        (tmp_path / thread / "schedstat").write_text(f"0 {ready_s * NS_PER_S} 7\n")
+        (tmp_path / thread / "schedstat").write_text(f"0 {ready_s * NS_PER_S} 7\n", encoding="utf-8")
 
     spent = Expenses()
     tell("1", 2)
     tell("2", 5)
     assert spent().ready_s == 7
-    (tmp_path / "2" / "schedstat").write_text("")  # cannot be read just now
+    (tmp_path / "2" / "schedstat").write_text("", encoding="utf-8")  # cannot be read just now
     tell("1", 3)
     assert spent().ready_s == 8
     tell("2", 6)

@@ -48,7 +48,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def fly(folder: Path, text: str, **options: Any) -> Outcome:
-    (folder / "script.txt").write_text(text)
+    (folder / "script.txt").write_text(text, encoding="utf-8")
     outcome = pilot.fly(RunPlan((str(folder),), script=str(folder / "script.txt"), **options)).outcome
     assert outcome is not None
     return outcome

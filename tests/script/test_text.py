@@ -20,7 +20,7 @@ STARTUP = "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\
 def script(folder: Path, text: str) -> Script:
     spec = read_mission(write_mission(folder, STARTUP))
     path = folder / "script.txt"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     return read_script(path, spec, dictionary_of(spec))
 
 

@@ -112,9 +112,9 @@ def _packages_in_circles(folder: Path) -> None:
         depends = "".join(f"<depend>p{each}</depend>" for each in range(30))
         inner = folder / f"p{number}"
         inner.mkdir()
-        (inner / "package.xml").write_text(f"<package><name>p{number}</name>{depends}</package>")
-        (inner / "CMakeLists.txt").write_text("catkin_package(LIBRARIES l)\nadd_library(l l.cpp)\n")
-        (inner / "l.cpp").write_text("int l;\n")
+        (inner / "package.xml").write_text(f"<package><name>p{number}</name>{depends}</package>", encoding="utf-8")
+        (inner / "CMakeLists.txt").write_text("catkin_package(LIBRARIES l)\nadd_library(l l.cpp)\n", encoding="utf-8")
+        (inner / "l.cpp").write_text("int l;\n", encoding="utf-8")
 
 
 def _doubled(first: str, again: str, times: int = 60) -> str:

@@ -63,9 +63,9 @@ while not rospy.is_shutdown():
 
 def mission(folder: Path, code: str = APP, yaml: str = "", app: str = "NASTY") -> Path:
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "startup.scr").write_text(f"CFE_APP, nasty, Nasty, {app}, 90, 16384, 0x0, 0;\n!\n")
-    (folder / "nasty.py").write_text(code)
-    (folder / "mission.yaml").write_text(yaml)
+    (folder / "startup.scr").write_text(f"CFE_APP, nasty, Nasty, {app}, 90, 16384, 0x0, 0;\n!\n", encoding="utf-8")
+    (folder / "nasty.py").write_text(code, encoding="utf-8")
+    (folder / "mission.yaml").write_text(yaml, encoding="utf-8")
     return folder
 
 
@@ -99,13 +99,13 @@ def dumped(folder: Path, source: Path, at: int) -> Path:
 
 def launch(folder: Path, body: str) -> Path:
     path = folder / "x.launch"
-    path.write_text(f"<launch>{body}</launch>")
+    path.write_text(f"<launch>{body}</launch>", encoding="utf-8")
     return path
 
 
 def named(folder: Path, make: Callable[[Path], object]) -> Path:
     """A folder with a nasty name, and what is made in it."""
-    made = folder / NASTY
+    made = folder / os.fsdecode(NASTY.encode())  # which each file system can have, whatever the locale
     made.mkdir()
     make(made)
     return made
@@ -126,7 +126,7 @@ def yaml_key(folder: Path) -> Path:
 
 def node_file(folder: Path) -> Path:
     path = folder / "n.py"
-    path.write_text(NODE)
+    path.write_text(NODE, encoding="utf-8")
     return path
 
 
@@ -218,14 +218,14 @@ def journal(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("words", ["replay {}", "replay --info {}", "trace {}", "diff {} {}", "diff {} {}.text"])
 def test_a_journal_prints_no_control_characters(words: str, journal: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    Path(f"{journal}.text").write_text(f"1.0 {NASTY}\n")
+    Path(f"{journal}.text").write_text(f"1.0 {NASTY}\n", encoding="utf-8")
     assert FORBIDDEN.findall(said(words.replace("{}", str(journal)).split(), capsys)) == []
 
 
 def test_differing_traces_print_no_control_characters(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     files = [tmp_path / name for name in "ab"]
     for number, file in enumerate(files):
-        file.write_text(f"0.1 HOST {NASTY}\n0.2 HOST {NASTY} {number}\n")
+        file.write_text(f"0.1 HOST {NASTY}\n0.2 HOST {NASTY} {number}\n", encoding="utf-8")
     text = said(["diff", *map(str, files)], capsys)
     assert TOLD in text
     assert FORBIDDEN.findall(text) == []

@@ -85,7 +85,7 @@ def test_a_trick_of_a_package_takes_little_with_the_limits_as_they_are(trick: Tr
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, preexec_fn=bound)
         _, status, used = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
-    judge(trick, folder, before, process.returncode, (tmp_path / "said").read_text(errors="replace"))
+    judge(trick, folder, before, process.returncode, (tmp_path / "said").read_text(errors="replace", encoding="utf-8"))
     assert used.ru_maxrss < MEMORY
 
 

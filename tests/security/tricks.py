@@ -178,8 +178,10 @@ def _wide_includes(folder: Path) -> None:
     """Seven files, each of which includes the next one ten times: ten million tags."""
     for level in range(7):
         inner = f'<include file="$(dirname)/l{level + 1}.launch"/>\n' * 10
-        (folder / f"l{level}.launch").write_text(f"<launch>{inner if level < 6 else '<node/>' * 10}</launch>")
-    (folder / "x.launch").write_text('<launch><include file="$(dirname)/l0.launch"/></launch>')
+        (folder / f"l{level}.launch").write_text(
+            f"<launch>{inner if level < 6 else '<node/>' * 10}</launch>", encoding="utf-8"
+        )
+    (folder / "x.launch").write_text('<launch><include file="$(dirname)/l0.launch"/></launch>', encoding="utf-8")
 
 
 def _messages(package: str, text: str) -> Callable[[Path], object]:

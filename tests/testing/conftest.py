@@ -12,8 +12,6 @@ from pathlib import Path
 
 import pytest
 
-import cfepy.testing.exploration
-import cfepy.testing.journals
 import cfepy.testing.strategies  # noqa: F401  # imported here, or each suite would import it anew
 from cfepy.pilot.plan import RunPlan
 from cfepy.testing import Flight
@@ -90,9 +88,9 @@ def write_mission(folder: Path, **nodes: str) -> Path:
     """A mission of ROS nodes: their programs by name."""
     folder.mkdir()
     lines = [NODE_LINE.format(name=name, app=name.upper()) for name in nodes]
-    (folder / "startup.scr").write_text("".join(lines) + "!\n")
+    (folder / "startup.scr").write_text("".join(lines) + "!\n", encoding="utf-8")
     for name, text in nodes.items():
-        (folder / f"{name}.py").write_text(text)
+        (folder / f"{name}.py").write_text(text, encoding="utf-8")
     return folder
 
 

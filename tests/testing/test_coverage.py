@@ -33,9 +33,9 @@ def test_every_line_that_ran_is_counted(command: list[str], tasks: str, tmp_path
     for name, text in FILES.items():
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
-        path.write_text(text)
+        path.write_text(text, encoding="utf-8")
     concurrency = "thread, greenlet" if tasks == "greenlet" else "thread"
-    (tmp_path / ".coveragerc").write_text(f"[run]\nsource = m\nconcurrency = {concurrency}\n")
+    (tmp_path / ".coveragerc").write_text(f"[run]\nsource = m\nconcurrency = {concurrency}\n", encoding="utf-8")
     unasked = {name: value for name, value in os.environ.items() if not name.startswith(("COV_", "COVERAGE_"))}
     environ = {**unasked, "PYTHONPATH": import_path()}
 
@@ -47,5 +47,5 @@ def test_every_line_that_ran_is_counted(command: list[str], tasks: str, tmp_path
 
     python(*command, tasks)
     python("-m", "coverage", "json", "-o", "told.json")
-    told = json.loads((tmp_path / "told.json").read_text())["files"]
+    told = json.loads((tmp_path / "told.json").read_text(encoding="utf-8"))["files"]
     assert {name: each["missing_lines"] for name, each in told.items()} == MISSED

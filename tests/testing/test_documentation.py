@@ -10,7 +10,7 @@ import pytest
 from cfepy.testing import Flight
 from tests.testing.test_example_package import PROBE, ROOT
 
-TEXT = (ROOT / "docs/testing.md").read_text()
+TEXT = (ROOT / "docs/testing.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"^```python\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
 
 
@@ -20,7 +20,7 @@ def test_its_examples_pass(pytester: pytest.Pytester, loaded: None) -> None:
     shutil.copytree(PROBE / "mission", pytester.path / "mission")
     tests.mkdir()
     for number, example in enumerate(EXAMPLES):
-        (tests / f"test_example_{number}.py").write_text(example)
+        (tests / f"test_example_{number}.py").write_text(example, encoding="utf-8")
     result = pytester.runpytest_inprocess("-p", "cfepy.testing.plugin", "--cfepy-tasks", "greenlet")
     assert result.parseoutcomes() == {"passed": sum(example.count("def test_") for example in EXAMPLES)}
     assert len(EXAMPLES) >= 6

@@ -248,7 +248,7 @@ def test_explore_of_the_command_line_shrinks_to_the_same(suite: Suite, missions:
     assert failed is not None
     assert told is not None
     expected = 'invariants: {all: {topic: /total, holds: "msg.data == 6"}}\n'
-    (missions / "race" / "mission.yaml").write_text(expected)
+    (missions / "race" / "mission.yaml").write_text(expected, encoding="utf-8")
     trial = Trial(RunPlan((str(missions / "race"),), seconds=0.9, tasks="greenlet"))
     schedule = Schedule.parse(failed[2])
     group = trial.run(schedule).groups[0]

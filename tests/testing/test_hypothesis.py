@@ -61,7 +61,7 @@ def test_a_journal_of_the_failing_example_is_kept(suite: Suite, missions: Path) 
 
 
 def test_a_folder_for_journals_that_cannot_be(suite: Suite, missions: Path) -> None:
-    (missions / "kept").write_text("")
+    (missions / "kept").write_text("", encoding="utf-8")
     result = suite("def test_it(mission):\n    mission('talk')\n", "--cfepy-record", "kept")
     result.assert_outcomes(errors=1)
     result.stdout.fnmatch_lines(["*UsageError: kept: --cfepy-record: cannot be made: File exists; name a folder*"])

@@ -123,7 +123,7 @@ def test_a_test_that_only_looks_on_is_a_run_of_the_command_line(
     assert commands == ["run --for 1.100001 --seed 5 --schedule random:2 talk"]
     monkeypatch.chdir(missions)
     assert main([*commands[0].replace("1.100001", "1.5").split(), "--quiet"]) == 0
-    assert capsys.readouterr().out.split()[-1] == (missions / "trace").read_text()
+    assert capsys.readouterr().out.split()[-1] == (missions / "trace").read_text(encoding="utf-8")
 
 
 def test_missions_are_closed_and_no_thread_is_left(suite: Suite) -> None:
@@ -177,7 +177,7 @@ def test_the_failure_of_an_assertion_has_the_console_too(suite: Suite) -> None:
 def test_paths_are_seen_from_the_test_file(pytester: pytest.Pytester, missions: Path) -> None:
     inner = pytester.mkdir("tests")
     (inner / "test_deep.py").write_text(
-        "def test_it(mission):\n    assert mission('../talk').plan.words == ('talk',)\n"
+        "def test_it(mission):\n    assert mission('../talk').plan.words == ('talk',)\n", encoding="utf-8"
     )
     pytester.runpytest_inprocess("-p", "cfepy.testing.plugin").assert_outcomes(passed=1)
 
@@ -271,11 +271,11 @@ def test_problems_are_told_with_every_failure(suite: Suite, missions: Path) -> N
 
 
 def test_pytest_finds_it_by_itself_where_it_is_installed(pytester: pytest.Pytester) -> None:
-    points = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"]["pytest11"]
+    points = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["entry-points"]["pytest11"]
     installed = pytester.mkdir("cfepy-0.dist-info")
-    (installed / "METADATA").write_text("Metadata-Version: 2.1\nName: cfepy\nVersion: 0\n")
+    (installed / "METADATA").write_text("Metadata-Version: 2.1\nName: cfepy\nVersion: 0\n", encoding="utf-8")
     lines = [f"{name} = {place}" for name, place in points.items()]
-    (installed / "entry_points.txt").write_text("\n".join(["[pytest11]", *lines, ""]))
+    (installed / "entry_points.txt").write_text("\n".join(["[pytest11]", *lines, ""]), encoding="utf-8")
     pytester.makeconftest("pytest_plugins = ['cfepy.testing.plugin']")  # which must not be one too many
     env = {"PYTHONPATH": f"{pytester.path}:{ROOT}"}
     words = [sys.executable, "-m", "pytest", "--fixtures"]

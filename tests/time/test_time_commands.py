@@ -222,7 +222,7 @@ def test_diagnostics(running: World) -> None:
 
 def test_diagnostics_have_the_bytes_of_the_real_ones(running: World) -> None:
     """All that does not hang on the host's clock: configuration, states, STCF, flags, and the sums that hold within."""
-    packets = json.loads((DATA / "packets.json").read_text())["telemetry"]
+    packets = json.loads((DATA / "packets.json").read_text(encoding="utf-8"))["telemetry"]
     (real,) = (bytes.fromhex(packet["hex"]) for packet in packets if packet["mid"] == pk.DIAG_TLM_MID)
     running.diagnostic()
     ours = running.packets[-1]

@@ -192,7 +192,7 @@ def simulated(
         if each.suffix == ".tbl" or each.name in flown
     }
     heard = ", ".join(map(hex, TELEMETRY_HEARD))
-    link = LINK_APP.with_suffix(".py").read_text().replace("WATCHED = (", f"WATCHED = ({heard}, ")
+    link = LINK_APP.with_suffix(".py").read_text(encoding="utf-8").replace("WATCHED = (", f"WATCHED = ({heard}, ")
     files |= {**tables(), STARTUP_PATH: STARTUP.encode(), "/cf/link.py": link.encode(), **(more or {})}
     return prepared_simulation(files, [*preparation(), *steps], lambda flown: SimulatedApps(flown, LINE))
 

@@ -204,7 +204,7 @@ def prepared_simulation(
         for path, data in files.items():
             (Path(folder) / Path(path).name).write_bytes(data)
         (Path(folder) / "startup.scr").write_bytes(files[STARTUP_PATH])
-        (Path(folder) / "mission.yaml").write_text(f'cfe_version: "{release}"\n')
+        (Path(folder) / "mission.yaml").write_text(f'cfe_version: "{release}"\n', encoding="utf-8")
         with Mission(folder, console=Console(quiet=True)) as flown:
             yield _after(steps, make(flown))
 

@@ -104,7 +104,9 @@ class RealCfe:
             )
         try:
             self.wait(lambda: self.boots() > 0, "boot", BOOT_LIMIT_S)
-            self.inside = int(Path(f"/proc/{self._process.pid}/task/{self._process.pid}/children").read_text())
+            self.inside = int(
+                Path(f"/proc/{self._process.pid}/task/{self._process.pid}/children").read_text(encoding="utf-8")
+            )
             with in_network_of(self.inside):
                 self._up = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
                 self._down = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -137,7 +139,7 @@ class RealCfe:
 
     def kill(self) -> None:
         """End its process as a crash would; it is started again."""
-        for child in Path(f"/proc/{self.inside}/task/{self.inside}/children").read_text().split():
+        for child in Path(f"/proc/{self.inside}/task/{self.inside}/children").read_text(encoding="utf-8").split():
             os.kill(int(child), signal.SIGKILL)
 
     def console(self) -> bytes:
@@ -181,7 +183,10 @@ class RealCfe:
 def in_network_of(pid: int) -> Iterator[None]:
     """Sockets that are made here belong to the network of another process; they keep belonging to it."""
     enter = ctypes.CDLL(None, use_errno=True).setns
-    with Path("/proc/self/ns/net").open() as own, Path(f"/proc/{pid}/ns/net").open() as other:
+    with (
+        Path("/proc/self/ns/net").open(encoding="utf-8") as own,
+        Path(f"/proc/{pid}/ns/net").open(encoding="utf-8") as other,
+    ):
         if enter(other.fileno(), CLONE_NEWNET):
             raise OSError(ctypes.get_errno(), "setns")
         try:

@@ -141,7 +141,7 @@ def fly(cfe_version: str, steps: list[Step]) -> list[Answer]:
         sources = {"tt.py": LISTENER, "tta.py": CALLER, "ttb.py": CALLER, "startup.scr": STARTUP}
         mission_file = f'cfe_version: "{cfe_version}"\nlimits: {{evs_max_app_event_burst: 0}}\n'
         for name, text in {**sources, "mission.yaml": mission_file}.items():
-            (Path(folder) / name).write_text(text)
+            (Path(folder) / name).write_text(text, encoding="utf-8")
         seen: list[Seen] = []
         watch = PacketWatch(seen.append, lambda msg_id: msg_id in WATCHED)
         with Mission(folder, console=Console(quiet=True), attachments=[watch]) as mission:

@@ -33,7 +33,7 @@ TICKS_PER_S = 100
 
 def compiled_app(built: Path, source: Path = SOURCE, *more: str) -> bytes:
     """The shared object of tables_app.c, or of another source, for a cFE; with more flags of the compiler."""
-    said = dict(re.findall(r"^(C_\w+) = (.*)$", (built / FLAGS).read_text(), re.MULTILINE))
+    said = dict(re.findall(r"^(C_\w+) = (.*)$", (built / FLAGS).read_text(encoding="utf-8"), re.MULTILINE))
     modules = [f"-I{folder}/{part}" for folder in (built / "cfe/modules").iterdir() for part in ("fsw/inc", "fsw/src")]
     flags = [*shlex.split(said["C_DEFINES"]), *shlex.split(said["C_INCLUDES"]), *modules]
     with tempfile.TemporaryDirectory() as folder:

@@ -66,7 +66,7 @@ def robot(folder: Path, *options: str, server: str = "--rosbridge") -> Iterator[
         server: the option that asks for one.
     """
     script = folder / "robot.py"
-    script.write_text(ROBOT)
+    script.write_text(ROBOT, encoding="utf-8")
     command = [sys.executable, "-m", "cfepy", "node", str(script), "--realtime", server, "0", *options]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
         assert process.stderr is not None

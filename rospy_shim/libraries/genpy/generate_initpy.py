@@ -25,5 +25,5 @@ def write_module(basedir: str, generated_modules: Iterable[str]) -> None:
     if os.path.exists(basedir) and not os.path.isdir(basedir):
         raise MsgGenerationException(f"file preventing the creating of module directory: {basedir}")
     os.makedirs(basedir, exist_ok=True)
-    with open(os.path.join(basedir, "__init__.py"), "w") as file:
+    with open(os.path.join(basedir, "__init__.py"), "w", encoding="utf-8") as file:
         file.writelines(f"from .{module} import *\n" for module in generated_modules)

@@ -82,7 +82,7 @@ def load_file(filename: str, default_namespace: str | None = None, verbose: bool
         raise RosParamException(f"file [{filename}] does not exist")
     if verbose:
         print(f"reading parameters from [{filename}]")
-    with open(filename) as file:
+    with open(filename, encoding="utf-8") as file:
         return load_str(file.read(), filename, default_namespace, verbose)
 
 
@@ -126,7 +126,7 @@ def dump_params(filename: str | None, param: str, verbose: bool = False) -> None
     if not filename:
         sys.stdout.write(text_of(tree))
         return
-    with open(filename, "w") as file:
+    with open(filename, "w", encoding="utf-8") as file:
         file.write(text_of(tree))
 
 

@@ -100,7 +100,7 @@ def _set(args: list[str]) -> None:
     options, found = _parse(parser, [each for each in args if each not in negative], 1, 2)
     name, *values = (*found, *negative)
     if options.text_file:
-        with open(options.text_file) as text:
+        with open(options.text_file, encoding="utf-8") as text:
             rosparam.set_param_raw(_resolve(name), text.read(), options.verbose)
     elif options.bin_file:
         with open(options.bin_file, "rb") as data:

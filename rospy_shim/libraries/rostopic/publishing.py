@@ -158,7 +158,7 @@ def file_yaml_arg(filename: str) -> Callable[[], Iterator[Any]]:
 
     def documents() -> Iterator[Any]:
         try:
-            with open(filename) as file:
+            with open(filename, encoding="utf-8") as file:
                 yield from ([document] for document in yaml.safe_load_all(file))
         except yaml.YAMLError as error:
             raise ROSTopicException(f"invalid YAML in file: {error}") from None

@@ -21,7 +21,7 @@ def main() -> None:
     for name in sys.argv[1:] or NAMES:
         with tempfile.TemporaryDirectory() as folder:
             lines = fly_on_real_cfe(name, built, Path(folder))
-        (HERE / f"{name}.txt").write_text("\n".join(lines) + "\n")
+        (HERE / f"{name}.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
         print(f"{name}: {len(lines)} lines")
 
 

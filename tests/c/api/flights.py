@@ -38,7 +38,7 @@ def build(name: str, folder: Path, *flags: str) -> Path:
 
 def expected(name: str) -> list[str]:
     """What an application wrote on NASA's cFE."""
-    return (HERE / f"{name}.txt").read_text().splitlines()
+    return (HERE / f"{name}.txt").read_text(encoding="utf-8").splitlines()
 
 
 def said(console: str) -> list[str]:
@@ -60,8 +60,8 @@ def fly(name: str, folder: Path, tasks: str = "thread", *, flags: tuple[str, ...
         more: lines of the mission file.
     """
     build(name, folder, *flags)
-    (folder / "startup.scr").write_text(STARTUP)
-    (folder / "mission.yaml").write_text(f'cfe_version: "7.0.0"\n{more}')
+    (folder / "startup.scr").write_text(STARTUP, encoding="utf-8")
+    (folder / "mission.yaml").write_text(f'cfe_version: "7.0.0"\n{more}', encoding="utf-8")
     with Mission(str(folder), console=Console(quiet=True), tasks=tasks) as mission:
         for _ in range(LONGEST_S):
             mission.run_for(1)

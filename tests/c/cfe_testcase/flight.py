@@ -71,8 +71,8 @@ def make_mission(source: Path, folder: Path) -> str:
     for pattern in ("*.so", "*.tbl"):
         for file in source.glob(pattern):
             shutil.copy(file, folder)
-    (folder / "startup.scr").write_text(STARTUP)
-    (folder / "mission.yaml").write_text(RELEASE)
+    (folder / "startup.scr").write_text(STARTUP, encoding="utf-8")
+    (folder / "mission.yaml").write_text(RELEASE, encoding="utf-8")
     return str(folder)
 
 
@@ -102,5 +102,5 @@ def read(log: str) -> list[Segment]:
 
 def of_nasa() -> dict[int, tuple[int, int, int]]:
     """Of each segment in NASA's own run, on its cFE 7.0.0 on Linux: passed, by hand, left out."""
-    rows = (line.split() for line in NASA.read_text().splitlines() if not line.startswith("#"))
+    rows = (line.split() for line in NASA.read_text(encoding="utf-8").splitlines() if not line.startswith("#"))
     return {int(number): (int(passed), int(by_hand), int(out)) for number, passed, by_hand, out in rows}

@@ -45,10 +45,10 @@ class Computer:
         site = folder / "lib" / interpreter.name / "site-packages"
         site.mkdir(parents=True)
         self.python.parent.mkdir()
-        self.python.write_text(WRAPPER.format(qemu=shutil.which(QEMU), root=root, python=interpreter))
+        self.python.write_text(WRAPPER.format(qemu=shutil.which(QEMU), root=root, python=interpreter), encoding="utf-8")
         self.python.chmod(0o755)
-        (folder / "pyvenv.cfg").write_text(f"home = {interpreter.parent}\n")
-        (site / "packages.pth").write_text(f"{root / PACKAGES}\n")
+        (folder / "pyvenv.cfg").write_text(f"home = {interpreter.parent}\n", encoding="utf-8")
+        (site / "packages.pth").write_text(f"{root / PACKAGES}\n", encoding="utf-8")
         self._compilers = {name: f"{command} -idirafter {root}/usr/include" for name, command in COMPILERS.items()}
 
     def run(self, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:

@@ -40,9 +40,9 @@ def make_root(root: Path) -> None:
         (apt / each).mkdir(parents=True, exist_ok=True)
     (apt / "status").touch()
     source = f"deb [arch=arm64 signed-by={KEYS}] http://deb.debian.org/debian {RELEASE} main\n"
-    (apt / "etc/apt/sources.list").write_text(source)
+    (apt / "etc/apt/sources.list").write_text(source, encoding="utf-8")
     configuration = apt / "apt.conf"
-    configuration.write_text(CONFIGURATION.format(apt=apt.resolve()))
+    configuration.write_text(CONFIGURATION.format(apt=apt.resolve()), encoding="utf-8")
     environment = {**os.environ, "APT_CONFIG": str(configuration)}
     subprocess.run(["apt-get", "update"], env=environment, check=True)
     wanted = (f"python{PYTHON}-dev", "libstdc++6")

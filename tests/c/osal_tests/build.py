@@ -73,7 +73,7 @@ class Builder:
 
     def _settings(self) -> dict[str, str]:
         """What OSAL is built with by default, with the limits that it has here."""
-        text = (self.sources / "default_config.cmake").read_text()
+        text = (self.sources / "default_config.cmake").read_text(encoding="utf-8")
         values = dict(re.findall(r'^\s*set\((\w+)\s+"?([^\s")]*)"?', text, re.M))
         config = PlatformConfig()
         semaphores = str(config.os_max_semaphores)
@@ -93,7 +93,7 @@ class Builder:
 
     def _write_osconfig(self) -> None:
         """What CMake makes of osconfig.h.in."""
-        text = (self.sources / "osconfig.h.in").read_text()
+        text = (self.sources / "osconfig.h.in").read_text(encoding="utf-8")
         values = self._values
         text = re.sub(
             r"#cmakedefine (\w+)",
@@ -102,4 +102,4 @@ class Builder:
         )
         text = re.sub(r"@(\w+)@", lambda found: values.get(found[1], ""), text)
         self.target.mkdir(parents=True, exist_ok=True)
-        (self.target / "osconfig.h").write_text(text)
+        (self.target / "osconfig.h").write_text(text, encoding="utf-8")

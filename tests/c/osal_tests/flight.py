@@ -84,7 +84,7 @@ def fly(folder: Path, name: str, tasks: str = "thread") -> Result:
         name: of the test.
         tasks: the kind of tasks, "thread" or "greenlet".
     """
-    (folder / "startup.scr").write_text(STARTUP)
+    (folder / "startup.scr").write_text(STARTUP, encoding="utf-8")
     mission = Mission(str(folder), console=Console(quiet=True), tasks=tasks)
     try:
         mission.run_for(LONGEST_S)

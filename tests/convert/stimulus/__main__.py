@@ -102,7 +102,7 @@ def main() -> None:
         for row in report.write(report.read(arguments.json, verdicts)):
             print(row.verdict, row.node, row.why)
         return
-    done = json.loads(arguments.json.read_text()) if arguments.json and arguments.json.is_file() else {}
+    done = json.loads(arguments.json.read_text(encoding="utf-8")) if arguments.json and arguments.json.is_file() else {}
     for node in listed():
         name = f"{node.repository}/{node.file}"
         if name not in convert or arguments.only not in name or name in done:

@@ -133,12 +133,12 @@ class RoscppNode:
         flags += [f"-isystem{each}" for each in system]
         old = self._folder / "cpp/pluginlib/class_list_macros.h"
         old.parent.mkdir(parents=True, exist_ok=True)
-        old.write_text(OLD_PLUGINS)
+        old.write_text(OLD_PLUGINS, encoding="utf-8")
         objects = []
         added = []
         if self._program.nodelet:
             added.append(self._folder / "nodelet_main.cpp")
-            added[0].write_text(NODELET.replace("TYPE", self._program.nodelet))
+            added[0].write_text(NODELET.replace("TYPE", self._program.nodelet), encoding="utf-8")
         for source in [*self._program.sources, *added]:
             objects.append(self._folder / f"{hashlib.sha256(bytes(source)).hexdigest()[:12]}.o")
             self._call([*CPP, *flags, "-c", str(source), "-o", str(objects[-1])])
@@ -163,7 +163,7 @@ class RoscppNode:
                 job["python"].append(package)
         job |= {"to_cpp": str(self._folder / "cpp"), "to_python": str(self._folder / "python")}
         file = self._folder / "job.json"
-        file.write_text(json.dumps(job))
+        file.write_text(json.dumps(job), encoding="utf-8")
         self._call([PYTHON, str(HERE / "generate.py"), str(file)])
 
     def _names(self, package: str) -> list[str]:
@@ -211,7 +211,7 @@ class RoscppNode:
             script: of the driver.
             scene: what the node needs.
         """
-        (self._folder / "script.json").write_text(json.dumps(script))
+        (self._folder / "script.json").write_text(json.dumps(script), encoding="utf-8")
         told = self._folder / "driver.out"
         with master(self._folder) as given:
             environ = {**given, **environment(self._folder / "python"), "ROSCONSOLE_FORMAT": FORMAT}
@@ -222,7 +222,7 @@ class RoscppNode:
             command = [PYTHON, "-P", str(HERE / "driver.py"), str(self._folder / "script.json")]
             with told.open("wb") as out, (self._folder / "node.out").open("wb") as printed:
                 driver = subprocess.Popen(command, env=environ, stdout=out, stderr=subprocess.STDOUT)
-                _until(lambda: "ready" in told.read_text() or driver.poll() is not None, LONGEST_S)
+                _until(lambda: "ready" in told.read_text(encoding="utf-8") or driver.poll() is not None, LONGEST_S)
                 begun_ns = time.time_ns()
                 words = ["stdbuf", "-oL", "-eL", str(self.made), "__name:=node", *scene.args.split()]
                 node = subprocess.Popen(
@@ -236,8 +236,8 @@ class RoscppNode:
                 if not _until(lambda: node.poll() is not None, SHUTDOWN_S):
                     node.kill()
                     node.wait()
-        rows = told.read_text(errors="replace").splitlines()
-        lines = (self._folder / "node.out").read_text(errors="surrogateescape").splitlines()
+        rows = told.read_text(errors="replace", encoding="utf-8").splitlines()
+        lines = (self._folder / "node.out").read_text(errors="surrogateescape", encoding="utf-8").splitlines()
         return outcome_of(rows, lines, self._library, None if status is None else bool(status), begun_ns)
 
 

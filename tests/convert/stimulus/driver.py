@@ -151,5 +151,5 @@ class Driver:
 
 if __name__ == "__main__":
     rospy.init_node("driver", log_level=rospy.ERROR)
-    with open(rospy.myargv()[1]) as file:
+    with open(rospy.myargv()[1], encoding="utf-8") as file:
         Driver(json.load(file)).run()

@@ -62,7 +62,7 @@ class NodeFlight:
         self._folder = folder
         package = folder / "stimulus"
         package.mkdir(exist_ok=True)
-        (package / "package.xml").write_text(MANIFEST)
+        (package / "package.xml").write_text(MANIFEST, encoding="utf-8")
         (package / "driver.py").write_bytes((HERE / "driver.py").read_bytes())
         (package / "driver.py").chmod(0o755)
         paths = f"{environ['ROS_PACKAGE_PATH']}{os.pathsep}{folder}"
@@ -111,7 +111,7 @@ class NodeFlight:
         return outcome_of(rows, printed_by_node(lines), self._library, ended(lines))
 
     def _mission(self, script: Mapping[str, Any], scene: Scene, calls: dict[str, str]) -> Any:
-        (self._folder / "script.json").write_text(json.dumps(script))
+        (self._folder / "script.json").write_text(json.dumps(script), encoding="utf-8")
         params = {name.replace("~", "node/"): value for name, value in scene.params.items()}
         listed = "".join(f'<rosparam param="{name}">{json.dumps(value)}</rosparam>' for name, value in params.items())
         package, kind, args = self._program.package.name, self._program.type, scene.args
@@ -120,12 +120,13 @@ class NodeFlight:
         elif package in provided_packages():
             package = "stimulus"  # cfepy's own program of that name would be taken
             cmake = f"project(stimulus)\nadd_executable({kind} {kind}.cpp)\n"
-            (self._folder / "stimulus/CMakeLists.txt").write_text(cmake)
+            (self._folder / "stimulus/CMakeLists.txt").write_text(cmake, encoding="utf-8")
         launch = self._folder / "stimulus.launch"
         launch.write_text(
             f'<launch>{listed}<node pkg="stimulus" type="driver.py" name="driver" output="screen"'
             f' args="{self._folder / "script.json"}"/>'
-            f'<node pkg="{package}" type="{kind}" name="node" output="screen" args="{args}"/></launch>\n'
+            f'<node pkg="{package}" type="{kind}" name="node" output="screen" args="{args}"/></launch>\n',
+            encoding="utf-8",
         )
         enroll = CompiledNodes._call
 

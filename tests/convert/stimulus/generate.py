@@ -22,7 +22,7 @@ def files(folders, ending):
 
 
 def main():
-    with open(sys.argv[1]) as file:
+    with open(sys.argv[1], encoding="utf-8") as file:
         job = json.load(file)
     include = job["include"]
     named = [f"{package}:{folder}" for package, folders in include.items() for folder in folders]
@@ -36,7 +36,7 @@ def main():
             if found:
                 to = os.path.join(job["to_python"], package, ending)
                 os.makedirs(to, exist_ok=True)
-                open(os.path.join(job["to_python"], package, "__init__.py"), "w").close()
+                open(os.path.join(job["to_python"], package, "__init__.py"), "w", encoding="utf-8").close()
                 if generator.generate_messages(package, found, to, include):
                     sys.exit("genpy failed for " + package)
                 genpy.generate_initpy.write_modules(to)

@@ -3,7 +3,6 @@
 import collections
 import concurrent.futures
 import logging
-import logging.handlers
 import queue
 import random
 import sched

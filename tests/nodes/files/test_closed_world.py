@@ -53,9 +53,9 @@ print(open(os.path.join(scratch, "log")).read(), os.path.getmtime(os.path.join(s
 def node(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder = tmp_path / "home"
     folder.mkdir()
-    (folder / "starts").write_text("xx")
+    (folder / "starts").write_text("xx", encoding="utf-8")
     script = folder / "counter.py"
-    script.write_text(COUNTER)
+    script.write_text(COUNTER, encoding="utf-8")
     monkeypatch.chdir(folder)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))  # where runs have their own files
     return script
@@ -79,7 +79,7 @@ def test_a_node_that_counts_its_starts_has_one_digest(node: Path, tmp_path: Path
     assert len({run.trace for run in runs}) == 1
     lines = printed(runs[0].mission.console.lines)
     assert lines[0].startswith("start 2 os.stat_result(st_mode=33188, st_ino=")
-    assert (node.parent / "starts").read_text() == "xx"
+    assert (node.parent / "starts").read_text(encoding="utf-8") == "xx"
     assert left(tmp_path) == ["home", "home/counter.py", "home/starts"]
     name = lines[1].split()[1]
     assert name.startswith("/tmp/tmp")
@@ -90,7 +90,7 @@ def test_its_journal_has_what_it_read_and_gives_the_run_again(node: Path, tmp_pa
     flown = record(plan_of(node), tmp_path / "run.cfepy")
     journal = read_journal(tmp_path / "run.cfepy")
     assert {os.path.basename(path) for path in journal.files} == {"counter.py", "starts"}
-    (node.parent / "starts").write_text("another computer")
+    (node.parent / "starts").write_text("another computer", encoding="utf-8")
     assert_same_again(journal, flown.trace)
 
 
@@ -99,9 +99,9 @@ def test_what_it_wrote_can_be_kept(node: Path, tmp_path: Path, capsys: pytest.Ca
     assert main(["node", str(node), "--for", "1", "--save-files", str(out)]) == 0
     said = capsys.readouterr().out
     assert f"saved to {out}: 4 files" in said
-    assert (out / str(node.parent).lstrip("/") / "starts").read_text() == "xxx"
+    assert (out / str(node.parent).lstrip("/") / "starts").read_text(encoding="utf-8") == "xxx"
     (log,) = glob.glob(f"{out}/tmp/tmp*/log")
-    assert Path(log).read_text() == "WARNING:root:logged\n"
+    assert Path(log).read_text(encoding="utf-8") == "WARNING:root:logged\n"
 
 
 WRITER = """
@@ -128,7 +128,7 @@ while not rospy.is_shutdown():
 def test_a_signal_takes_the_files_of_a_run_away(
     words: list[str], how: signal.Signals, node: Path, tmp_path: Path
 ) -> None:
-    node.write_text(WRITER)
+    node.write_text(WRITER, encoding="utf-8")
     folder = tmp_path / "scratch"
     folder.mkdir()
     process = subprocess.Popen(
@@ -179,7 +179,7 @@ print(sorted(os.listdir(scratch)))
 
 
 def test_modules_of_the_standard_library_find_what_the_run_wrote(node: Path, tmp_path: Path) -> None:
-    node.write_text(LIBRARY)
+    node.write_text(LIBRARY, encoding="utf-8")
     flown = fly(plan_of(node))
     assert printed(flown.mission.console.lines) == [
         "['again', 'netrc', 'profile', 'program', 'program.pyz', 'tree.xml', 'types']"
@@ -203,8 +203,8 @@ assert (open("starts").read(), lines.read()) == ("xxyz", "two\\n"), os.listdir("
 
 
 def test_processes_that_part_have_files_of_their_own(node: Path, tmp_path: Path) -> None:
-    node.write_text(FORKED)
-    (node.parent / "lines").write_text("one\ntwo\n")
+    node.write_text(FORKED, encoding="utf-8")
+    (node.parent / "lines").write_text("one\ntwo\n", encoding="utf-8")
     trial = Trial(replace(plan_of(node, "greenlet"), schedule=Schedule.parse("random:0:from=700ms")))
     judge = ForkingJudge(trial)
     try:

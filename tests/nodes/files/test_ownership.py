@@ -25,9 +25,9 @@ REFUSED = "[Errno 13] Permission denied"
 @pytest.fixture
 def lines(run: Run, tmp_path: Path) -> Callable[[str], list[str]]:
     """What a program prints in a folder with a file and a folder of the host."""
-    (tmp_path / "host").write_text("host")
+    (tmp_path / "host").write_text("host", encoding="utf-8")
     (tmp_path / "inner").mkdir()
-    (tmp_path / "inner" / "file").write_text("inner")
+    (tmp_path / "inner" / "file").write_text("inner", encoding="utf-8")
 
     def flown(source: str, **env: str) -> list[str]:
         return run(source, overlay=Overlay(), cwd=tmp_path, env=env).lines
@@ -141,7 +141,7 @@ def test_permissions_do_not_depend_on_the_umask_of_the_computer(lines: Callable[
     ],
 )
 def test_nobody_is_root_in_a_run(lines: Callable[[str], list[str]], tmp_path: Path, act: str, told: str) -> None:
-    (tmp_path / "locked").write_text("host")
+    (tmp_path / "locked").write_text("host", encoding="utf-8")
     os.chmod(tmp_path / "locked", 0o444)
     before = {path: path.stat().st_mode for path in tmp_path.iterdir()}
     source = f"import os\nopen('own', 'w').close()\ntry:\n    {act}\nexcept PermissionError as error:\n    print(error)"
@@ -221,8 +221,8 @@ def test_a_journal_replays_for_another_user_with_another_umask(tmp_path: Path, m
     """Also what belongs to root, and to others."""
     home = tmp_path / "home"
     home.mkdir()
-    (home / "host").write_text("x")
-    (home / "asking.py").write_text(ASKING)
+    (home / "host").write_text("x", encoding="utf-8")
+    (home / "asking.py").write_text(ASKING, encoding="utf-8")
     monkeypatch.chdir(home)
     plan = RunPlan((str(home / "asking.py"),), seconds=1.0, command=NODE, tasks="thread")
     flown = record(plan, tmp_path / "run.cfepy")
@@ -250,7 +250,7 @@ def Asking(cfe):
 
 
 def test_an_application_is_the_same_user(tmp_path: Path) -> None:
-    (tmp_path / "startup.scr").write_text("CFE_APP, asking, Asking, ASKING, 90, 16384, 0x0, 0;\n!\n")
-    (tmp_path / "asking.py").write_text(APP)
+    (tmp_path / "startup.scr").write_text("CFE_APP, asking, Asking, ASKING, 90, 16384, 0x0, 0;\n!\n", encoding="utf-8")
+    (tmp_path / "asking.py").write_text(APP, encoding="utf-8")
     found = fly(RunPlan((str(tmp_path),), seconds=1.0)).mission.console.lines
     assert f"uid {USER} {USER} {USER} node" in found

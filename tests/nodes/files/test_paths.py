@@ -31,7 +31,7 @@ def disk(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> overlay.Overlay:
     """A run's files on a computer whose drive C: is a folder of this one."""
     monkeypatch.setattr(overlay, "HAS_DRIVES", True)
     (tmp_path / "data").mkdir()
-    (tmp_path / "data" / "old.txt").write_text("old")
+    (tmp_path / "data" / "old.txt").write_text("old", encoding="utf-8")
     return overlay.Overlay(host=lambda path: path.replace("C:", str(tmp_path), 1))
 
 
@@ -43,8 +43,8 @@ def test_files_of_a_drive_are_read_changed_and_removed(disk: overlay.Overlay, tm
     os.write(descriptor, b"new")
     os.close(descriptor)
     os.close(disk.open("C:\\data\\more.txt", os.O_WRONLY | os.O_CREAT))
-    assert (tmp_path / "data" / "old.txt").read_text() == "old"
-    assert Path(disk.place("C:/data/old.txt")).read_text() == "new"
+    assert (tmp_path / "data" / "old.txt").read_text(encoding="utf-8") == "old"
+    assert Path(disk.place("C:/data/old.txt")).read_text(encoding="utf-8") == "new"
     assert disk.names("C:/data") == ["more.txt", "old.txt"]
     assert [path for path, _ in disk.written()] == ["C:/data/more.txt", "C:/data/old.txt"]
     disk.remove("C:\\data\\old.txt")

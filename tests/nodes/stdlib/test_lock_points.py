@@ -180,7 +180,7 @@ def flown(script: Path, policy: Policy | None = None) -> tuple[str, str]:
 def script(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     """A program, in a file."""
     file = tmp_path / "node.py"
-    file.write_text(START + textwrap.dedent(PROGRAMS[request.param][0]))
+    file.write_text(START + textwrap.dedent(PROGRAMS[request.param][0]), encoding="utf-8")
     return file
 
 

@@ -129,7 +129,7 @@ print("tested")
     ids=["dataclasses", "typing", "pickle", "inspect", "classes", "unittest"],
 )
 def test_lookup(run, tmp_path, body):
-    (tmp_path / "helper.py").write_text(HELPER)
+    (tmp_path / "helper.py").write_text(HELPER, encoding="utf-8")
     program = run(HEAD + body)
     assert program.universe.exit_status == 0, program.text
     assert "Traceback" not in program.text

@@ -27,7 +27,7 @@ def test_arguments_environment_and_names(run, tmp_path):
 
 def test_working_directory_is_virtual(run, tmp_path):
     (tmp_path / "sub").mkdir()
-    (tmp_path / "sub" / "data.txt").write_text("hello")
+    (tmp_path / "sub" / "data.txt").write_text("hello", encoding="utf-8")
     host = os.getcwd()
     program = run(
         """
@@ -217,7 +217,7 @@ def test_modules_that_refuse_their_use_can_be_imported(run):
 
 
 def test_two_nodes_share_nothing(start, tmp_path):
-    (tmp_path / "counter.py").write_text("value = 0\n")
+    (tmp_path / "counter.py").write_text("value = 0\n", encoding="utf-8")
     source = """
         import builtins, counter, logging, os, random, sys, threading, time
         logging.basicConfig(level=logging.DEBUG if sys.argv[1] == "1" else logging.ERROR, format="%(message)s")
@@ -278,14 +278,14 @@ def test_what_was_written_to_open_files_is_in_them_at_the_end(run, tmp_path):
     assert "the end" in program.text
     assert (tmp_path / "table.csv").read_bytes() == b"1,2\r\n"
     assert (tmp_path / "bytes.bin").read_bytes() == b"octets"
-    assert (tmp_path / "text.txt").read_text() == "letters"
+    assert (tmp_path / "text.txt").read_text(encoding="utf-8") == "letters"
 
 
 def test_what_a_killed_program_wrote_is_in_its_files(start, tmp_path):
     program = start("kept = open('kept.txt', 'w'); kept.write('words')\nimport time; time.sleep(100)", cwd=tmp_path)
     program.kernel.run(10**9)
     program.kernel.unwind()
-    assert (tmp_path / "kept.txt").read_text() == "words"
+    assert (tmp_path / "kept.txt").read_text(encoding="utf-8") == "words"
 
 
 def test_no_option_brings_encryption(run):

@@ -72,7 +72,7 @@ def test_queue_timer_and_pool(run):
 
 def test_same_trace_on_both_contexts(tmp_path):
     script = tmp_path / "workers.py"
-    script.write_text(dedent(WORKERS))
+    script.write_text(dedent(WORKERS), encoding="utf-8")
     seen = set()
     for context in ("thread", "greenlet", "thread"):
         with Kernel(context=context, trace=Trace()) as kernel:
@@ -334,7 +334,7 @@ def test_threads_start_through_the_owners_hook(start):
 
 
 def test_imports_wait_for_another_thread_that_imports(run, tmp_path):
-    (tmp_path / "slow.py").write_text("import time\ntime.sleep(1)\nvalue = 3\n")
+    (tmp_path / "slow.py").write_text("import time\ntime.sleep(1)\nvalue = 3\n", encoding="utf-8")
     program = run(
         """
         import threading, time

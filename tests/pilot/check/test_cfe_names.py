@@ -18,7 +18,7 @@ FOLDERS = ("apps", "missions", "examples", "tests/quality", "tests/mission", "cf
 def told(folder: Path, body: str) -> list[tuple[int, str]]:
     """What is told of an application whose main function is `Main`: line, text."""
     source = folder / "app.py"
-    source.write_text(textwrap.dedent(body))
+    source.write_text(textwrap.dedent(body), encoding="utf-8")
     return sorted((problem.line, problem.text) for problem in wrong_names(source, "Main"))
 
 
@@ -115,11 +115,13 @@ def test_what_is_not_certain_is_left_alone(tmp_path: Path, body: str) -> None:
 
 
 def test_all_files_of_a_package_are_read(tmp_path: Path) -> None:
-    (tmp_path / "__init__.py").write_text("from .main import Main\n")
+    (tmp_path / "__init__.py").write_text("from .main import Main\n", encoding="utf-8")
     (tmp_path / "main.py").write_text(
-        "from .part import go\ndef Main(cfe):\n    go(cfe)\n    cfe.es.nothing_like_it()\n"
+        "from .part import go\ndef Main(cfe):\n    go(cfe)\n    cfe.es.nothing_like_it()\n", encoding="utf-8"
     )
-    (tmp_path / "part.py").write_text("from cfepy.app import Cfe\ndef go(cfe: Cfe):\n    cfe.evs.registre()\n")
+    (tmp_path / "part.py").write_text(
+        "from cfepy.app import Cfe\ndef go(cfe: Cfe):\n    cfe.evs.registre()\n", encoding="utf-8"
+    )
     found = [(problem.file.name, problem.line) for problem in wrong_names(tmp_path / "__init__.py", "Main")]
     assert sorted(found) == [("main.py", 4), ("part.py", 3)]
 

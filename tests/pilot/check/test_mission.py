@@ -20,14 +20,14 @@ HK = "CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 0;\n"
 
 def check(folder: Path, script: str, yaml: str | None = None, board: str | None = None) -> list[tuple[str, int, str]]:
     """Findings as (file name, line, text)."""
-    (folder / "startup.scr").write_text(script)
+    (folder / "startup.scr").write_text(script, encoding="utf-8")
     if yaml is not None:
-        (folder / "mission.yaml").write_text(yaml)
+        (folder / "mission.yaml").write_text(yaml, encoding="utf-8")
     return [(finding.file.name, finding.line, finding.text) for finding in check_mission(str(folder), board)]
 
 
 def node(folder: Path, name: str = "talker") -> str:
-    (folder / f"{name}.py").write_text("import rospy\n")
+    (folder / f"{name}.py").write_text("import rospy\n", encoding="utf-8")
     return f"CFE_APP, {name}.py, __main__, {name.upper()}, 60, 16384, 0, 0;\n"
 
 
@@ -80,7 +80,7 @@ def test_a_bad_line(tmp_path: Path, line: str, said: str) -> None:
     ],
 )
 def test_packets_and_functions_that_are_not_there(tmp_path: Path, entry: str, said: str) -> None:
-    (tmp_path / "checks.py").write_text("def seen(event): ...\n\n\nclass Counts: ...\n")
+    (tmp_path / "checks.py").write_text("def seen(event): ...\n\n\nclass Counts: ...\n", encoding="utf-8")
     ((file, line, text),) = check(tmp_path, HK + "!", entry)
     assert (file, line) == ("mission.yaml", 2)
     assert said in text
@@ -98,7 +98,7 @@ def test_all_problems_are_found_at_once(tmp_path: Path) -> None:
 
 
 def test_sources_that_are_not_python(tmp_path: Path) -> None:
-    (tmp_path / "broken.py").write_text("import rospy\n\ndef f(:\n")
+    (tmp_path / "broken.py").write_text("import rospy\n\ndef f(:\n", encoding="utf-8")
     found = check(tmp_path, "CFE_APP, broken.py, __main__, B, 60, 16384, 0, 0;!")
     assert found == [("broken.py", 3, "is not Python: invalid syntax")]
 
@@ -120,24 +120,24 @@ def test_sources_that_are_not_python(tmp_path: Path) -> None:
 )
 def test_where_an_entry_point_may_come_from(tmp_path: Path, source: str) -> None:
     (tmp_path / "app").mkdir()
-    (tmp_path / "app/__init__.py").write_text(source)
-    (tmp_path / "app/part.py").write_text("def Main(cfe): ...\ndef Main_Function(cfe): ...\n")
+    (tmp_path / "app/__init__.py").write_text(source, encoding="utf-8")
+    (tmp_path / "app/part.py").write_text("def Main(cfe): ...\ndef Main_Function(cfe): ...\n", encoding="utf-8")
     assert check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!") == []
 
 
 @pytest.mark.parametrize("source", ["", "def f():\n    Main = 1", "from .part import Main"])
 def test_an_entry_point_that_is_not_there(tmp_path: Path, source: str) -> None:
     (tmp_path / "app").mkdir()
-    (tmp_path / "app/__init__.py").write_text(source)
-    (tmp_path / "app/part.py").write_text("def other(cfe): ...\n")
+    (tmp_path / "app/__init__.py").write_text(source, encoding="utf-8")
+    (tmp_path / "app/part.py").write_text("def other(cfe): ...\n", encoding="utf-8")
     ((_, line, text),) = check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!")
     assert line == 1
     assert "has no function Main" in text
 
 
 def test_a_node_may_be_called_what_ros_scripts_are_called(tmp_path: Path) -> None:
-    (tmp_path / "a_talker_without_suffix").write_text("import rospy\n")
-    (tmp_path / "a_script_with_a_long_name.py").write_text("import rospy\n")
+    (tmp_path / "a_talker_without_suffix").write_text("import rospy\n", encoding="utf-8")
+    (tmp_path / "a_script_with_a_long_name.py").write_text("import rospy\n", encoding="utf-8")
     line = "CFE_APP, a_talker_without_suffix, __main__, TALKER, 60, 16384, 0, 0;\n"
     line += "CFE_APP, a_script_with_a_long_name.py, __main__, OTHER, 60, 16384, 0, 0;\n"
     assert check(tmp_path, line + "!") == []
@@ -145,13 +145,13 @@ def test_a_node_may_be_called_what_ros_scripts_are_called(tmp_path: Path) -> Non
 
 def test_a_node_from_outside_the_folder(tmp_path: Path) -> None:
     (tmp_path / "mission").mkdir()
-    (tmp_path / "talker.py").write_text("import rospy\n")
+    (tmp_path / "talker.py").write_text("import rospy\n", encoding="utf-8")
     found = check(tmp_path / "mission", "CFE_APP, /cf/../talker.py, __main__, TALKER, 60, 16384, 0, 0;\n!")
     assert [line for _, line, text in found if "/cf/../talker.py is not below /cf" in text] == [1]
 
 
 def test_nothing_is_executed(tmp_path: Path) -> None:
-    (tmp_path / "app.py").write_text("raise SystemExit('executed')\ndef Main(cfe): ...\n")
+    (tmp_path / "app.py").write_text("raise SystemExit('executed')\ndef Main(cfe): ...\n", encoding="utf-8")
     assert check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!") == []
 
 
@@ -231,9 +231,9 @@ def read_all(path: Path) -> None:
 
 @pytest.mark.parametrize(("document", "read"), [("mission_file", read_all), ("board_profiles", load_profile)])
 def test_the_example_in_the_documentation(tmp_path: Path, document: str, read: Callable[[Path], object]) -> None:
-    text = (ROOT / "docs" / f"{document}.md").read_text()
+    text = (ROOT / "docs" / f"{document}.md").read_text(encoding="utf-8")
     example = tmp_path / "example.yaml"
-    example.write_text(text.partition("```yaml\n")[2].partition("```")[0])
+    example.write_text(text.partition("```yaml\n")[2].partition("```")[0], encoding="utf-8")
     read(example)
 
 
@@ -249,7 +249,7 @@ def test_the_example_in_the_documentation(tmp_path: Path, document: str, read: C
     ],
 )
 def test_what_cfe_reads_otherwise_is_a_warning(tmp_path: Path, line: str, said: str) -> None:
-    (tmp_path / "startup.scr").write_text(f"\n{line}\n!")
+    (tmp_path / "startup.scr").write_text(f"\n{line}\n!", encoding="utf-8")
     (problem,) = check_mission(str(tmp_path))
     assert (problem.line, problem.is_warning) == (2, True)
     assert said in problem.text
@@ -268,14 +268,14 @@ def test_what_cfe_reads_otherwise_is_a_warning(tmp_path: Path, line: str, said: 
     ],
 )
 def test_a_function_that_cannot_be_an_entry_point(tmp_path: Path, head: str, said: str) -> None:
-    (tmp_path / "app.py").write_text(f"{head}\n    pass\n")
+    (tmp_path / "app.py").write_text(f"{head}\n    pass\n", encoding="utf-8")
     found = check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!")
     assert [(file, line) for file, line, _ in found] == ([("app.py", 1)] if said else [])
     assert all(said in text for _, _, text in found)
 
 
 def test_names_asked_of_the_handle(tmp_path: Path) -> None:
-    (tmp_path / "app.py").write_text("def Main(cfe):\n    cfe.sb.transmitt_msg(b'')\n")
+    (tmp_path / "app.py").write_text("def Main(cfe):\n    cfe.sb.transmitt_msg(b'')\n", encoding="utf-8")
     found = check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!")
     assert found == [("app.py", 2, "cfe.sb has no 'transmitt_msg'; did you mean cfe.sb.transmit_msg?")]
 

@@ -37,7 +37,7 @@ def demo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name, text in files.items():
         path = tmp_path / "demo" / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(textwrap.dedent(text))
+        path.write_text(textwrap.dedent(text), encoding="utf-8")
     return tmp_path / "demo"
 
 
@@ -66,12 +66,12 @@ def test_definitions_of_the_package_of_a_launch_file(demo: Path) -> None:
 
 
 def test_definitions_in_the_folder_of_a_mission_without_nodes(demo: Path) -> None:
-    (demo.parent / "startup.scr").write_text("!")
+    (demo.parent / "startup.scr").write_text("!", encoding="utf-8")
     assert places(".") == DEFINITIONS
 
 
 def test_a_launch_file_with_many_problems(demo: Path) -> None:
-    (demo / "msg/Drive.msg").write_text("float32 speed\n")
+    (demo / "msg/Drive.msg").write_text("float32 speed\n", encoding="utf-8")
     (demo / "srv/Go.srv").unlink()
     (demo / "launch/bad.launch").write_text(
         textwrap.dedent(
@@ -89,7 +89,8 @@ def test_a_launch_file_with_many_problems(demo: Path) -> None:
               <rosparam>empty: null</rosparam>
             </launch>
             """
-        )
+        ),
+        encoding="utf-8",
     )
     found = check_mission("demo/launch/bad.launch", args={"other": "1"})
     assert [(problem.line, problem.is_warning) for problem in found] == [
@@ -116,23 +117,27 @@ def test_a_launch_file_with_many_problems(demo: Path) -> None:
 def test_a_launch_file_without_a_node_cannot_fly(demo: Path) -> None:
     (demo / "msg/Drive.msg").unlink()
     (demo / "srv/Go.srv").unlink()
-    (demo / "launch/empty.launch").write_text("<launch/>")
+    (demo / "launch/empty.launch").write_text("<launch/>", encoding="utf-8")
     (problem,) = check_mission("demo/launch/empty.launch")
     assert problem.text == "has no node that can run here"
-    (demo / "launch/a.test").write_text('<launch><test pkg="demo" type="good.py" test-name="t"/></launch>')
+    (demo / "launch/a.test").write_text(
+        '<launch><test pkg="demo" type="good.py" test-name="t"/></launch>', encoding="utf-8"
+    )
     assert check_mission("demo/launch/a.test") == []
 
 
 def test_launch_files_of_a_mission_are_read_to_the_end(demo: Path) -> None:
-    (demo.parent / "startup.scr").write_text("!")
-    (demo / "launch/bad.launch").write_text("<launch>\n<remap/>\n<env/>\n<nod/></launch>")
-    (demo.parent / "mission.yaml").write_text("launch: [demo/launch/bad.launch, demo/launch/good.launch]\n")
+    (demo.parent / "startup.scr").write_text("!", encoding="utf-8")
+    (demo / "launch/bad.launch").write_text("<launch>\n<remap/>\n<env/>\n<nod/></launch>", encoding="utf-8")
+    (demo.parent / "mission.yaml").write_text(
+        "launch: [demo/launch/bad.launch, demo/launch/good.launch]\n", encoding="utf-8"
+    )
     found = [problem.line for problem in check_mission(".") if problem.file.name == "bad.launch"]
     assert found == [2, 2, 3, 3, 4]
 
 
 def test_a_mission_takes_no_arguments_and_what_is_not_there_is_an_error(demo: Path) -> None:
-    (demo.parent / "startup.scr").write_text("!")
+    (demo.parent / "startup.scr").write_text("!", encoding="utf-8")
     with pytest.raises(UsageError, match="only a launch file takes arguments"):
         check_mission(".", args={"a": "1"})
     with pytest.raises(UsageError, match=r"'nothing\.launch'"):

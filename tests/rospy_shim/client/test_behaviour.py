@@ -45,12 +45,14 @@ json.dump([outcome(expression) for expression in expressions], open("outcomes.js
 
 
 def test_same_values_as_on_ros(tmp_path: Path) -> None:
-    record = json.loads(RECORD.read_text())
-    (tmp_path / "expressions.json").write_text(json.dumps([row["expression"] for row in record["rows"]]))
+    record = json.loads(RECORD.read_text(encoding="utf-8"))
+    (tmp_path / "expressions.json").write_text(
+        json.dumps([row["expression"] for row in record["rows"]]), encoding="utf-8"
+    )
     run = run_nodes(
         tmp_path, {"PROBE": EVALUATOR}, nodes={"PROBE": NodeConfig("PROBE", args=tuple(record["arguments"]))}
     )
     assert (tmp_path / "outcomes.json").is_file(), "\n".join(run.lines)
-    outcomes = json.loads((tmp_path / "outcomes.json").read_text())
+    outcomes = json.loads((tmp_path / "outcomes.json").read_text(encoding="utf-8"))
     different = [(row, outcome) for row, outcome in zip(record["rows"], outcomes, strict=True) if row != outcome]
     assert not different

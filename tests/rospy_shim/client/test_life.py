@@ -245,7 +245,7 @@ def KILLER_AppMain(cfe):
     cfe.os.task_delay(1000)
     cfe.es.delete_app(cfe.es.get_app_id_by_name("PROBE"))
 """
-    (tmp_path / "killer.py").write_text(app)
+    (tmp_path / "killer.py").write_text(app, encoding="utf-8")
     (tmp_path / "probe.py").write_text(
         """
 import rospy
@@ -254,14 +254,16 @@ rospy.on_shutdown(lambda: print("hook"))
 rospy.Timer(rospy.Duration(0.1), lambda event: None)
 rospy.spin()
 print("end")
-"""
+""",
+        encoding="utf-8",
     )
     from cfepy.console import Console
     from cfepy.mission import Mission
 
     (tmp_path / "startup.scr").write_text(
         "CFE_APP, probe.py, __main__, PROBE, 100, 16384, 0x0, 1;\n"
-        "CFE_APP, killer, KILLER_AppMain, KILLER, 100, 16384, 0x0, 1;\n"
+        "CFE_APP, killer, KILLER_AppMain, KILLER, 100, 16384, 0x0, 1;\n",
+        encoding="utf-8",
     )
     console = Console(quiet=True)
     with Mission(str(tmp_path), console=console) as mission:

@@ -121,7 +121,7 @@ print(open({str(tmp_path / "log" / "probe.log")!r}).read().count("ZeroDivisionEr
     assert lines[0] == "[ERROR]: caught"
     assert lines[-2:] == ["ZeroDivisionError: division by zero", "1"]
     assert not any("not on the console" in line for line in lines)
-    assert "[mine][WARNING] " in (tmp_path / "log" / "probe.log").read_text()
+    assert "[mine][WARNING] " in (tmp_path / "log" / "probe.log").read_text(encoding="utf-8")
 
 
 def test_logger_services_cost_nothing_before_they_are_called(tmp_path: Path) -> None:

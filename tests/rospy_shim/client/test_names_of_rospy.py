@@ -67,10 +67,10 @@ json.dump({"wrong": wrong, "absent": sorted(absent)}, open("found.json", "w"))
 
 
 def test_names_and_arguments(tmp_path: Path) -> None:
-    (tmp_path / "names.json").write_text(RECORD.read_text())
+    (tmp_path / "names.json").write_text(RECORD.read_text(encoding="utf-8"), encoding="utf-8")
     run = run_nodes(tmp_path, {"PROBE": WALK})
     assert (tmp_path / "found.json").is_file(), "\n".join(run.lines)
-    found = json.loads((tmp_path / "found.json").read_text())
+    found = json.loads((tmp_path / "found.json").read_text(encoding="utf-8"))
     assert found["absent"] == sorted(ABSENT)
     assert found["wrong"] == {}
 

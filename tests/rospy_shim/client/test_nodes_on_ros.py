@@ -12,7 +12,7 @@ from cfepy.nodes.config import NodeConfig
 from tests.rospy_shim.missions import run_nodes
 
 NODES = Path(__file__).parents[2] / "ros_nodes"
-SCENARIOS = json.loads((NODES.parent / "data" / "nodes_on_ros.json").read_text())["scenarios"]
+SCENARIOS = json.loads((NODES.parent / "data" / "nodes_on_ros.json").read_text(encoding="utf-8"))["scenarios"]
 
 
 @pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda scenario: scenario["name"].replace(" ", "-"))

@@ -125,11 +125,11 @@ def test_a_message_longer_than_the_pool_waits_for_room_in_it(tmp_path: Path) -> 
     publisher = 'publisher = rospy.Publisher("big", String, queue_size=1)\npublisher.publish("A" * 300_000)'
     startup = {"sub.py": COUNTER, "pub.py": PUBLISHER + publisher}
     for name, source in startup.items():
-        (tmp_path / name).write_text(source)
+        (tmp_path / name).write_text(source, encoding="utf-8")
     entry = "CFE_APP, {0}, __main__, {1}, 100, 4096, 0, 0;\n"
     lines = [entry.format(name, name[:3].upper()) for name in startup]
-    (tmp_path / "startup.scr").write_text("".join(lines) + "!")
-    (tmp_path / "mission.yaml").write_text("limits: {sb_buf_memory_bytes: 150000}\n")
+    (tmp_path / "startup.scr").write_text("".join(lines) + "!", encoding="utf-8")
+    (tmp_path / "mission.yaml").write_text("limits: {sb_buf_memory_bytes: 150000}\n", encoding="utf-8")
     with Mission(read_mission(str(tmp_path)), console=Console(quiet=True)) as mission:
         mission.run_for(2)
         assert "[sub] A 300000" in mission.console.lines

@@ -18,4 +18,4 @@ def test_same_answers_as_on_ros(tmp_path: Path, tasks: str) -> None:
     run = run_nodes(tmp_path, {"PROBE": DATA / "rospy_stages.py"}, seconds=60, nodes={"PROBE": config}, tasks=tasks)
     answers = [*run.printed["PROBE"], *run.printed["stages"]]
     answers = [line for line in answers if not line.startswith("[FATAL]")]  # which the record did not keep
-    assert answers == (DATA / "rospy_stages.txt").read_text().splitlines()
+    assert answers == (DATA / "rospy_stages.txt").read_text(encoding="utf-8").splitlines()

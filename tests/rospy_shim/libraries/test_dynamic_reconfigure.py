@@ -42,8 +42,8 @@ rospy.spin()
 def fly(folder: Path, *, rest: str = "", params: dict[str, Any] | None = None, **clients: str) -> Run:
     """A mission with the package pan_tilt, its server and some clients."""
     (folder / "pan_tilt" / "cfg").mkdir(parents=True)
-    (folder / "pan_tilt" / "package.xml").write_text("<package><name>pan_tilt</name></package>")
-    (folder / "pan_tilt" / "cfg" / "Head.cfg").write_text(CFG)
+    (folder / "pan_tilt" / "package.xml").write_text("<package><name>pan_tilt</name></package>", encoding="utf-8")
+    (folder / "pan_tilt" / "cfg" / "Head.cfg").write_text(CFG, encoding="utf-8")
     return run_nodes(folder, {"HEAD": SERVER.format(rest=rest), **clients}, seconds=6.0, params=params)
 
 
@@ -144,7 +144,7 @@ def test_module_of_a_configuration(tmp_path: Path) -> None:
 
 def test_script_that_generates_another_name(tmp_path: Path) -> None:
     script = tmp_path / "Arm.cfg"
-    script.write_text(CFG)
+    script.write_text(CFG, encoding="utf-8")
     contents_of = universe().importer.load("dynamic_reconfigure.cfg_script").contents_of
     with pytest.raises(ImportError, match=r"Arm\.cfg did not call generate"):
         contents_of(str(script), "Arm")

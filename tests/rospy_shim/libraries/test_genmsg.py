@@ -76,15 +76,15 @@ def test_mistakes(text: str, problem: str, tmp_path: Path) -> None:
     with pytest.raises(genmsg.InvalidMsgSpec, match=problem):
         genmsg.msg_loader.load_msg_from_string(context, text, "pkg/M")
     file = tmp_path / "M.msg"
-    file.write_text(text)
+    file.write_text(text, encoding="utf-8")
     with pytest.raises(genmsg.InvalidMsgSpec, match=rf"M\.msg: .*{problem}"):
         genmsg.msg_loader.load_msg_from_file(context, str(file), "pkg/M")
 
 
 def test_search_path(tmp_path: Path) -> None:
-    (tmp_path / "Point.msg").write_text("float64 x\n")
-    (tmp_path / "Line.msg").write_text("Point a\nPoint b\n")
-    (tmp_path / "Draw.srv").write_text("Line line\n---\n")
+    (tmp_path / "Point.msg").write_text("float64 x\n", encoding="utf-8")
+    (tmp_path / "Line.msg").write_text("Point a\nPoint b\n", encoding="utf-8")
+    (tmp_path / "Draw.srv").write_text("Line line\n---\n", encoding="utf-8")
     path = {"pkg": ["/nowhere", str(tmp_path)]}
     context = genmsg.MsgContext.create_default()
     spec = genmsg.load_msg_by_type(context, "pkg/Line", path)

@@ -120,8 +120,8 @@ def test_dynamic_classes() -> None:
 def test_package_on_disk(tmp_path: Path) -> None:
     """A package generated elsewhere: its sources are nodes' own modules, and travel over topics."""
     (tmp_path / "defs").mkdir()
-    (tmp_path / "defs" / "Reading.msg").write_text("Header header\nfloat32[] values\nstring unit\n")
-    (tmp_path / "defs" / "bad.msg").write_text("int8\n")
+    (tmp_path / "defs" / "Reading.msg").write_text("Header header\nfloat32[] values\nstring unit\n", encoding="utf-8")
+    (tmp_path / "defs" / "bad.msg").write_text("int8\n", encoding="utf-8")
     script = f"""
         import os, sys
         from genpy.generate_initpy import write_modules

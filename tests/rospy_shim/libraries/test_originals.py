@@ -23,7 +23,7 @@ def taken(file: Path) -> Iterator[str]:
     """What a library's file takes from other libraries."""
     own = file.relative_to(FOLDER).parts[0]
     others = library_names() - {own, *OWN, *NOT_RECORDED}
-    tree = ast.parse(file.read_text())
+    tree = ast.parse(file.read_text(encoding="utf-8"))
     modules: dict[str, str] = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -46,7 +46,7 @@ def _dotted(node: ast.AST) -> list[str]:
 
 
 def test_libraries_take_from_each_other_what_the_originals_have() -> None:
-    known = set(NAMES.read_text().split())
+    known = set(NAMES.read_text(encoding="utf-8").split())
     files = [file for file in sorted(FOLDER.rglob("*.py")) if file.relative_to(FOLDER).parts[0] not in OWN]
     strange = {f"{file.relative_to(FOLDER)}: {name}" for file in files for name in taken(file) if name not in known}
     assert strange == set()
@@ -55,7 +55,7 @@ def test_libraries_take_from_each_other_what_the_originals_have() -> None:
 def test_load_manifest_beside_the_source_of_rosmsg(tmp_path: Path) -> None:
     source = tmp_path / "rosmsg"
     source.mkdir()
-    (source / "__init__.py").write_text("MODE_MSG = '.msg'\n")  # the original has no `packages`
+    (source / "__init__.py").write_text("MODE_MSG = '.msg'\n", encoding="utf-8")  # the original has no `packages`
     node = """
         import roslib
         roslib.load_manifest("std_msgs")

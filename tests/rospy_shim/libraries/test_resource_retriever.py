@@ -9,7 +9,7 @@ from tests.rospy_shim.missions import run_nodes
 
 def test_files_of_packages(tmp_path: Path) -> None:
     (tmp_path / "robot").mkdir()
-    (tmp_path / "robot" / "package.xml").write_text("<package><name>robot</name></package>")
+    (tmp_path / "robot" / "package.xml").write_text("<package><name>robot</name></package>", encoding="utf-8")
     (tmp_path / "robot" / "base.stl").write_bytes(b"solid")
     script = """
         import resource_retriever as rr

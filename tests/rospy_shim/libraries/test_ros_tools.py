@@ -18,5 +18,5 @@ def test_answers_are_those_of_ros(tmp_path: Path, tasks: str) -> None:
     pytest.importorskip("yaml")
     scripts = {"TALKER": DATA / "ros_tools_talker.py", "ASKER": DATA / "ros_tools_questions.py"}
     run = run_nodes(tmp_path, scripts, seconds=6, tasks=tasks)
-    assert run.printed["asker"] == (DATA / "ros_tools_answers.txt").read_text().splitlines()
+    assert run.printed["asker"] == (DATA / "ros_tools_answers.txt").read_text(encoding="utf-8").splitlines()
     assert run.printed["talker"] == ["shutdown request: user request"]

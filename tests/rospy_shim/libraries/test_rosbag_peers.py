@@ -64,7 +64,7 @@ def test_rosbag_says_the_same_of_a_bag(tmp_path: Path, kind: str) -> None:
     if not has_rosbag():
         pytest.skip("ROS's own rosbag is not installed (Debian: python3-rosbag), so it cannot read what was written")
     file = written(tmp_path, kind)
-    (tmp_path / "reads.py").write_text(READS)
+    (tmp_path / "reads.py").write_text(READS, encoding="utf-8")
     real = subprocess.run(
         [PYTHON, str(tmp_path / "reads.py"), str(file)],
         capture_output=True,

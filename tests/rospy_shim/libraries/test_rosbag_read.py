@@ -71,7 +71,7 @@ def test_what_is_in_a_bag(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["golden", "golden_api_none"])
 def test_the_text_is_that_of_rosbag_info(tmp_path: Path, name: str) -> None:
-    expected = (BAGS / f"{name}.bag.info.txt").read_text().rstrip("\n").split("\n")
+    expected = (BAGS / f"{name}.bag.info.txt").read_text(encoding="utf-8").rstrip("\n").split("\n")
     found = printed(tmp_path, f'print(rosbag.Bag("{name}.bag", skip_index=True))')
     times = [line for line in expected if line.startswith(("start:", "end:"))]
     assert [line.rstrip() for line in found if not line.startswith(("start:", "end:"))] == [

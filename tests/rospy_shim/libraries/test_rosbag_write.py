@@ -276,7 +276,7 @@ def test_rosbagmain(tmp_path: Path) -> None:
 
 
 def test_without_lz4_the_error_says_what_to_install(tmp_path: Path) -> None:
-    (tmp_path / "lz4.py").write_text("raise ImportError('no lz4 here')\n")
+    (tmp_path / "lz4.py").write_text("raise ImportError('no lz4 here')\n", encoding="utf-8")
     code = """
         for attempt in (
             lambda: Bag("out.bag", "w", compression="lz4"),

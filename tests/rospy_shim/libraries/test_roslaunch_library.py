@@ -23,12 +23,13 @@ def folder(tmp_path: Path) -> Path:
     """A mission's folder with a package `pack` in it."""
     pack = tmp_path / "pack"
     pack.mkdir()
-    (pack / "package.xml").write_text("<package><name>pack</name></package>")
-    (pack / "child.py").write_text(CHILD)
+    (pack / "package.xml").write_text("<package><name>pack</name></package>", encoding="utf-8")
+    (pack / "child.py").write_text(CHILD, encoding="utf-8")
     (pack / "two.launch").write_text(
         '<launch><arg name="x" default="1"/>'
         '<node pkg="pack" type="child.py" name="one" ns="arm"><param name="x" value="$(arg x)"/></node>'
-        '<node pkg="pack" type="child.py" name="two"/></launch>'
+        '<node pkg="pack" type="child.py" name="two"/></launch>',
+        encoding="utf-8",
     )
     return tmp_path
 

@@ -30,6 +30,6 @@ def test_ours(tmp_path: Path) -> None:
 
 def test_a_users_python_half_finds_the_compiled_one(tmp_path: Path) -> None:
     (tmp_path / "roslz4").mkdir()
-    (tmp_path / "roslz4" / "__init__.py").write_text(PYTHON_HALF)
+    (tmp_path / "roslz4" / "__init__.py").write_text(PYTHON_HALF, encoding="utf-8")
     lines = run_nodes(tmp_path, {"N": ROUND_TRIP + "print(roslz4.__file__)"}).printed["N"]
     assert lines == ["True True LZ4Compressor", str(tmp_path / "roslz4" / "__init__.py")]

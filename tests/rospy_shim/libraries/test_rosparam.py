@@ -25,7 +25,7 @@ def said(folder: Path, script: str) -> list[str]:
 
 
 def test_files(tmp_path: Path) -> None:
-    (tmp_path / "values.yaml").write_text(VALUES)
+    (tmp_path / "values.yaml").write_text(VALUES, encoding="utf-8")
     script = """
         import rosparam, rospy, yaml
         for values, namespace in rosparam.load_file("values.yaml", default_namespace="/robot"):
@@ -64,7 +64,7 @@ def test_files(tmp_path: Path) -> None:
 
 
 def test_commands(tmp_path: Path) -> None:
-    (tmp_path / "values.yaml").write_text("a: 1\nb: {c: text}\n")
+    (tmp_path / "values.yaml").write_text("a: 1\nb: {c: text}\n", encoding="utf-8")
     script = """
         import rosparam
         for command in (

@@ -27,23 +27,28 @@ def packages(folder: Path) -> None:
     ):
         place = folder / "src" / name
         place.mkdir(parents=True)
-        (place / "package.xml").write_text(PACKAGE.format(name=name, depends=depends, exports=exports))
+        (place / "package.xml").write_text(
+            PACKAGE.format(name=name, depends=depends, exports=exports), encoding="utf-8"
+        )
     (folder / "src/arm/msg").mkdir()
-    (folder / "src/arm/msg/Joint.msg").write_text("# a joint\nint32 A=1 # one\nHeader header\nfloat64[3] angles\n")
+    (folder / "src/arm/msg/Joint.msg").write_text(
+        "# a joint\nint32 A=1 # one\nHeader header\nfloat64[3] angles\n", encoding="utf-8"
+    )
     (folder / "src/arm/srv").mkdir()
-    (folder / "src/arm/srv/Move.srv").write_text("arm/Joint goal\n---\nbool done\n")
+    (folder / "src/arm/srv/Move.srv").write_text("arm/Joint goal\n---\nbool done\n", encoding="utf-8")
     (folder / "src/arm/scripts").mkdir()
     script = folder / "src/arm/scripts/run.py"
-    script.write_text("")
+    script.write_text("", encoding="utf-8")
     script.chmod(0o755)
-    (folder / "src/arm/scripts/data.txt").write_text("x")
+    (folder / "src/arm/scripts/data.txt").write_text("x", encoding="utf-8")
     old = folder / "src/old"
     (old / "src").mkdir(parents=True)
     (old / "manifest.xml").write_text(
         '<package><description brief="short">old</description><author>Cid</author><license>BSD</license>'
-        '<review status="ok" notes=""/><depend package="arm"/><rosdep name="python"/></package>'
+        '<review status="ok" notes=""/><depend package="arm"/><rosdep name="python"/></package>',
+        encoding="utf-8",
     )
-    (old / "src/oldcode.py").write_text("value = 5\n")
+    (old / "src/oldcode.py").write_text("value = 5\n", encoding="utf-8")
 
 
 def said(folder: Path, script: str) -> list[str]:
@@ -212,7 +217,7 @@ def test_rosenv_takes_the_master_from_environment_and_arguments(tmp_path: Path) 
 
 
 def test_definitions_and_loggers(tmp_path: Path) -> None:
-    (tmp_path / "S.srv").write_text("int8 a\n---\n")
+    (tmp_path / "S.srv").write_text("int8 a\n---\n", encoding="utf-8")
     script = f"""
         import logging, roslib.srvs, rosgraph.roslogging
         print(roslib.srvs.load_from_file({str(tmp_path / "S.srv")!r}, "p/")[0])

@@ -129,7 +129,7 @@ def test_publishing(tmp_path: Path) -> None:
 
 
 def test_values_of_files_and_parameters(tmp_path: Path) -> None:
-    (tmp_path / "values.yaml").write_text("data: one\n---\ndata: two\n")
+    (tmp_path / "values.yaml").write_text("data: one\n---\ndata: two\n", encoding="utf-8")
     hears = """
         import rospy
         from std_msgs.msg import String

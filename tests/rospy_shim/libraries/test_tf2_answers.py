@@ -14,7 +14,9 @@ import pytest
 
 from tests.rospy_shim.libraries.world import universe
 
-WORLDS: list[dict[str, Any]] = json.loads((Path(__file__).parents[2] / "data/tf/tf2_answers.json").read_text())
+WORLDS: list[dict[str, Any]] = json.loads(
+    (Path(__file__).parents[2] / "data/tf/tf2_answers.json").read_text(encoding="utf-8")
+)
 PRECISION = 1e-12
 load: Any = universe().importer.load
 rospy, msg, tf2 = load("rospy"), load("geometry_msgs.msg"), load("tf2_py")

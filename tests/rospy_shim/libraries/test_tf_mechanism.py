@@ -38,21 +38,23 @@ def test_a_library_has_code_and_messages(tmp_path: Path) -> None:
 
 def test_a_copy_in_the_nodes_folder_comes_first(tmp_path: Path) -> None:
     (tmp_path / "tf2_ros").mkdir()
-    (tmp_path / "tf2_ros/__init__.py").write_text("from tf2_py import BufferCore\nORIGIN = 'my own'\n")
+    (tmp_path / "tf2_ros/__init__.py").write_text(
+        "from tf2_py import BufferCore\nORIGIN = 'my own'\n", encoding="utf-8"
+    )
     script = "import tf2_ros, tf2_py; print(tf2_ros.ORIGIN, tf2_ros.BufferCore is tf2_py.BufferCore)"
     assert run_nodes(tmp_path, {"NODE": script}).printed["NODE"] == ["my own True"]
 
 
 def test_a_folder_that_the_node_adds_to_its_path_comes_first(tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
-    (tmp_path / "elsewhere/tf.py").write_text("ORIGIN = 'my own'\n")
+    (tmp_path / "elsewhere/tf.py").write_text("ORIGIN = 'my own'\n", encoding="utf-8")
     script = f"import sys; sys.path.append({str(tmp_path / 'elsewhere')!r}); import tf; print(tf.ORIGIN)"
     assert run_nodes(tmp_path, {"NODE": script}).printed["NODE"] == ["my own"]
 
 
 def test_the_compiled_half_of_a_copy_comes_from_the_library(tmp_path: Path) -> None:
     (tmp_path / "tf2_py").mkdir()
-    (tmp_path / "tf2_py/__init__.py").write_text("from ._tf2 import *\nORIGIN = 'my own'\n")
+    (tmp_path / "tf2_py/__init__.py").write_text("from ._tf2 import *\nORIGIN = 'my own'\n", encoding="utf-8")
     script = "import tf2_py; print(tf2_py.ORIGIN, tf2_py.BufferCore().all_frames_as_yaml())"
     assert run_nodes(tmp_path, {"NODE": script}).printed["NODE"] == ["my own {}"]
 

@@ -11,7 +11,9 @@ import pytest
 
 from tests.rospy_shim.libraries.world import universe
 
-RECORDED: list[Any] = json.loads((Path(__file__).parents[2] / "data/tf/transformations.json").read_text())
+RECORDED: list[Any] = json.loads(
+    (Path(__file__).parents[2] / "data/tf/transformations.json").read_text(encoding="utf-8")
+)
 FUNCTIONS = sorted({name for name, *_ in RECORDED})
 tr: Any = universe().importer.load("tf.transformations")
 A, B, C = (0.3, -0.2, 0.8), (0.5, 0.9, -0.4), (-0.7, 0.1, 0.6)

@@ -35,7 +35,7 @@ def test_the_master_cannot_be_ended(tmp_path: Path) -> None:
 
 def test_the_master_answers_as_rosmaster(tmp_path: Path) -> None:
     run = run_nodes(tmp_path, {"ASKS": ASKS.format(file=str(ANSWERS))}, seconds=1)
-    recorded = json.loads(ANSWERS.read_text())
+    recorded = json.loads(ANSWERS.read_text(encoding="utf-8"))
     got = [json.loads(line) for line in run.printed["ASKS"]]
     assert len(got) == len(recorded) > 70
     for (method, arguments, answer), mine in zip(recorded, got, strict=True):

@@ -114,7 +114,8 @@ def test_a_tool_that_the_node_brings_runs_on_it(tmp_path: Path) -> None:
         "import rosgraph\nfrom xmlrpc.client import ServerProxy\n"
         "def names():\n    state = rosgraph.Master('/x').getSystemState()\n"
         "    return sorted({name for part in state for _, names in part for name in names})\n"
-        "def ping(name):\n    return ServerProxy(rosgraph.Master('/x').lookupNode(name)).getPid('/x')[0]\n"
+        "def ping(name):\n    return ServerProxy(rosgraph.Master('/x').lookupNode(name)).getPid('/x')[0]\n",
+        encoding="utf-8",
     )
     script = """
         import rospy, rosnode

@@ -15,8 +15,8 @@ def faults(folder: Path, **files: str) -> list[tuple[str, int, str, bool]]:
         stem, _, kind = name.rpartition("_")
         path = folder / "own" / kind / f"{stem}.{kind}"
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-    (folder / "own/package.xml").write_text("<package><name>own</name></package>")
+        path.write_text(text, encoding="utf-8")
+    (folder / "own/package.xml").write_text("<package><name>own</name></package>", encoding="utf-8")
     packages = Packages(folder / "node.py", {})
     found = check_definitions(packages, ["own"])
     return [(Path(error.file or "").name, error.line or 0, error.text, warning) for error, warning in found]

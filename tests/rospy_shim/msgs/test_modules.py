@@ -122,7 +122,7 @@ def test_modules_of_the_codec_are_shared() -> None:
 
 def test_inside_a_node(tmp_path: Path) -> None:
     script = tmp_path / "node.py"
-    script.write_text(NODE)
+    script.write_text(NODE, encoding="utf-8")
     with Kernel(context="thread", trace=Trace()) as kernel:
         universe = Universe(kernel, name="node", script=script, find_module=_factory)
         universe.spawn()

@@ -15,7 +15,7 @@ def make_package(folder: Path, name: str = "", *files: str) -> Path:
     """A package with a manifest that gives it a name; without one, only with the files."""
     folder.mkdir(parents=True)
     if name:
-        (folder / "package.xml").write_text(f"<package>\n  <name> {name} </name>\n</package>\n")
+        (folder / "package.xml").write_text(f"<package>\n  <name> {name} </name>\n</package>\n", encoding="utf-8")
     for file in files:
         (folder / file).parent.mkdir(exist_ok=True)
         (folder / file).touch()
@@ -40,7 +40,7 @@ def test_the_manifest_names_the_package(tmp_path: Path) -> None:
     folder = make_package(tmp_path / "checkout-1.2", "rover")
     old = tmp_path / "rosbuild_one"
     old.mkdir()
-    (old / "manifest.xml").write_text("<package/>")
+    (old / "manifest.xml").write_text("<package/>", encoding="utf-8")
     packages = Packages(None, {"ROS_PACKAGE_PATH": str(tmp_path)})
     assert packages.names() == ["rosbuild_one", "rover"]
     assert packages.path("rover") == folder
@@ -105,7 +105,7 @@ def test_python_code_of_packages(tmp_path: Path) -> None:
 def test_a_name_that_no_package_has_is_not_taken(name: str, tmp_path: Path) -> None:
     folder = tmp_path / "here"
     folder.mkdir()
-    (folder / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    (folder / "package.xml").write_text(f"<package><name>{name}</name></package>", encoding="utf-8")
     assert name_of(folder) == "here"
     with pytest.raises(UsageError, match="is not the name of a package"):
         check_package_name(folder)
@@ -113,7 +113,7 @@ def test_a_name_that_no_package_has_is_not_taken(name: str, tmp_path: Path) -> N
 
 @pytest.mark.parametrize("name", ["arm", "Arm_2", "a-b", "2d_nav", " arm ", "\n arm\n"])
 def test_a_name_that_a_package_may_have_is_taken(name: str, tmp_path: Path) -> None:
-    (tmp_path / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    (tmp_path / "package.xml").write_text(f"<package><name>{name}</name></package>", encoding="utf-8")
     check_package_name(tmp_path)
     assert name_of(tmp_path) == name.strip()
 

@@ -89,7 +89,7 @@ def test_only_a_leading_header_counts() -> None:
 
 def test_unknown_and_endless_types(tmp_path: Path) -> None:
     library = Library([Shipped(tmp_path)])
-    (tmp_path / "bad.msgs").write_text("# bad/A\nB b\n\n# bad/B\nA a\n\n# bad/C\nint8 i\nNowhere x\n")
+    (tmp_path / "bad.msgs").write_text("# bad/A\nB b\n\n# bad/B\nA a\n\n# bad/C\nint8 i\nNowhere x\n", encoding="utf-8")
     with pytest.raises(UsageError, match="bad/A contains itself"):
         library.message_class("bad/A")
     with pytest.raises(UsageError, match=r"bad\.msgs:9: message type bad/Nowhere is unknown"):

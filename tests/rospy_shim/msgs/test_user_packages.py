@@ -19,7 +19,7 @@ def write(folder: Path, **files: str) -> None:
     for key, text in files.items():
         kind, _, name = key.partition("__")
         (folder / kind).mkdir(parents=True, exist_ok=True)
-        (folder / kind / f"{name}.{kind}").write_text(text)
+        (folder / kind / f"{name}.{kind}").write_text(text, encoding="utf-8")
 
 
 def library_of(root: Path) -> Library:
@@ -135,9 +135,9 @@ def test_inside_a_node(tmp_path: Path) -> None:
     write(workspace / "rover_msgs", action__Go="int8 a\n---\n---\n")
     code = workspace / "rover" / "src" / "rover"
     code.mkdir(parents=True)
-    (code / "__init__.py").write_text("WHEELS = 6\n")
+    (code / "__init__.py").write_text("WHEELS = 6\n", encoding="utf-8")
     for package in ("rover", "rover_msgs"):
-        (workspace / package / "package.xml").write_text(f"<package><name>{package}</name></package>")
+        (workspace / package / "package.xml").write_text(f"<package><name>{package}</name></package>", encoding="utf-8")
     mission.mkdir()
     nodes = {"DRIVER": NodeConfig("DRIVER", env={"ROS_PACKAGE_PATH": "../ws"})}
     run = run_nodes(mission, {"DRIVER": NODE}, nodes=nodes)
@@ -152,7 +152,7 @@ def test_inside_a_node(tmp_path: Path) -> None:
 
 def test_a_package_beside_the_node_has_code_and_messages(tmp_path: Path) -> None:
     write(tmp_path / "arm", msg__Joint="float64 angle\n")
-    (tmp_path / "arm" / "__init__.py").write_text("from arm.msg import Joint\n\nhome = Joint(0.5)\n")
+    (tmp_path / "arm" / "__init__.py").write_text("from arm.msg import Joint\n\nhome = Joint(0.5)\n", encoding="utf-8")
     run = run_nodes(tmp_path, {"ARM": "from arm import home\nprint(home)\n"})
     assert run.printed["ARM"] == ["angle: 0.5"]
 

@@ -32,9 +32,9 @@ def fly(
     attachments: Sequence[Attachment] = (),
 ) -> Mission:
     """A mission with one node, N; it has not run yet."""
-    (folder / "n.py").write_text(textwrap.dedent(node))
+    (folder / "n.py").write_text(textwrap.dedent(node), encoding="utf-8")
     script = folder / "startup.scr"
-    script.write_text("CFE_APP, n, __main__, N, 100, 16384, 0x0, 0;\n!\n")
+    script.write_text("CFE_APP, n, __main__, N, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     ros = RosConfig({"N": NodeConfig("N", params=private or {})}, params=params or {})
     spec = MissionSpec("test", folder, script, None, board, ros, limits=MissionLimits(limits or {}))
     return Mission(spec, tasks=tasks, console=Console(quiet=True), attachments=attachments)

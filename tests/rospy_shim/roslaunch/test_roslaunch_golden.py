@@ -18,7 +18,7 @@ from rospy_shim.msgs import Packages
 from rospy_shim.roslaunch.model import Launch, LaunchNode
 from rospy_shim.roslaunch.reader import read
 
-GOLDEN = json.loads((Path(__file__).parents[2] / "data/roslaunch_golden.json").read_text())
+GOLDEN = json.loads((Path(__file__).parents[2] / "data/roslaunch_golden.json").read_text(encoding="utf-8"))
 CASES = {case["name"]: case for case in GOLDEN["cases"]}
 ENVIRON = {"LAUNCH_TEST": "out there"}
 
@@ -27,7 +27,7 @@ def read_case(case: dict[str, Any], folder: Path, mistakes: Mistakes | None = No
     for name, text in GOLDEN["files"].items():
         (folder / name).write_bytes(text.encode())
     file = folder / "main.launch"
-    file.write_text(case["text"])
+    file.write_text(case["text"], encoding="utf-8")
     args = dict(arg.split(":=") for arg in case["args"])
     return read(file, args, Packages(file, ENVIRON), ENVIRON, mistakes)
 

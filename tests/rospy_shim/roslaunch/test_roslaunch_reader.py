@@ -19,7 +19,7 @@ from rospy_shim.roslaunch.reader import read
 
 def launch(folder: Path, body: str, **args: str) -> Launch:
     file = folder / "x.launch"
-    file.write_text(f"<launch>\n{textwrap.dedent(body)}</launch>\n")
+    file.write_text(f"<launch>\n{textwrap.dedent(body)}</launch>\n", encoding="utf-8")
     return read_file(file, args)
 
 
@@ -62,7 +62,7 @@ def test_a_date_and_time_is_a_parameter(tmp_path: Path) -> None:
 
 
 def test_an_error_in_an_included_file_names_that_file(tmp_path: Path) -> None:
-    (tmp_path / "inner.launch").write_text('<launch>\n\n<node pkg="p" type="t" name="a/b"/></launch>')
+    (tmp_path / "inner.launch").write_text('<launch>\n\n<node pkg="p" type="t" name="a/b"/></launch>', encoding="utf-8")
     with pytest.raises(UsageError, match=r"inner\.launch:3: <node name>: is 'a/b'"):
         launch(tmp_path, '<include file="$(dirname)/inner.launch"/>')
 
@@ -98,24 +98,26 @@ def test_packages_are_found_near_and_on_the_package_path(tmp_path: Path) -> None
     for name in ("ws/here", "ws/beside", "far/away"):
         folder = tmp_path / name
         folder.mkdir(parents=True)
-        (folder / "package.xml").write_text(f"<package><name>{folder.name}</name></package>")
+        (folder / "package.xml").write_text(f"<package><name>{folder.name}</name></package>", encoding="utf-8")
     file = tmp_path / "ws/here/launch/x.launch"
     file.parent.mkdir()
-    file.write_text('<launch><param name="a" value="$(find here) $(find beside) $(find away)"/></launch>')
+    file.write_text(
+        '<launch><param name="a" value="$(find here) $(find beside) $(find away)"/></launch>', encoding="utf-8"
+    )
     found = read_file(file, environ={"ROS_PACKAGE_PATH": str(tmp_path / "far")})
     assert found.params["/a"] == f"{tmp_path}/ws/here {tmp_path}/ws/beside {tmp_path}/far/away"
 
 
 def test_the_namespace_of_the_environment_is_around_everything(tmp_path: Path) -> None:
     file = tmp_path / "x.launch"
-    file.write_text('<launch><param name="a" value="1"/><node pkg="p" type="t" name="n"/></launch>')
+    file.write_text('<launch><param name="a" value="1"/><node pkg="p" type="t" name="n"/></launch>', encoding="utf-8")
     found = read_file(file, environ={"ROS_NAMESPACE": "robot"})
     assert list(found.params) == ["/robot/a"]
     assert found.nodes[0].full_name == "/robot/n"
 
 
 def test_cat_and_xacro_are_stood_in_for(tmp_path: Path) -> None:
-    (tmp_path / "a.txt").write_text("12")
+    (tmp_path / "a.txt").write_text("12", encoding="utf-8")
     assert launch(tmp_path, '<param name="a" command="cat $(dirname)/a.txt"/>').params == {"/a": 12}
     with pytest.raises(UsageError, match=r"names 0 files|needs the Python package xacro"):
         launch(tmp_path, '<param name="a" command="$(find xacro)/xacro --inorder"/>')
@@ -124,7 +126,7 @@ def test_cat_and_xacro_are_stood_in_for(tmp_path: Path) -> None:
 def collected(folder: Path, body: str, **args: str) -> list[tuple[str, int, str]]:
     """What is wrong with a launch file, and what of it is left out: file, line, text."""
     file, mistakes = folder / "x.launch", Mistakes(keep=True)
-    file.write_text(f"<launch>\n{textwrap.dedent(body)}</launch>\n")
+    file.write_text(f"<launch>\n{textwrap.dedent(body)}</launch>\n", encoding="utf-8")
     remarks = read(file, args, Packages(file, {}), {}, mistakes).remarks
     errors = [
         (Path(error.file or "").name, error.line or 0, f"{error.field}: {error.text}") for error in mistakes.errors
@@ -134,10 +136,10 @@ def collected(folder: Path, body: str, **args: str) -> list[tuple[str, int, str]
 
 def test_a_file_is_read_to_the_end(tmp_path: Path) -> None:
     (tmp_path / "inner.launch").write_text(
-        '<launch>\n<arg name="rate"/>\n<param name="$(arg rate)" value="1"/></launch>'
+        '<launch>\n<arg name="rate"/>\n<param name="$(arg rate)" value="1"/></launch>', encoding="utf-8"
     )
-    (tmp_path / "broken.yaml").write_text("a: [1\n")
-    (tmp_path / "broken.launch").write_text("<launch>\n<group>\n</launch>")
+    (tmp_path / "broken.yaml").write_text("a: [1\n", encoding="utf-8")
+    (tmp_path / "broken.launch").write_text("<launch>\n<group>\n</launch>", encoding="utf-8")
     found = collected(
         tmp_path,
         """\
@@ -214,9 +216,9 @@ def test_a_file_that_includes_itself_twice_ends(tmp_path: Path) -> None:
     ],
 )
 def test_arguments_that_nothing_uses(tmp_path: Path, body: str, unused: list[str]) -> None:
-    (tmp_path / "a.yaml").write_text("a: $(arg x)\n")
+    (tmp_path / "a.yaml").write_text("a: $(arg x)\n", encoding="utf-8")
     (tmp_path / "in.launch").write_text(
-        '<launch><arg name="z" default="1"/><param name="$(arg z)" value="2"/></launch>'
+        '<launch><arg name="z" default="1"/><param name="$(arg z)" value="2"/></launch>', encoding="utf-8"
     )
     found = [text for _, _, text in collected(tmp_path, body)]
     assert found == [f"nothing uses the argument {name!r}; remove it, or use $(arg ...)" for name in unused]
@@ -231,9 +233,9 @@ def test_results_of_a_test_stay_in_their_folder(tmp_path: Path) -> None:
     """A test's own name may have any characters; that of a node may not, and is another one here."""
     names = ("good", "../../victim", "/victim", "a b", "a/b", "a_b", "x" * 5000, "é")
     tests = "".join(f'<test test-name="{name}" name="n{at}" pkg="arm" type="t.py"/>' for at, name in enumerate(names))
-    (tmp_path / "package.xml").write_text("<package><name>arm</name></package>")
-    (tmp_path / "t.py").write_text("#!/usr/bin/env python3\n")
-    (tmp_path / "x.launch").write_text(f"<launch>{tests}</launch>")
+    (tmp_path / "package.xml").write_text("<package><name>arm</name></package>", encoding="utf-8")
+    (tmp_path / "t.py").write_text("#!/usr/bin/env python3\n", encoding="utf-8")
+    (tmp_path / "x.launch").write_text(f"<launch>{tests}</launch>", encoding="utf-8")
     plan = plan_of(tmp_path / "x.launch", {}, {}, results=tmp_path / "results")
     files = [test.results for test in plan.tests]
     assert files[0].name == "arm-good.xml"

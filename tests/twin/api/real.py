@@ -39,9 +39,9 @@ def play(built: Path, script: list[str]) -> list[str]:
     with tempfile.TemporaryDirectory() as folder:
         here = Path(folder) / "run"
         shutil.copytree(built, here)
-        (here / "script.txt").write_text("\n".join(script) + "\n")
+        (here / "script.txt").write_text("\n".join(script) + "\n", encoding="utf-8")
         inside = f"{real.FURNISH}exec ./{real.EXECUTABLE} > console.txt 2>&1"
         command = ["taskset", "-c", str(real.one_cpu()), *real.NAMESPACES, "bash", "-c", inside]
         subprocess.run(command, cwd=here, stdin=subprocess.DEVNULL, timeout=LIMIT_S, check=False)
-        lines = (here / "answers.txt").read_text(errors="surrogateescape").splitlines()
+        lines = (here / "answers.txt").read_text(errors="surrogateescape", encoding="utf-8").splitlines()
         return lines[lines.index("begin") + 1 :]

@@ -105,9 +105,9 @@ def spec_of(folder: Path, nodes: Mapping[str, str], params: Mapping[str, Any] | 
     """A mission of ROS nodes."""
     lines = []
     for name, code in nodes.items():
-        (folder / f"{name}.py").write_text(textwrap.dedent(code))
+        (folder / f"{name}.py").write_text(textwrap.dedent(code), encoding="utf-8")
         lines.append(f"CFE_APP, {name}.py, __main__, {name.upper()}, 100, 16384, 0x0, 0;\n")
-    (folder / "startup.scr").write_text("".join(lines) + "!\n")
+    (folder / "startup.scr").write_text("".join(lines) + "!\n", encoding="utf-8")
     ros = RosConfig({}, {}, dict(params or {}))
     return MissionSpec("shown", folder, folder / "startup.scr", None, "linux", ros)
 

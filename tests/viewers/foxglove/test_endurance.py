@@ -26,7 +26,7 @@ MOST_GROWTH = 4 << 20  # bytes of memory
 def memory() -> int:
     """Bytes in use."""
     gc.collect()
-    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    return int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
 def handles() -> tuple[int, int]:

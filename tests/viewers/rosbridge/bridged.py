@@ -180,11 +180,11 @@ def bridged(
         admission: whom the server lets in.
         lines: more of its startup script.
     """
-    (folder / "mission.yaml").write_text(mission_file or "name: bridged\n")
+    (folder / "mission.yaml").write_text(mission_file or "name: bridged\n", encoding="utf-8")
     apps = [f"CFE_APP, {app.lower()}.py, __main__, {app}, 100, 16384, 0x0, 0;\n" for app in nodes]
-    (folder / "startup.scr").write_text("".join(apps) + lines + "!\n")
+    (folder / "startup.scr").write_text("".join(apps) + lines + "!\n", encoding="utf-8")
     for app, source in nodes.items():
-        (folder / f"{app.lower()}.py").write_text(source)
+        (folder / f"{app.lower()}.py").write_text(source, encoding="utf-8")
     with bridged_mission(str(folder), admission) as run:
         yield run
 

@@ -31,7 +31,7 @@ def main(port: str, file: str) -> None:
             last = found[-1] if found else last
             rows.append({"sent": step, "came": [comparable(each) for each in found]})
     text = json.dumps(rows, indent=None, ensure_ascii=True)
-    Path(file).write_text(text.replace('{"sent"', '\n{"sent"') + "\n")
+    Path(file).write_text(text.replace('{"sent"', '\n{"sent"') + "\n", encoding="utf-8")
 
 
 def _answers(client: ClientConnection) -> list[Any]:

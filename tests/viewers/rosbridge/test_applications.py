@@ -20,7 +20,7 @@ RAW = "std_msgs/UInt8MultiArray"
 
 
 def test_packets_both_ways(tmp_path: Path) -> None:
-    (tmp_path / "hear.py").write_text(APP)
+    (tmp_path / "hear.py").write_text(APP, encoding="utf-8")
     with bridged(tmp_path, {}, FILE, lines="CFE_APP, hear, Listener, HEAR, 60, 16384, 0x0, 0;\n") as run:
         client = run.client()
         client.send(op="advertise", topic="/packets", type=RAW)

@@ -19,7 +19,7 @@ PEER = Path(__file__).parents[2] / "ros_nodes" / "rosbridge_peer.py"
 
 @pytest.mark.slow
 def test_the_exchanges_on_record() -> None:
-    rows = json.loads(DATA.read_text())
+    rows = json.loads(DATA.read_text(encoding="utf-8"))
     assert len(rows) > 140
     with bridged_mission(spec_of_node([str(PEER)])) as run:
         client = run.client()

@@ -64,7 +64,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str]
     (archive,) = folder.glob("*.tgz")
     shutil.unpack_archive(archive, folder)
     (folder / "page.html").write_text(
-        '<link rel="icon" href="data:,"><script src="package/build/roslib.min.js"></script>'
+        '<link rel="icon" href="data:,"><script src="package/build/roslib.min.js"></script>', encoding="utf-8"
     )
     server = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Quiet, directory=str(folder)))
     thread = threading.Thread(target=server.serve_forever)

@@ -29,9 +29,11 @@ class Both(Joined, Bridged):
 
 @pytest.fixture
 def both(tmp_path: Path) -> Iterator[Both]:
-    (tmp_path / "mission.yaml").write_text("name: both\n")
-    (tmp_path / "startup.scr").write_text("CFE_APP, server.py, __main__, SERVER, 100, 16384, 0x0, 0;\n!\n")
-    (tmp_path / "server.py").write_text(SERVER)
+    (tmp_path / "mission.yaml").write_text("name: both\n", encoding="utf-8")
+    (tmp_path / "startup.scr").write_text(
+        "CFE_APP, server.py, __main__, SERVER, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8"
+    )
+    (tmp_path / "server.py").write_text(SERVER, encoding="utf-8")
     server = RosbridgeServer(ListenPlace("127.0.0.1", 0), Admission(), PeerCounts())
     with (
         Mission(str(tmp_path), console=Console(quiet=True), attachments=[server]) as mission,
