@@ -95,12 +95,15 @@ int main(int argc, char **argv)
 }
 """
 SOURCES = {"target.cpp": TARGET, "helper.cpp": HELPER}
+WITHOUT_PARAMETER = TARGET.replace('nh.getParamCached("/value", value)', "value = 7.0")
+"""In the profile strict: to ask for a kept parameter again, after a notice, takes memory."""
 LAUNCH = '<param name="value" value="7.0"/>' + node("helper") + node("target")
 
 
 @pytest.fixture(params=["host", "pool", "strict"])
 def mission(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Mission]:
-    with small_mission(tmp_path, SOURCES, LAUNCH, request.param) as flown:
+    sources = {**SOURCES, "target.cpp": WITHOUT_PARAMETER} if request.param == "strict" else SOURCES
+    with small_mission(tmp_path, sources, LAUNCH, request.param) as flown:
         flown.run_for(3)
         assert said_by(flown, "target")[-1].startswith("alive ")
         yield flown

@@ -47,17 +47,22 @@ bool has_room(const std::vector<std::uint8_t> &in, std::size_t size)
 #endif
 }
 
-// Whether messages of a topic may come in several packets. Where they have a size at most, `set_aside` knows.
+// Whether messages of a topic may come in several packets. Where they have a size at most, `set_aside` knows; in the
+// profile strict no others are taken, since joining them takes memory.
 bool comes_in_pieces(std::uint16_t msg_id)
 {
+    const auto found = std::find_if(g_assemblies.begin(), g_assemblies.end(),
+                                    [&](const Assembly &each) { return each.msg_id == msg_id; });
+#if defined(ROSCFE_PROFILE_STRICT)
+    return found != g_assemblies.end();
+#else
     bool known = true;
     for (const boost::shared_ptr<Subscription> &each : g_node.subscriptions)
     {
         known = known && (each->msg_id_ != msg_id || each->most_bytes_ > 0);
     }
-    const auto found = std::find_if(g_assemblies.begin(), g_assemblies.end(),
-                                    [&](const Assembly &each) { return each.msg_id == msg_id; });
     return !known || found != g_assemblies.end();
+#endif
 }
 
 Assembly &assembly_of(std::uint16_t msg_id)
