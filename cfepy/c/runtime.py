@@ -51,7 +51,7 @@ class CRuntime:
         on_overwrite: gets the application and a text for what was written past a block, where no call is at fault.
         on_stack: gets application and task, how many bytes of its stack the task has used, and how many it has.
         nodes: names of ROS nodes by the names of their applications: what they print shows them.
-        publication_watch: looks on at what ROS nodes publish; None in a run that is not watched.
+        publication_watch: takes the messages of ROS nodes that reach no subscriber; None if there are no such nodes.
 
     Attributes:
         arena, memory, constants, packets: the parts of the memory.

@@ -17,6 +17,7 @@ from cfepy.mission.loader import NODE_SYMBOL, Code, Finder
 from cfepy.osal import FileSystem
 from cfepy.sb import SoftwareBus
 from cfepy.status import OsalError
+from cfepy.trace import UNSENT
 
 if TYPE_CHECKING:
     from cfepy.c import CompiledLoader, CRuntime
@@ -41,21 +42,27 @@ def find_compiled(file: str, folder: Path) -> Path | None:
 
 
 class CompiledWatch:
-    """Shows messages of compiled nodes that reach no subscriber to the watches of the bus (`SoftwareBus.on_unsent`).
+    """Takes the messages of compiled nodes that reach no subscriber, as a rospy publisher does with its own.
+
+    They go into the trace (`SoftwareBus.unsent`), and to the watches of the bus (`SoftwareBus.on_unsent`).
 
     Args:
-        show: gets the publishing side and the message.
+        bus: the Software Bus.
         ros: the ROS side of the processor, once there is one.
     """
 
-    def __init__(self, show: Callable[[Any, bytes], object], ros: Callable[[], RosRuntime | None]) -> None:
-        self._show = show
+    def __init__(self, bus: SoftwareBus, ros: Callable[[], RosRuntime | None]) -> None:
+        self._bus = bus
+        show: Any = bus.on_unsent  # a static method, which binds no bus
+        self._show: Callable[[Any, bytes], object] | None = show
         self._ros = ros
 
     def unsent(self, app: str, msg_id: int, message: bytes) -> None:
         """See `cfepy.c.api.unsent.PublicationWatch`."""
         sender = self._sender(app, msg_id)
-        if sender is not None:
+        name = f"0x{msg_id:04X}" if sender is None else sender.name
+        self._bus.unsent(UNSENT + name.encode() + b"\0" + message)
+        if sender is not None and self._show is not None:
             self._show(sender, message)
 
     def latches(self, app: str, msg_id: int) -> None:
@@ -67,17 +74,6 @@ class CompiledWatch:
     def _sender(self, app: str, msg_id: int) -> CompiledSender | None:
         ros = self._ros()
         return None if ros is None else ros.compiled_sender(app, msg_id)
-
-
-def compiled_watch(bus: SoftwareBus, ros: Callable[[], RosRuntime | None]) -> CompiledWatch | None:
-    """What shows messages of compiled nodes; None on a bus that is not watched.
-
-    Args:
-        bus: the Software Bus.
-        ros: see `CompiledWatch`.
-    """
-    show: Any = bus.on_unsent  # a static method, which binds no bus
-    return None if show is None else CompiledWatch(show, ros)
 
 
 class CompiledFiles(Finder):

@@ -19,7 +19,7 @@ from cfepy.es import Boot, CoreApp, EsTask, ExecutiveServices, ObjectTable
 from cfepy.evs import EventServices
 from cfepy.fs import FileServices
 from cfepy.mission.call_points import handle_for_apps
-from cfepy.mission.compiled_code import CompiledFiles, compiled_watch
+from cfepy.mission.compiled_code import CompiledFiles, CompiledWatch
 from cfepy.mission.launch import files_of_built, scripts_of
 from cfepy.mission.loader import BuiltInApps, Finder, ModuleLoader
 from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
@@ -336,7 +336,7 @@ class Processor:
                 ),
                 on_stack=machine.record.note_stack,
                 nodes={app: each.name for app, each in machine.spec.built.items()},
-                publication_watch=compiled_watch(self.cfe.sb, lambda: self.ros),
+                publication_watch=CompiledWatch(self.cfe.sb, lambda: self.ros),
             )
         self.cfe.es.core_memory = runtime.core_memory
         if runtime.tables is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
 
 import pytest
@@ -130,3 +131,14 @@ def test_subscriber_outside_may_be_there_before_the_node(spec: MissionSpec) -> N
         assert ros.outside.do("subscribe", "/chatter", "/rostopic", "http://here:1/", "*", "*", "/talker") == ""
         mission.run_for(2)
         assert len(out.heard) == 20
+
+
+def test_message_without_a_subscriber_is_in_the_digest(tmp_path: Path) -> None:
+    digests = []
+    for text in ("hello", "hello", "jello"):
+        folder = tmp_path / "mission"  # the same each time: a node's path is in the digest
+        folder.mkdir()
+        with small_mission(folder, {"talker.cpp": TALKER.replace("hello", text)}, node("talker")) as mission:
+            digests.append(digest(flown(mission.spec)))
+        rmtree(folder)
+    assert digests[0] == digests[1] != digests[2]

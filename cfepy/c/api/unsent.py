@@ -1,8 +1,7 @@
-"""cfepy_unsent and its kin: messages of compiled ROS nodes that reach no subscriber, for bags and other watches.
+"""cfepy_unsent and its kin: messages of compiled ROS nodes that reach no subscriber, for the trace, bags and viewers.
 
-A run has these functions only if it is watched. The interface library finds them by weak symbols, so a flight computer
-never calls them. A call takes no virtual time, and its memory is outside of the arena: no address that a program sees
-depends on the watch.
+The interface library finds these functions by weak symbols, so a flight computer never calls them. A call takes no
+virtual time, and its memory is outside of the arena: no address that a program sees depends on it.
 """
 
 from __future__ import annotations
