@@ -33,6 +33,7 @@ OPENERS = {
     "cfepy/ground/bag.py": "writes",
     "cfepy/ground/recording.py": "writes",
     "cfepy/exploration/results_file.py": "writes",
+    "cfepy/io/own_names.py": "/etc/hosts",
     "cfepy/rtos/cpus.py": "/proc",
     "cfepy/rtos/watchdog.py": "/proc",
     "cfepy/debugger/gdb.py": "/proc",

@@ -72,8 +72,12 @@ def process() -> int:
     keep_output_safe()
     sys.excepthook, sys.unraisablehook = _print_error, _pass_on_interrupt
     try:
-        status = main()
-        leave_on_interrupt()
+        try:
+            status = main()
+        finally:
+            with contextlib.suppress(OSError, ValueError):  # told already
+                sys.stdout.flush()
+            leave_on_interrupt()
     except KeyboardInterrupt:
         status = INTERRUPTED
     freeze()

@@ -187,7 +187,9 @@ class Link(TopicSide):
             self.latch = message
         if connection_override in self.peers:
             payload = self.serialize(message)
-            self._unsent(self._unsent_head + payload)  # the bus does not carry it
+            is_again = connection_override.is_outside and message is self.latch  # who only looks leaves no trace
+            if not is_again:
+                self._unsent(self._unsent_head + payload)  # the bus does not carry it
             if self.leftovers is None or self.leftovers.goes_to(connection_override, payload):
                 connection_override.deliver(payload, self.header)
 

@@ -110,7 +110,8 @@ def test_its_journal_has_what_it_read(mission: str, folder: Path, tmp_path: Path
     assert_same_again(read_journal(tmp_path / "run.cfepy"), flown.trace)
 
 
-def test_it_can_be_kept(mission: str, folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_it_can_be_kept(mission: str, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("TMPDIR", raising=False)
     out = tmp_path / "out"
     assert main(["run", mission, "--for", "1", "--quiet", "--save-files", str(out)]) == 0
     assert (out / str(folder).lstrip("/") / "starts").read_text(encoding="utf-8") == "xxx"

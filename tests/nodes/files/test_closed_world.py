@@ -58,6 +58,7 @@ def node(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     script.write_text(COUNTER, encoding="utf-8")
     monkeypatch.chdir(folder)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))  # where runs have their own files
+    monkeypatch.delenv("TMPDIR", raising=False)  # a node of `cfepy node` has the user's, as with rosrun
     return script
 
 
