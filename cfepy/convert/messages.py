@@ -74,6 +74,7 @@ def write_headers(
     Raises:
         UsageError: no such type, a mistake in its definition, or a field without a capacity.
     """
+    folder.mkdir(parents=True, exist_ok=True)
     maker = _Maker(library, profile, capacities or Capacities())
     written = []
     for name, text in sorted(maker.headers(types).items()):
