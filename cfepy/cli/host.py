@@ -40,6 +40,13 @@ def silent(seconds: float) -> Display:
     return SilentDisplay()
 
 
+def _show_lines_at_once() -> None:
+    """Write each line of a paced run when it comes, into a file or a pipe, too: somebody follows it there."""
+    reconfigure = getattr(sys.stdout, "reconfigure", None)
+    if reconfigure is not None:
+        reconfigure(line_buffering=True)
+
+
 class WatchedHost(Host):
     """Brings the display up to date between the pieces of a run; use as a context manager around it.
 
@@ -120,6 +127,7 @@ class WatchedHost(Host):
         self._display = self._make_display(run.course.until_ns / NS_PER_S)
         self._watch = Stopwatch()
         if self._realtime is not None:
+            _show_lines_at_once()
             self._connect()
             self.pace(self._realtime)
 

@@ -12,7 +12,7 @@ from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
 from cfepy.pilot.never_judged import SentNames, no_such_app
 from cfepy.pilot.pilot import BootError, Flown, Host, LiveRun, booting, fly, takeoff
 from cfepy.pilot.plan import LAUNCH, NODE, RUN, RunPlan, builder, built_node
-from cfepy.pilot.problems import RunProblem, failures_of, problems_of, problems_so_far
+from cfepy.pilot.problems import RunProblem, failures_of, is_reported, problems_of, problems_so_far
 from cfepy.pilot.results import ENDED, NOT_STARTED, AppResult, Results, TopicResult, mark, never_happened
 
 __all__ = [
@@ -45,6 +45,7 @@ __all__ = [
     "built_node",
     "failures_of",
     "fly",
+    "is_reported",
     "mark",
     "never_happened",
     "no_such_app",

@@ -54,6 +54,11 @@ def problems_of(mission: Mission, endless: EndlessWaits, outcome: Outcome | None
     return [*found, *_missed_steps(outcome), *_beside(mission)]
 
 
+def is_reported(problem: RunProblem) -> bool:
+    """Whether a problem is only that an application reported one, in an ERROR or CRITICAL event."""
+    return bool(problem.failures) and all(each.kind is FailureKind.EVENT for each in problem.failures)
+
+
 def problems_so_far(mission: Mission) -> list[RunProblem]:
     """Those of the instant at which they show, while the mission runs."""
     found = [*_deaths(mission), *_events(mission, None), *_printed(mission), *_invariants(mission)]

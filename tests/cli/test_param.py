@@ -79,7 +79,10 @@ def test_files_for_the_ground(tmp_path: Path, capsys: pytest.CaptureFixture[str]
         (("set", "p/params01.tbl", "/a", "2001-01-01"), "value: is a date, which is no value of a ROS parameter"),
         (("set", "p/params01.tbl", "/a", "[1"), "is not YAML"),
         (("delete", "p/params01.tbl", "/none"), "params01.tbl: there is no parameter /none"),
-        (("set", "p/params01.tbl", "/a", "x" * 20000), "the parameter tables are full: /a takes more than all 127 rows"),
+        (
+            ("set", "p/params01.tbl", "/a", "x" * 20000),
+            "the parameter tables are full: /a takes more than all 127 rows",
+        ),
         (("set", "robot.yaml", "/a", "1"), "robot.yaml: is no table file"),
         (("list", "empty"), "empty: there is no file of a parameter table in it"),
         (("get", "no_such_mission", "/a"), "no_such_mission"),

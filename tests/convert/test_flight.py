@@ -112,7 +112,7 @@ def test_a_replay_needs_no_compiler(package: Path, tmp_path: Path, monkeypatch: 
     journal = tmp_path / "run.journal"
     assert main(["launch", "ping", "ping.launch", "--for", "1", "--record", str(journal)]) == 0
     shutil.rmtree(package)
-    monkeypatch.setattr(build, "_started", None)  # what starts compilers
+    monkeypatch.setattr(build, "start_bounded", None)  # what starts compilers
     assert replay(read_journal(journal)).verdict.same
 
 
@@ -147,7 +147,10 @@ def test_without_a_compiler_it_is_said(
     monkeypatch.setenv("CFEPY_CACHE", str(tmp_path / "cache"))
     build.identity.cache_clear()
     assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 2
-    assert "no-such-compiler is not there: ROS nodes in C++ need a C++ compiler" in capfd.readouterr().err
+    assert (
+        "no-such-compiler is not there: install a C compiler (on Debian `apt-get install gcc`, and g++ for C++)"
+        in capfd.readouterr().err
+    )
 
 
 def test_symbols_that_nodes_would_share_are_found(tmp_path: Path) -> None:

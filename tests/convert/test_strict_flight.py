@@ -150,5 +150,5 @@ def test_a_launch_file_by_itself_is_built_as_the_command_line_says(
     assert "no startup script" in capfd.readouterr().err
     (mission / "mission.yaml").unlink()
     monkeypatch.chdir(mission)
-    assert main(["replay", journal]) == 0
+    assert main(["replay", journal]) == 1  # the same run, which has a problem
     assert "the same run as" in capfd.readouterr().err

@@ -25,7 +25,7 @@ from cfepy.input_limits import XML_BYTES
 from cfepy.markup import printable
 from cfepy.mission import BuiltProgram, CppNodesConfig, NodeBuilder, built_programs, launch_file, spec_of
 from cfepy.nodes import CppNode, NodeConfig
-from cfepy.pilot import LAUNCH, Flown, builder, fly
+from cfepy.pilot import LAUNCH, Flown, builder, fly, is_reported
 from cfepy.plain_xml import XmlError, plain_xml
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -259,8 +259,9 @@ class _Runner:
         """What the test wrote, or why it wrote nothing; of a test that passed, what went wrong besides in its run."""
         results = self._own_results(test, node, suite, flown)
         if results.passed:
-            for text in flown.results.problems:
-                results.add(broken(suite, "nodes", text))
+            for problem in flown.problems:
+                if not is_reported(problem):  # such as ROS_ERROR of a node in C++, which fails no test of rostest
+                    results.add(broken(suite, "nodes", problem.text))
         return results
 
     def _own_results(self, test: PlannedTest, node: NodeConfig, suite: str, flown: Flown) -> TestResults:

@@ -8,29 +8,34 @@ from std_msgs.msg import Int32, String
 class Watch(rospy.SubscribeListener):
     """What happens when a subscriber comes or goes; said when the node spins, as roscpp has it."""
 
-    def __init__(self, comes):
-        self.peer_subscribe = lambda _name, _publish, to_one: comes(to_one)
+    def __init__(self, waiting, comes):
+        self.peer_subscribe = lambda _name, _publish, to_one: waiting.append(lambda: comes(to_one))
 
 
 class Twin:
     """The node."""
 
     def __init__(self):
+        self.waiting = []  # callbacks, in their order
         self.out = rospy.Publisher("out", String, queue_size=100)
         self.state = rospy.Publisher("state", Int32, queue_size=1, latch=True)
         say = self.out.publish
-        watch = Watch(lambda _: say("comes"))
+        watch = Watch(self.waiting, lambda _: say("comes"))
         self.watched = rospy.Publisher("watched", Int32, watch, queue_size=5)
-        self.greeting = rospy.Publisher("greeting", Int32, Watch(lambda to_one: to_one(Int32(77))), queue_size=5)
+        self.greeting = rospy.Publisher(
+            "greeting", Int32, Watch(self.waiting, lambda to_one: to_one(Int32(77))), queue_size=5
+        )
         for number in (1, 2, 3):
             self.state.publish(number)
 
     def goal(self):
-        return rospy.Subscriber("goal", Int32, lambda message: self.waiting.append(message.data), queue_size=10)
+        return rospy.Subscriber("goal", Int32, self.heard, queue_size=10)
+
+    def heard(self, message):
+        self.waiting.append(lambda: self.out.publish(f"heard {message.data}"))
 
     def run(self):
         say = self.out.publish
-        self.waiting = []
         rospy.sleep(2)
         first = self.goal()
         rospy.sleep(0.08)
@@ -49,9 +54,9 @@ class Twin:
                 self.wait("other", 1.0, "waited for {}", "waited in vain")
                 rospy.sleep(0.5)
                 self.wait("silent", 0.4, "came", "nothing came")
-            waiting, self.waiting = self.waiting, []
-            for number in waiting:
-                say(f"heard {number}")
+            for callback in self.waiting[:]:
+                self.waiting.pop(0)
+                callback()
             cycle += 1
             rate.sleep()
 
