@@ -138,6 +138,8 @@ class Cluster:
             target: Any = self._address
             if self._address.startswith(LOCAL):
                 target = self._local = self._started(self._address.removeprefix(LOCAL))
+            else:  # a client would start its threads first, and keep them when it then cannot read the address
+                self._distributed.comm.get_address_host_port(self._address)
             client = self._distributed.Client(target, timeout=CONNECT_S, set_as_default=False)
         except (OSError, ValueError) as error:
             text = f"no dask scheduler answers at {self._address}: {error}"

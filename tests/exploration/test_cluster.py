@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -250,8 +251,10 @@ def test_a_number_of_processes_that_is_none(address: str) -> None:
 
 @pytest.mark.parametrize("address", ["nonsense://x", "tcp://127.0.0.1:notaport"])
 def test_an_address_that_is_none(address: str) -> None:
+    before = set(threading.enumerate())
     with pytest.raises(UsageError, match=f"--cluster: no dask scheduler answers at {address}"):
         Cluster(address)
+    assert set(threading.enumerate()) <= before  # an event loop of dask would wait for its end
 
 
 def test_versions_must_agree() -> None:
