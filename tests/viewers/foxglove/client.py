@@ -7,6 +7,7 @@ import struct
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
 from functools import partial
+from inspect import signature
 from typing import Any, TypeVar
 
 from websockets.sync.client import ClientConnection, connect
@@ -44,7 +45,9 @@ class FoxgloveClient:
         self._topics: dict[int, str] = {}
         self._meanwhile = meanwhile
         # Behind a full queue it would wait ten seconds for the end of a connection that it closes.
-        options = {"max_size": None, "max_queue": None, "legacy": True, **options}
+        known = signature(connect).parameters  # older releases of the package have fewer
+        more = {name: value for name, value in {"max_queue": None, "legacy": True}.items() if name in known}
+        options = {"max_size": None, **more, **options}
         self.socket: ClientConnection = self._served(partial(connect, url, subprotocols=[PROTOCOL], **options))
 
     def __enter__(self) -> FoxgloveClient:
