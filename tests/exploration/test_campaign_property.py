@@ -183,10 +183,14 @@ class Client:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_a_cluster_whose_workers_die_loses_and_doubles_nothing(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("distributed")
+    comm = pytest.importorskip("distributed").comm
     random = Random(seed)
     fake = SimpleNamespace(
-        Client=lambda *_, **__: Client(random), KilledWorker=Killed, TimeoutError=SlowAnswer, LocalCluster=None
+        Client=lambda *_, **__: Client(random),
+        KilledWorker=Killed,
+        TimeoutError=SlowAnswer,
+        LocalCluster=None,
+        comm=comm,
     )
     monkeypatch.setattr(cluster_module, "_distributed", lambda: fake)
     told: list[tuple[int, Verdict]] = []
