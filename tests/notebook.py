@@ -24,11 +24,22 @@ def executed(folder: str) -> Any:
     """The notebook after a new kernel has executed it, in an empty folder."""
     import nbformat
     from nbclient import NotebookClient
+    from traitlets.config import Config
 
     notebook: Any = nbformat.read(FILE, as_version=4)  # type: ignore[no-untyped-call]
-    client = NotebookClient(notebook, timeout=LONGEST_S, record_timing=False, resources={"metadata": {"path": folder}})
-    client.execute()
+    where = {"metadata": {"path": folder}}
+    with tempfile.TemporaryDirectory() as sockets:
+        options = Config({"KernelManager": kernel_sockets(sockets)})
+        NotebookClient(notebook, timeout=LONGEST_S, record_timing=False, resources=where, config=options).execute()
     return notebook
+
+
+def kernel_sockets(folder: str) -> dict[str, str]:
+    """Give the options of jupyter's KernelManager by which a kernel listens in a folder, not at TCP ports.
+
+    A port that was free when the manager chose it may be another program's when the kernel takes it.
+    """
+    return {"transport": "ipc", "ip": f"{folder}/kernel"}
 
 
 def texts(notebook: Any) -> list[str]:

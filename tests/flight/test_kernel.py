@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
+
+from tests.notebook import kernel_sockets
 
 jupyter_client = pytest.importorskip("jupyter_client")
 
@@ -18,7 +21,8 @@ Cell = Callable[..., dict[str, Any]]
 @pytest.fixture(scope="module")
 def cell() -> Iterator[Cell]:
     """Executes code in a kernel and gives its last output; `stop` presses the button when the cell has printed."""
-    manager = jupyter_client.KernelManager(kernel_name="python3")
+    sockets = TemporaryDirectory()
+    manager = jupyter_client.KernelManager(kernel_name="python3", **kernel_sockets(sockets.name))
     manager.start_kernel()
     client = manager.client()
     client.start_channels()
@@ -41,6 +45,7 @@ def cell() -> Iterator[Cell]:
     yield execute
     client.stop_channels()
     manager.shutdown_kernel(now=True)
+    sockets.cleanup()
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
