@@ -16,6 +16,7 @@ pytest.register_assert_rewrite(
     *(f"tests.{each.stem}" for each in Path(__file__).parent.iterdir() if each.stem.isidentifier())
 )
 
+from cfepy.host_system import ending_signals  # noqa: E402
 from tests import quick  # noqa: E402
 
 pytest_plugins = ["pytester", "cfepy.testing.plugin"]  # the latter has this name when it is installed, too
@@ -23,6 +24,7 @@ pytest_plugins = ["pytester", "cfepy.testing.plugin"]  # the latter has this nam
 settings.register_profile("cfepy", settings.default, deadline=None)
 settings.load_profile("cfepy")
 
+ENDING = tuple(ending_signals())
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell gives it ignored to what it runs in the background
 
 if sys.dont_write_bytecode:  # each process that a test starts would compile all of cfepy, and each run all tests
@@ -57,6 +59,18 @@ def _nobody_is_followed() -> Iterator[None]:
     yield
     owner = getattr(sys.gettrace(), "__self__", None)
     assert type(owner).__name__ != "AppDebugger"
+
+
+@pytest.fixture(autouse=True)
+def _signals_are_answered_as_before() -> Iterator[None]:
+    """After a test that left another answer, Ctrl-C would not reach the tests that come after it."""
+    before = {each: signal.getsignal(each) for each in ENDING}
+    yield
+    after = {each: signal.getsignal(each) for each in ENDING}
+    if after != before:
+        for each, answer in before.items():
+            signal.signal(each, answer)  # of the tests that come after it none fails
+    assert after == before
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
