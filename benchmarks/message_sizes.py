@@ -77,7 +77,7 @@ def table() -> str:
     """The table, a type in a row."""
     columns = [(target, profile) for target in COMPILERS for profile in (Profile.HOST, Profile.STRICT)]
     cells: dict[str, list[str]] = {name: [] for name in TYPES}
-    headers = shipped_files("flight") / "roscfe"
+    headers = shipped_files("roscfe")
     for target, profile in columns:
         with tempfile.TemporaryDirectory() as scratch:
             folder = Path(scratch)

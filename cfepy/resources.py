@@ -16,7 +16,7 @@ def shipped(kind: str) -> Path:
     """The directory of one kind of shipped files.
 
     Args:
-        kind: "boards", "apps", "missions" or "flight", which is code for flight computers.
+        kind: "apps", "boards", "missions" or "roscfe", the interface library for nodes in C++.
 
     Raises:
         UsageError: this installation has no such directory.

@@ -74,7 +74,7 @@ def library_folder() -> Path:
     Raises:
         UsageError: this installation has none.
     """
-    return shipped("flight") / "roscfe"
+    return shipped("roscfe")
 
 
 def library_includes(real_boost: bool = False) -> list[Path]:

@@ -1,7 +1,7 @@
 """The entry point of a converted node: the source file that tells the interface library all about the node.
 
 It has the node's names, arguments, remaps, MsgIds and the first contents of its table of parameters as constants
-(`roscfe::NodeDescription` in flight/roscfe/include/roscfe/node.h), and the function that ES calls.
+(`roscfe::NodeDescription` in roscfe/include/roscfe/node.h), and the function that ES calls.
 """
 
 from __future__ import annotations

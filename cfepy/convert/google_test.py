@@ -1,6 +1,6 @@
 """Tests of GoogleTest as nodes: they are compiled together with GoogleTest's sources, as the computer has them.
 
-What such a program asks of an operating system, and the file with what came of its tests, is in `flight/roscfe/gtest`.
+What such a program asks of an operating system, and the file with what came of its tests, is in `roscfe/gtest`.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def add_google_test(program: Program, missing: Iterable[str]) -> None:
     for each in parts:
         program.includes += [each / "include", each]
     program.definitions += DEFINITIONS
-    own = shipped("flight") / "roscfe/gtest"
+    own = shipped("roscfe") / "gtest"
     program.support += [folder / SOURCE, own / "results.cpp", own / "host.cpp"]
 
 

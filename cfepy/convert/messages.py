@@ -2,7 +2,7 @@
 
 They are made of the definitions that `rospy_shim.msgs` has, those that cfepy's own Python nodes use. A struct has what
 public nodes use of gencpp's: `_field_type`, `Ptr`, `ConstPtr`, constants, `==`, `<<`. Beside it stand the visitor of
-its fields (`roscfe::wire::Fields`) and what else is known of it (`roscfe::wire::Traits`); see flight/roscfe/include.
+its fields (`roscfe::wire::Fields`) and what else is known of it (`roscfe::wire::Traits`); see roscfe/include.
 
 In the strict profile nothing allocates: a text and an array have a capacity there, one for each field.
 """

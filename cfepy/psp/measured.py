@@ -4,7 +4,7 @@
     short, long  one task sends a message to its own pipe and takes it out: two calls, and each byte copied once
 
 These are what the simulation charges for the same, so an application that measures them on the profile finds the times
-that it was made of. flight/board_times is one, in C.
+that it was made of. boards/board_times is one, in C.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ from cfepy.status import UsageError
 LIST = Path(__file__).parent / "survey.tsv"
 DOCUMENT = Path(__file__).parents[2] / "docs" / "convertor.md"
 BEGIN, END = "<!-- survey: made by python -m tests.convert.survey --report -->", "<!-- end of survey -->"
-CODE = ("cfepy/convert", "flight/roscfe", "rospy_shim/msgs")
+CODE = ("cfepy/convert", "roscfe", "rospy_shim/msgs")
 """Folders of what checks, and of what nodes are compiled with."""
 UNREAD = "cmake"
 """Stands for a rule where a node's CMakeLists.txt does not say what it is made of."""

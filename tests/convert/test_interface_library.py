@@ -17,7 +17,7 @@ from tests.rospy_shim.libraries.world import universe
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/interface_library.md").read_text(encoding="utf-8")
-INCLUDE = ROOT / "flight/roscfe/include"
+INCLUDE = ROOT / "roscfe/include"
 OF_FUNCTIONS = {"MinMax": "tfMin(1, 2)", "Scalar": "tfScalar(1)"}
 """Headers of LinearMath without a class of their own, and something that they have."""
 PAPER = {
@@ -46,7 +46,7 @@ def test_a_function_is_there(row: list[str]) -> None:
     name, header, _, calls = row
     word = name.rpartition("::")[2]
     assert re.search(rf"\b{word}\b", (INCLUDE / header).read_text(encoding="utf-8"))
-    sources = "".join(each.read_text(encoding="utf-8") for each in (ROOT / "flight/roscfe/src").rglob("*.cpp"))
+    sources = "".join(each.read_text(encoding="utf-8") for each in (ROOT / "roscfe/src").rglob("*.cpp"))
     assert [call for call in re.findall(r"\b(?:CFE|OS)_\w+[a-z]\w*", calls) if call not in sources] == []
 
 

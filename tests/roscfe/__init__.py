@@ -1,1 +1,1 @@
-"""The interface library for ROS nodes in C++ (flight/roscfe), compiled and run here."""
+"""The interface library for ROS nodes in C++ (roscfe), compiled and run here."""

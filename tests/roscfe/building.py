@@ -14,7 +14,7 @@ import pytest
 from cfepy.resources import shipped
 
 CPP = os.environ.get("CXX", "c++").split()
-ROSCFE = shipped("flight") / "roscfe"
+ROSCFE = shipped("roscfe")
 INCLUDE = (f"-I{ROSCFE / 'include'}", f"-I{ROSCFE / 'boost'}")
 STRICT_FLAGS = ("-std=c++17", "-Wall", "-Wextra", "-Werror")
 FLIGHT_FLAGS = (*STRICT_FLAGS, "-fno-exceptions", "-fno-rtti")

@@ -1,4 +1,4 @@
-"""Compiling a test's C++ against the headers of flight/roscfe."""
+"""Compiling a test's C++ against the headers of roscfe."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import subprocess
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-FLIGHT = Path(__file__).parents[2] / "flight/roscfe"
-HEADERS = FLIGHT / "include"
-BOOST = FLIGHT / "boost"
+ROSCFE = Path(__file__).parents[2] / "roscfe"
+HEADERS = ROSCFE / "include"
+BOOST = ROSCFE / "boost"
 STRICT = ["-fno-exceptions", "-fno-rtti", "-Wall", "-Wextra", "-Werror"]
 """How the library itself is compiled."""
 

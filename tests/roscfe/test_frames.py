@@ -14,13 +14,13 @@ import pytest
 
 from cfepy.convert.messages import Profile, write_headers
 from rospy_shim.msgs import library_of, shipped
-from tests.roscfe.compiling import BOOST, FLIGHT, HEADERS, STRICT, compiled
+from tests.roscfe.compiling import BOOST, HEADERS, ROSCFE, STRICT, compiled
 from tests.roscfe.frame_scripts import scripts
 from tests.rospy_shim.libraries.world import universe
 
 HERE = Path(__file__).parent
-LIBRARY = [FLIGHT / "src/tf" / name for name in ("text.cpp", "samples.cpp", "tree.cpp", "reports.cpp")]
-LISTENING = [*LIBRARY, FLIGHT / "src/tf/listening.cpp"]
+LIBRARY = [ROSCFE / "src/tf" / name for name in ("text.cpp", "samples.cpp", "tree.cpp", "reports.cpp")]
+LISTENING = [*LIBRARY, ROSCFE / "src/tf/listening.cpp"]
 OURS = [HERE / "frames.cpp", HERE / "stubs.cpp", *LIBRARY]
 REAL = Path("/usr/include/tf2/buffer_core.h")
 LIVES = 40

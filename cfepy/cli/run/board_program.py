@@ -28,7 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
     if os.path.lexists(folder):
         raise UsageError("is there already; give another name", file=folder)
     with writing(folder, "FOLDER"):
-        shutil.copytree(shipped("flight") / NAME, folder)
+        shutil.copytree(shipped("boards") / NAME, folder)
     print(f"{folder}: an application of a cFS mission; its folder there is apps/{NAME}, its line in the startup script")
     print(f"  {LINE}")
     return ENDED_WELL
