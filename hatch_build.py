@@ -78,11 +78,11 @@ def compiled_modules(root: Path, folder: Path) -> dict[str, Path]:
         The files of the libraries by their places in a wheel.
     """
     compiled = recipe(root, "cfepy/compiled.py")
-    for package in ("cfepy", "rospy_shim"):
+    for package in ("cfepy", "rospy_shim", "ros_libraries"):
         shutil.copytree(root / package, folder / package, ignore=shutil.ignore_patterns("__pycache__", "*.so"))
     (folder / "mypy.ini").write_text(
         "[mypy]\nexplicit_package_bases = True\nignore_missing_imports = True\n"
-        "mypy_path = rospy_shim/libraries:rospy_shim/roslaunch/tools:rospy_shim/stand_ins\n"
+        "mypy_path = ros_libraries:rospy_shim/roslaunch/tools:rospy_shim/stand_ins\n"
     )
     command = [sys.executable, str(root / "hatch_build.py"), compiled.library_name(root), *compiled.MODULES]
     ended = subprocess.run(

@@ -19,7 +19,7 @@ PACKAGE = str(Path(__file__).resolve().parent)
 _CFEPY = os.path.join(PACKAGE, "")
 _COMPILED = "cfepy/"
 _ROSPY = os.path.join(os.path.dirname(PACKAGE), "rospy_shim", "")
-_LIBRARIES = os.path.join(_ROSPY, "libraries", "")
+_LIBRARIES = os.path.join(os.path.dirname(PACKAGE), "ros_libraries", "")
 _STANDARD_LIBRARY = os.path.join(os.path.dirname(linecache.__file__), "")
 _INSTALLED = ("site-packages", "dist-packages")
 
@@ -35,10 +35,7 @@ def source_file(file: str) -> str:
 @functools.lru_cache(maxsize=FILES)
 def is_shown(file: str) -> bool:
     """Whether code is the mission's or a library's, not the simulator's."""
-    hidden = source_file(file).startswith((_CFEPY, "<")) or (
-        file.startswith(_ROSPY) and not file.startswith(_LIBRARIES)
-    )
-    return not hidden
+    return not source_file(file).startswith((_CFEPY, _ROSPY, "<"))
 
 
 @functools.lru_cache(maxsize=FILES)

@@ -1,11 +1,11 @@
 """The libraries that nodes import besides rospy (tf, tf2_ros, ...), and parts of them that only their owner can make.
 
-A library is a folder in `rospy_shim/libraries`, ordinary code of nodes that knows nothing of this package. It is on the
+A library is a folder in `ros_libraries`, ordinary code of nodes that knows nothing of this package. It is on the
 import path of every node, behind the node's own folders, so a node that brings a library's original source gets that.
 Packages of other projects that such a source imports and rarely uses have stand-ins, found when the real ones are not
 installed. Made here are modules that tell a library where packages lie, which definitions there are and what is
 installed, and `<package>.cfg.<Name>Config`, which ROS generates from cfg/<Name>.cfg at build time and
-`rospy_shim/libraries/dynamic_reconfigure` makes inside the node.
+`ros_libraries/dynamic_reconfigure` makes inside the node.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from cfepy.nodes import Factory, Universe
     from rospy_shim.client.node import Node
 
-FOLDER = Path(__file__).parent / "libraries"
+FOLDER = Path(__file__).parents[1] / "ros_libraries"
 STAND_INS = Path(__file__).parent / "stand_ins"
 _LIBRARY = "dynamic_reconfigure"
 _GENERATORS = ("parameter_generator", "parameter_generator_catkin")

@@ -28,10 +28,10 @@ from cfepy.status import UsageError
 ROOT = Path(__file__).parents[1]
 VERSION_FILE = "cfepy/__init__.py"
 CHANGES = "CHANGELOG.md"
-LIBRARIES = "rospy_shim/libraries"  # which have the versions of the real ones
+LIBRARIES = "ros_libraries"  # which have the versions of the real ones
 SHARE = {"apps": "cfepy/share/apps", "boards": "cfepy/share/boards"}
 SHARE |= {"missions": "cfepy/share/missions", "roscfe": "cfepy/share/roscfe"}
-PACKAGES = ("cfepy", "rospy_shim")
+PACKAGES = ("cfepy", "rospy_shim", "ros_libraries")
 NOT_IN_SDIST = (".ci/",)
 MUST_HAVE = ("cfepy/py.typed", "rospy_shim/py.typed", "cfepy/share/missions/capture/startup.scr")
 MUST_HAVE += ("cfepy/share/boards/linux.yaml", "cfepy/share/apps/hk/app.py")

@@ -127,14 +127,14 @@ def test_only_the_kernel_knows_the_host(tree: Tree) -> None:
 
 def test_libraries_are_code_of_nodes(tree: Tree) -> None:
     """They run in a node's universe, with its rospy and its clock: they import what a node does, none of the house."""
-    libraries = ROOT / "rospy_shim" / "libraries"
+    libraries = ROOT / "ros_libraries"
     others = {folder.name for folder in libraries.iterdir()} | {path.stem for path in TOOLS.glob("*.py")}
     others |= {"rospy", "genpy", "lz4", "zstandard", "numpy", "yaml"}
     for module in tree.node_code.values():
         if module.where.startswith("rospy_shim/stand_ins"):
             continue
         for name in imported(module):
-            top, _, rest = name.removeprefix("rospy_shim.libraries.").partition(".")
+            top, _, rest = name.removeprefix("ros_libraries.").partition(".")
             known = top in sys.stdlib_module_names or top in others
             assert known or rest.split(".")[0] in ("msg", "srv"), f"{module.where}: a library must not import {name}"
 

@@ -12,7 +12,7 @@ from cfepy import own_code
 from cfepy.own_code import is_library, is_own_code, is_shown, is_standard, source_file
 
 PACKAGE = Path(own_code.PACKAGE)
-LIBRARIES = PACKAGE.parent / "rospy_shim" / "libraries"
+LIBRARIES = PACKAGE.parent / "ros_libraries"
 
 
 @pytest.mark.parametrize(

@@ -206,4 +206,4 @@ def _broken() -> tuple[type[Exception], ...]:
 
 def storage() -> ModuleType:
     """The library `rosbag_storage`, which knows the format. Nodes import it, too: by that name, as type checkers do."""
-    return importlib.import_module("rospy_shim.libraries.rosbag_storage")
+    return importlib.import_module("ros_libraries.rosbag_storage")

@@ -24,7 +24,7 @@ from rospy_shim.msgs.packages import near
 
 SCRIPTS = "ground_nodes"
 """The library whose modules are the scripts."""
-PLAY_OPTIONS = "rospy_shim.libraries.rosbag_storage.play_options"
+PLAY_OPTIONS = "ros_libraries.rosbag_storage.play_options"
 """What knows the options of `rosbag play`; nodes import it by another name."""
 APP, PLAYER = "GROUND_NODE", "ROSBAG_PLAY"
 _SPEAKERS = (f"[{APP}", "[rosservice_", "[rostopic_", "[tf_echo_", "[view_frames_")

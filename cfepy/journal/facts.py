@@ -27,7 +27,8 @@ def versions() -> dict[str, str]:
 def own_places() -> tuple[str, ...]:
     """The folders of cfepy's own files, shipped applications and boards among them."""
     package = Path(__file__).resolve().parents[1]
-    return tuple(map(str, (package, package.parent / "rospy_shim", shipped("apps"), shipped("boards"))))
+    beside = (package.parent / each for each in ("rospy_shim", "ros_libraries"))
+    return tuple(map(str, (package, *beside, shipped("apps"), shipped("boards"))))
 
 
 @cache

@@ -32,7 +32,7 @@ _ANYTHING = frozenset(
     ["__dict__", "__import__", "eval", "exec", "get_objects", "globals", "import_module", "locals", "modules", "vars"]
 )
 """What names one of these may get hold of all that its module knows."""
-_OPAQUE = frozenset([*sys.stdlib_module_names, "cfepy", "numpy", "rospy_shim"])
+_OPAQUE = frozenset([*sys.stdlib_module_names, "cfepy", "numpy", "ros_libraries", "rospy_shim"])
 _WITH = ("BEFORE_WITH", "BEFORE_ASYNC_WITH", "LOAD_SPECIAL")
 _JUMPS = frozenset((*dis.hasjrel, *dis.hasjabs))
 _LEAVES = frozenset([CodeType, FrameType, GetSetDescriptorType, WrapperDescriptorType, MethodDescriptorType])

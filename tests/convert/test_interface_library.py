@@ -13,7 +13,7 @@ from cfepy.cli.main import main
 from cfepy.convert.build import LANGUAGE, library_includes
 from cfepy.convert.messages import Profile, write_headers
 from rospy_shim.msgs import shipped
-from tests.rospy_shim.libraries.world import universe
+from tests.ros_libraries.world import universe
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/interface_library.md").read_text(encoding="utf-8")

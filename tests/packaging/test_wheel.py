@@ -30,8 +30,8 @@ SHIPPED = [
     "cfepy/share/boards/rx64m.yaml",
     "cfepy/share/missions/capture/startup.scr",
     "cfepy/share/missions/rx64m_pubsub/mission.yaml",
-    "rospy_shim/libraries/tf/transformations/__init__.py",
-    "rospy_shim/libraries/tf2_ros/__init__.py",
+    "ros_libraries/tf/transformations/__init__.py",
+    "ros_libraries/tf2_ros/__init__.py",
     "rospy_shim/msgs/definitions/std_msgs.msgs",
 ]
 

@@ -80,7 +80,7 @@ def import_all(system: str) -> None:
     for package in (cfepy, rospy_shim):
         for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             name = found.name
-            if name.startswith("rospy_shim.libraries.") or name.endswith("__main__") or name in POSIX_ONLY[system]:
+            if name.startswith("ros_libraries.") or name.endswith("__main__") or name in POSIX_ONLY[system]:
                 continue
             try:
                 importlib.import_module(name)

@@ -14,9 +14,9 @@ import pytest
 
 from cfepy.convert.messages import Profile, write_headers
 from rospy_shim.msgs import library_of, shipped
+from tests.ros_libraries.world import universe
 from tests.roscfe.compiling import BOOST, HEADERS, ROSCFE, STRICT, compiled
 from tests.roscfe.frame_scripts import scripts
-from tests.rospy_shim.libraries.world import universe
 
 HERE = Path(__file__).parent
 LIBRARY = [ROSCFE / "src/tf" / name for name in ("text.cpp", "samples.cpp", "tree.cpp", "reports.cpp")]

@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
+from tests.ros_libraries.world import universe
 from tests.roscfe.compiling import HEADERS, STRICT, compiled
-from tests.rospy_shim.libraries.world import universe
 
 SOURCE = Path(__file__).with_name("linear_math.cpp")
 REAL = Path("/usr/include")

@@ -21,7 +21,7 @@ from cfepy.journal.frame_check import check_values
 from cfepy.journal.journal import JournalError
 from cfepy.plain_yaml import YamlError, plain_yaml
 from cfepy.status import UsageError
-from rospy_shim.libraries.rosbag_storage import compression
+from ros_libraries.rosbag_storage import compression
 from tests.fuzz.sample_journal import sample, with_frames
 
 

@@ -23,7 +23,7 @@ QUICKER = {
     "cfepy.c.toolchain.cmake_script.CMAKE_FILES": 5_000,
     "cfepy.convert.packages.CPP_FILES": 500,
     "cfepy.syntax_trees.PYTHON_WORDS": 50_000,
-    "rospy_shim.libraries.rosbag_storage.compression.LARGEST": 10 << 20,
+    "ros_libraries.rosbag_storage.compression.LARGEST": 10 << 20,
     "cfepy.plain_xml.XML_TAGS": 10_000,
     "rospy_shim.roslaunch.reader.LAUNCH_WORK": 100_000,
 }

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.rospy_shim.libraries.world import universe
+from tests.ros_libraries.world import universe
 
 RECORDED: list[Any] = json.loads(
-    (Path(__file__).parents[2] / "data/tf/transformations.json").read_text(encoding="utf-8")
+    (Path(__file__).parents[1] / "data/tf/transformations.json").read_text(encoding="utf-8")
 )
 FUNCTIONS = sorted({name for name, *_ in RECORDED})
 tr: Any = universe().importer.load("tf.transformations")

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from cfepy.nodes import Universe
-from tests.rospy_shim.libraries.world import universe
+from tests.ros_libraries.world import universe
 
 HALF = math.sqrt(0.5)
 

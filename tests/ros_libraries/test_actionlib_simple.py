@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.rospy_shim.libraries.actions import SERVER, talk
+from tests.ros_libraries.actions import SERVER, talk
 
 FOLLOWED = """
 client = SimpleActionClient("count", TestAction)

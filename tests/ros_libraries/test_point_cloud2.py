@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.rospy_shim.libraries.world import universe
+from tests.ros_libraries.world import universe
 
 NAN = math.nan
 

@@ -8,7 +8,7 @@ import pytest
 
 from tests.rospy_shim.missions import run_nodes
 
-DATA = Path(__file__).parents[2] / "data"
+DATA = Path(__file__).parents[1] / "data"
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.rospy_shim.libraries.actions import talk
+from tests.ros_libraries.actions import talk
 
 SERVER = """
 import rospy, actionlib

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from rospy_shim.msgs import message_class, service_class
-from tests.rospy_shim.libraries.world import universe
+from tests.ros_libraries.world import universe
 
 genmsg: Any = universe().importer.load("genmsg")
 

@@ -10,7 +10,7 @@ from itertools import pairwise
 import lz4.frame
 import pytest
 
-from rospy_shim.libraries.rosbag_storage import lz4_frames
+from ros_libraries.rosbag_storage import lz4_frames
 
 BLOCK_AT = 11  # behind the header of a frame without a size, and the size of its first block
 DRAW = random.Random(11)

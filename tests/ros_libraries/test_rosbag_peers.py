@@ -106,7 +106,7 @@ def test_the_original_source_beside_a_node_is_the_one_that_counts(tmp_path: Path
     source = subprocess.run([PYTHON, "-c", code], capture_output=True, text=True, check=True).stdout.strip()
     (tmp_path / "flight").mkdir()
     shutil.copytree(source, tmp_path / "flight" / "rosbag")
-    bags = Path(__file__).parents[2] / "data" / "bags"
+    bags = Path(__file__).parents[1] / "data" / "bags"
     script = f"""
         import rosbag
         with rosbag.Bag("out.bag", "w", compression="bz2", chunk_threshold=4096) as out:

@@ -12,10 +12,10 @@ from typing import Any
 
 import pytest
 
-from tests.rospy_shim.libraries.world import universe
+from tests.ros_libraries.world import universe
 
 WORLDS: list[dict[str, Any]] = json.loads(
-    (Path(__file__).parents[2] / "data/tf/tf2_answers.json").read_text(encoding="utf-8")
+    (Path(__file__).parents[1] / "data/tf/tf2_answers.json").read_text(encoding="utf-8")
 )
 PRECISION = 1e-12
 load: Any = universe().importer.load

@@ -7,7 +7,7 @@ from pathlib import Path
 from cfepy.nodes import Universe
 from cfepy.rtos import Kernel
 from rospy_shim.library_parts import FOLDER, library_names
-from tests.rospy_shim.libraries.world import universe
+from tests.ros_libraries.world import universe
 from tests.rospy_shim.missions import run_nodes
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.rospy_shim.libraries.actions import bring
+from tests.ros_libraries.actions import bring
 from tests.rospy_shim.missions import run_nodes
 
 ours_and_the_original = pytest.mark.parametrize("original", ["", "message_filters"])

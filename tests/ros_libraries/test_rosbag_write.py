@@ -10,7 +10,7 @@ import pytest
 
 from tests.rospy_shim.missions import run_nodes
 
-BAGS = Path(__file__).parents[2] / "data" / "bags"
+BAGS = Path(__file__).parents[1] / "data" / "bags"
 BEGIN = """
     import os, rosbag, rospy
     from rosbag import Bag

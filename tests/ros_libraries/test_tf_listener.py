@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from tests.rospy_shim.libraries.test_tf2_buffer import HALF, numbers, stamped
-from tests.rospy_shim.libraries.world import universe
+from tests.ros_libraries.test_tf2_buffer import HALF, numbers, stamped
+from tests.ros_libraries.world import universe
 
 load: Any = universe().importer.load
 rospy, msg, tf = load("rospy"), load("geometry_msgs.msg"), load("tf")

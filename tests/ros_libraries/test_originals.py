@@ -14,7 +14,7 @@ from pathlib import Path
 from rospy_shim.library_parts import FOLDER, library_names
 from tests.rospy_shim.missions import run_nodes
 
-NAMES = Path(__file__).parents[2] / "data" / "library_names.txt"
+NAMES = Path(__file__).parents[1] / "data" / "library_names.txt"
 OWN = ("ros_tools", "rosbag_storage", "ground_nodes")
 NOT_RECORDED = ("PyKDL", "tf", "sensor_msgs", "tf2_geometry_msgs", "cv_bridge")
 

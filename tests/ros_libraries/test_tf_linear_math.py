@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from tests.rospy_shim.libraries.world import universe
+from tests.ros_libraries.world import universe
 
 RECORDED: dict[str, list[float]] = json.loads(
-    (Path(__file__).parents[2] / "data/tf/linear_math.json").read_text(encoding="utf-8")
+    (Path(__file__).parents[1] / "data/tf/linear_math.json").read_text(encoding="utf-8")
 )
 lm: Any = universe().importer.load("tf.linear_math")
 scalar: Any = lm.scalar

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.rospy_shim.libraries.actions import bring, talk
+from tests.ros_libraries.actions import bring, talk
 from tests.rospy_shim.missions import run_nodes
 
 MODULES = """

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.rospy_shim.libraries.world import universe
+from tests.ros_libraries.world import universe
 
 RED, GRAY = [255, 0, 0], [10, 10, 10]
 PICTURE = np.array([[RED, GRAY, [0, 255, 0]], [[0, 0, 255], [255, 255, 255], [0, 0, 0]]], dtype=np.uint8)
