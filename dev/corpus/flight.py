@@ -17,6 +17,7 @@ from cfepy.nodes.config import NodeConfig, RosConfig
 from dev.corpus.scenarios import Program, Scenario
 from dev.corpus.sources import Sources
 from dev.corpus.verdict import Outcome
+from rospy_shim.runtime import RosRuntime
 
 NODE, OBSERVER = "NODE", "OBSERVER"
 STEP_S = 0.25
@@ -53,12 +54,14 @@ class Flight:
         with Mission(spec, tasks=self._tasks, console=console, attachments=[written]) as mission:
             ended_itself = self._watch(mission)
             if not ended_itself:
-                mission.ros.begin_shutdown("the scenario is over", NODE)
-                self._run_until(mission, lambda: NODE in mission.ros.ended, SHUTDOWN_S)
+                _graph(mission).begin_shutdown("the scenario is over", NODE)
+                self._run_until(mission, lambda: NODE in _graph(mission).ended, SHUTDOWN_S)
             (self._folder / "end").touch()
-            self._run_until(mission, lambda: OBSERVER in mission.ros.ended, SHUTDOWN_S)
-            ended = dict(mission.ros.ended)
-        names = {app: end.name for app, end in mission.ros.ended.items()}  # also of those that the end of it all ended
+            self._run_until(mission, lambda: OBSERVER in _graph(mission).ended, SHUTDOWN_S)
+            ended = dict(_graph(mission).ended)
+        names = {
+            app: end.name for app, end in _graph(mission).ended.items()
+        }  # also of those that the end of it all ended
         return self._outcome(ended, names, console.lines, ended_itself, time.perf_counter() - begun)
 
     # -- before ------------------------------------------------------------------------------------------------------
@@ -116,8 +119,8 @@ class Flight:
         done = os.path.realpath(self._folder / "done")
         self._run_until(mission, lambda: mission.run_files is not None and mission.run_files.exists(done), LONGEST_S)
         if self._scenario.ends_itself:
-            self._run_until(mission, lambda: NODE in mission.ros.ended, LONGEST_S)
-        return NODE in mission.ros.ended
+            self._run_until(mission, lambda: NODE in _graph(mission).ended, LONGEST_S)
+        return NODE in _graph(mission).ended
 
     @staticmethod
     def _run_until(mission: Mission, over: Any, seconds: float) -> None:
@@ -132,7 +135,7 @@ class Flight:
     ) -> Outcome:
         result = self._folder / "result.json"
         failure = {"stimulus failed": next((line for line in lines if "Error" in line), "the observer did not end")}
-        nothing = {"N": {}, "T": {}, "R": failure, "rate": {}}
+        nothing: dict[str, Any] = {"N": {}, "T": {}, "R": failure, "rate": {}}
         seen = json.loads(result.read_text(encoding="utf-8")) if result.is_file() else nothing
         files = {f"@TMP/{path.name}": path.stat().st_size for path in self._folder.iterdir() if path.is_file()}
         helpers = [app for app in names if app not in (NODE, OBSERVER)]
@@ -148,6 +151,12 @@ class Flight:
             files=files,
             wall_s=wall_s,
         )
+
+
+def _graph(mission: Mission) -> RosRuntime:
+    """The mission's ROS, which is there once its nodes are."""
+    assert mission.ros is not None
+    return mission.ros
 
 
 def _line(app: str, file: str) -> str:

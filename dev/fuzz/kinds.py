@@ -603,6 +603,15 @@ other: {<<: *base, y: 2}
 """
 LOCK = "topics:\n  /joint_states: 0x0910\n  /phase: 0x0912\nservices:\n  /reset: 0x0930\n"
 
+
+@cache
+def table_texts() -> list[bytes]:
+    """Table files in YAML."""
+    find = table_types(None, []).get
+    sources = sorted([*DATA.glob("*.tbl"), *(ROOT / "missions").glob("*/*.tbl")])
+    return [table_yaml.write(document(take_apart(path.read_bytes(), find, path.name))).encode() for path in sources]
+
+
 KINDS = {
     kind.name: kind
     for kind in (
@@ -623,7 +632,7 @@ KINDS = {
         Kind("full-text", texts(FULL), full_text),
         Kind("message", messages, message),
         Kind("table", files("tests/data/*.tbl", "missions/*/*.tbl"), table, "table.tbl"),
-        Kind("table-yaml", lambda: table_texts(), table_text, "table.yaml"),
+        Kind("table-yaml", table_texts, table_text, "table.yaml"),
         Kind("dump", files("tests/data/*.log", "tests/data/*.dat"), dump, "dump.log"),
         Kind("bag", files("tests/data/bags/*.bag"), bag, "input.bag"),
         Kind("mcap", files("tests/data/bags/*.mcap"), recording, "input.mcap"),
@@ -668,11 +677,3 @@ KINDS = {
         Kind("foxglove", servers.foxglove_samples, servers.foxglove),
     )
 }
-
-
-@cache
-def table_texts() -> list[bytes]:
-    """Table files in YAML."""
-    find = table_types(None, []).get
-    sources = sorted([*DATA.glob("*.tbl"), *(ROOT / "missions").glob("*/*.tbl")])
-    return [table_yaml.write(document(take_apart(path.read_bytes(), find, path.name))).encode() for path in sources]

@@ -233,7 +233,7 @@ def _posted(body: bytes) -> bytes:
 
 
 def _handshake(more: str = "") -> bytes:
-    lines = ("GET / HTTP/1.1", "Host: localhost", "Upgrade: websocket", "Connection: Upgrade")
+    lines = ["GET / HTTP/1.1", "Host: localhost", "Upgrade: websocket", "Connection: Upgrade"]
     lines += ("Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Version: 13", "")
     return ("\r\n".join(lines) + more + "\r\n").encode()
 

@@ -189,8 +189,9 @@ class _Imports:
                 self._module.unread.append(call.lineno)
             else:
                 self._add(name, call.lineno, "by name")
+        named = {name for name in self._modules if "." in name}
         for node in nodes if calls else ():
-            if isinstance(node, ast.Constant) and node.value in self._modules and "." in node.value:
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value in named:
                 self._add(node.value, node.lineno, "by name")
 
     def _text(self, node: ast.expr) -> str | None:

@@ -82,7 +82,7 @@ def signature(function: Any) -> str:
             parts.append("*")
             is_starred = True
         is_starred |= each.kind is each.VAR_POSITIONAL
-        mark = {each.VAR_POSITIONAL: "*", each.VAR_KEYWORD: "**"}.get(each.kind, "")
+        mark = "*" if each.kind is each.VAR_POSITIONAL else "**" if each.kind is each.VAR_KEYWORD else ""
         default = "" if each.default is each.empty else f"={each.default!r}"
         parts.append(f"{mark}{each.name}{'=...' if default.startswith('=<') else default}")
     return f"({', '.join(parts)})"

@@ -194,9 +194,9 @@ def comparable(answer: Op) -> Op:
     if answer.get("op") == "service_response":
         return {**answer, "values": _values(answer["service"].partition("#")[0], answer["values"])}
     if answer.get("op") == "png":
-        with Image.open(BytesIO(b64decode(answer["data"]))) as image:
-            assert (image.mode, image.width) == ("RGB", isqrt(len(image.tobytes().rstrip(b"\n")) // 3))
-            return {**answer, "data": json.loads(image.tobytes())}
+        image = Image.open(BytesIO(b64decode(answer["data"])))
+        assert (image.mode, image.width) == ("RGB", isqrt(len(image.tobytes().rstrip(b"\n")) // 3))
+        return {**answer, "data": json.loads(image.tobytes())}
     return answer
 
 

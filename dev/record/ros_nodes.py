@@ -10,13 +10,14 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 NODES = Path(__file__).parents[2] / "tests/ros_nodes"
 RECORD = NODES.parent / "data" / "nodes_on_ros.json"
 TIMEOUT = 30  # s per scenario
 
 
-def run(scenario: dict) -> None:
+def run(scenario: dict[str, Any]) -> None:
     """Start the scenario's nodes together and fill in the result lines of each."""
     started = [
         subprocess.Popen(

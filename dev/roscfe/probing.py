@@ -144,9 +144,10 @@ def run_with_roscpp(name: str, folder: Path, environ: dict[str, str]) -> list[st
     commands = [["stdbuf", "-oL", str(made), "__name:=probe", *remaps]]
     if (PROBES / f"{name}.py").is_file():
         commands.append([ROS_PYTHON, "-u", str(PROBES / f"{name}.py"), "__name:=partner"])
-    to = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
     xmlrpc.client.ServerProxy(environ["ROS_MASTER_URI"]).setParam("/probing", "/use_sim_time", name in SIMULATED)
-    running = [subprocess.Popen(each, env=environ, **to) for each in commands]
+    running = [
+        subprocess.Popen(each, env=environ, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) for each in commands
+    ]
     said = [each.communicate(timeout=60)[0].decode("utf-8", "replace") for each in running]
     return probe_first(marked("".join(said).splitlines()))
 

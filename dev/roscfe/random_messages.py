@@ -94,4 +94,4 @@ class Source:
         if self._random.random() < 0.1:
             return self._random.choice([0.0, -0.0, float("inf"), float("-inf"), float("nan"), 5e-324])
         value = self._random.uniform(-1e6, 1e6)
-        return value if kind == "float64" else struct.unpack("<f", struct.pack("<f", value))[0]  # type: ignore[no-any-return]  # of struct
+        return value if kind == "float64" else float(struct.unpack("<f", struct.pack("<f", value))[0])

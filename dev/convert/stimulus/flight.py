@@ -138,7 +138,7 @@ class NodeFlight:
         with patch.dict(os.environ, self._environ), whatever:  # CMakeLists.txt does not name all that the survey lists
             spec = read_launch(launch, {}, build_for_flight)
         assert not spec.notes, spec.notes
-        lines = spec.startup.splitlines(keepends=True)
+        lines = (spec.startup or b"").splitlines(keepends=True)
         spec = replace(spec, startup=b"".join(line for line in lines if NODE.encode() not in line))
         mission = Mission(spec, console=Console(quiet=True))
         return _Watched(mission, patch.object(CompiledNodes, "_call", call), spec.built[NODE].entry)

@@ -116,7 +116,8 @@ def table(made: list[Row]) -> str:
         "|---|---|---|",
     ]
     lines += [f"| {name} | {counts[name]} | {what} |" for name, what in VERDICTS.items() if counts[name]]
-    sums = [sum(row[at] for row in there) for at in (2, 3, 4)]
+    messages, printed = sum(each.messages for each in there), sum(each.lines for each in there)
+    sums = (messages, printed, sum(each.answers for each in there))
     seen = "published {:,} messages, printed {:,} lines and gave {:,} answers".format(*sums)
     lines += ["", f"The {len(there)} that ran on both sides {seen} with roscpp."]
     return "\n".join(lines)

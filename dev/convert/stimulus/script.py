@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from io import BytesIO
 from typing import Any, NamedTuple
 
-from cfepy.convert.messages import Capacities
+from cfepy.convert.capacities import Capacities
 from dev.roscfe.random_messages import Source
 from rospy_shim.genpy import Duration
 from rospy_shim.msgs import Library

@@ -7,11 +7,15 @@ behind a give, no pipe or queue is waited for without a time-out.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from random import Random
+from typing import TypeVar
 
 from cfepy import msg
 from dev.twin.api.ground import buffer_calls, debug_calls, notification_calls
 from dev.twin.api.words import quote
+
+T = TypeVar("T")
 
 LONG = "N" * 19
 NAMES = ("A", "B", "C", "NAME_OF_19_LETTERS_", LONG, "TOO_LONG_BY_ONE_____", "M" * 40, "x y")
@@ -52,7 +56,7 @@ class Writer:
         """A line."""
         self.lines.append(" ".join(map(str, (task, call, *words))))
 
-    def one(self, choices):
+    def one(self, choices: Sequence[T]) -> T:
         """One of some."""
         return self.random.choice(choices)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 from textwrap import dedent
+from typing import Any
 
 from cfepy.console import Console
 from cfepy.es import SYSTEM_OPERATIONAL
@@ -60,10 +61,14 @@ class Player:
         self.exists, self.load_library = self.loader.exists, self.loader.load_library
         self.cfe.es.loader = self
 
-    def load(self, file: str, symbol: str, app_name: str):
+    def load(self, file: str, symbol: str, app_name: str) -> Any:
         """The main functions of the two applications; all else is the mission's."""
         mains = {"API_AuxMain": self.aux_main, "API_Main": self.main}
         return mains[symbol] if symbol in mains else self.loader.load(file, symbol, app_name)
+
+    def unload(self, app_name: str) -> None:
+        """What the mission has loaded may go."""
+        self.loader.unload(app_name)
 
     def child_main(self) -> None:
         """What child tasks do."""

@@ -9,6 +9,8 @@ import string
 
 PLAIN = string.ascii_letters + string.digits + "_-./:"
 SLOTS = 100
+Answer = tuple[object, ...]
+"""What a call gives: its status, and values."""
 
 
 class Id(int):
