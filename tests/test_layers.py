@@ -117,6 +117,12 @@ def test_nothing_holds_a_lock_of_the_host_unseen(tree: Tree) -> None:
         assert not touched or module.part in MAY_TOUCH_THE_HOST, f"{module.where}: {touched}; see cfepy/cached.py"
 
 
+def test_nothing_needs_programs_benchmarks_or_tests(tree: Tree) -> None:
+    for module in tree.modules.values():
+        found = {each.name.split(".")[0] for each in module.imports} & {"benchmarks", "dev", "tests"}
+        assert not found, f"{module.where}: {found} are of the checkout alone"
+
+
 def test_only_the_kernel_knows_the_host(tree: Tree) -> None:
     for module in tree.modules.values():
         touched = {each.name.split(".")[0] for each in module.imports} & HOST_MODULES

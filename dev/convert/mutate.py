@@ -296,7 +296,7 @@ class Damaging:
 
 def main() -> int:
     """Damage files and tell what came of them."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m dev.convert.mutate", description=__doc__)
     parser.add_argument("--files", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument(

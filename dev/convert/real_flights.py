@@ -164,7 +164,7 @@ FLIGHTS: Mapping[str, Callable[[Path, Path, str], list[str]]] = {
 
 def run(arguments: list[str]) -> None:
     """Fly, and say what came of it."""
-    parser = argparse.ArgumentParser(prog="python -m dev.convert.real_flights")
+    parser = argparse.ArgumentParser(prog="python -m dev.convert.real_flights", description=__doc__)
     parser.add_argument("tree", type=Path)
     parser.add_argument("names", nargs="+", choices=[*FLIGHTS])
     parser.add_argument("--profile", default="host")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import argparse
+
 from cfepy.convert import Profile
 from cfepy.convert.check import RULES
 from dev.convert.survey import DOCUMENT, between
@@ -19,4 +21,5 @@ def table() -> str:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(prog="python -m dev.convert.rules", description=__doc__).parse_args()
     DOCUMENT.write_text(between(DOCUMENT.read_text(encoding="utf-8"), BEGIN, END, table()), encoding="utf-8")

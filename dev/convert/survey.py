@@ -186,7 +186,7 @@ def write_verdicts(file: Path | None, verdicts: Iterable[Verdict]) -> None:
 
 def main() -> None:
     """Check all nodes, or those of some repositories."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m dev.convert.survey", description=__doc__)
     parser.add_argument("sources", type=Path, nargs="?", help="folder OWNER/NAME/...")
     parser.add_argument("--only", default="", help="a part of OWNER/NAME/file")
     parser.add_argument("--json", type=Path, help="verdicts, read by --report")

@@ -182,7 +182,7 @@ def table(found: Sequence[Verdict]) -> str:
 
 def run(arguments: list[str]) -> None:
     """Fly, and say what came of it."""
-    parser = argparse.ArgumentParser(prog="python -m dev.convert.tutorials")
+    parser = argparse.ArgumentParser(prog="python -m dev.convert.tutorials", description=__doc__)
     parser.add_argument("sources", type=Path)
     parser.add_argument("tree", type=Path)
     parser.add_argument("--report", action="store_true", help="write the table into docs/convertor.md")

@@ -1,4 +1,4 @@
-"""Recordings for tests: the same messages in each format and compression, and where they are in the file."""
+"""Recordings to damage: the same messages in each format and compression, and where they are in the file."""
 
 from __future__ import annotations
 

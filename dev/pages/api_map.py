@@ -10,6 +10,7 @@ can call is read from the declarations of `cfepy.c.api`, for which the engine is
 
 from __future__ import annotations
 
+import argparse
 import importlib
 import re
 from collections.abc import Iterator
@@ -190,6 +191,7 @@ def _counts(rows: list[Entry]) -> str:
 
 def main() -> None:
     """Write the page, and tell what is missing."""
+    argparse.ArgumentParser(prog="python -m dev.pages.api_map", description=__doc__).parse_args()
     with booted() as mission:
         PAGE.write_text(page(mission.cfe), encoding="utf-8")
         for module in MODULES:

@@ -1,6 +1,7 @@
-"""A real browser for tests: headless Chromium, driven by the DevTools protocol over a pipe, with the standard library.
+"""A real browser for pictures and tests: headless Chromium, driven by the DevTools protocol over a pipe.
 
-It keeps what the page logs, what goes wrong in it and what it asks the network for.
+It needs nothing but the standard library, and keeps what the page logs, what goes wrong in it and what it asks the
+network for.
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ compares the texts.
 
 from __future__ import annotations
 
+import argparse
 import re
-import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -71,5 +71,5 @@ def write() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(prog="python -m dev.pages.notebook", description=__doc__).parse_args()
     write()
-    sys.exit(0)

@@ -5,6 +5,7 @@ They need the extras `dev` and a browser (Debian's package `chromium`), in which
 
 from __future__ import annotations
 
+import argparse
 import tempfile
 from pathlib import Path
 
@@ -60,4 +61,5 @@ def make_all() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(prog="python -m dev.pages.pictures", description=__doc__).parse_args()
     make_all()

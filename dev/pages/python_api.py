@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import argparse
 import inspect
 import re
 import textwrap
@@ -119,4 +120,5 @@ def _item(item: str) -> str:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(prog="python -m dev.pages.python_api", description=__doc__).parse_args()
     PAGE.write_text(page(), encoding="utf-8")

@@ -9,6 +9,7 @@ test's name says its first id, its decorator `covers` all of them. An id without
 
 from __future__ import annotations
 
+import argparse
 import ast
 import re
 from collections.abc import Iterator
@@ -104,5 +105,6 @@ def _status(requirement: str, tests: dict[str, list[str]]) -> str:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(prog="python -m dev.pages.requirements", description=__doc__).parse_args()
     PAGE.write_text(page(), encoding="utf-8")
     print(f"wrote {PAGE.relative_to(ROOT)}")

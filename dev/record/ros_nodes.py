@@ -1,11 +1,12 @@
 """Runs the node scenarios on a real ROS 1 master and writes down what they print.
 
-Needs a running roscore and rospy in this interpreter: `python3 dev/record/ros_nodes.py`. Scenarios and results live
+Needs a running roscore and rospy in this interpreter: `python3 -m dev.record.ros_nodes`. Scenarios and results live
 together in tests/data/nodes_on_ros.json; a test compares cfepy's output of the same scenarios with them.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import subprocess
 import sys
@@ -35,6 +36,8 @@ def run(scenario: dict[str, Any]) -> None:
 
 
 def main() -> None:
+    """Run all scenarios, and write down what their nodes print."""
+    argparse.ArgumentParser(prog="python -m dev.record.ros_nodes", description=__doc__).parse_args()
     record = json.loads(RECORD.read_text(encoding="utf-8"))
     for scenario in record["scenarios"]:
         run(scenario)

@@ -6,8 +6,8 @@ rosbridge_websocket at PORT of this computer, and rosapi_node under the name ros
 
 from __future__ import annotations
 
+import argparse
 import json
-import sys
 from base64 import b64encode
 from pathlib import Path
 from typing import Any
@@ -45,4 +45,8 @@ def _answers(client: ClientConnection) -> list[Any]:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    parser = argparse.ArgumentParser(prog="python -m dev.record.rosbridge", description=__doc__)
+    parser.add_argument("port", metavar="PORT", help="of rosbridge_websocket on this computer")
+    parser.add_argument("file", metavar="FILE", help="for what it answers")
+    arguments = parser.parse_args()
+    main(arguments.port, arguments.file)

@@ -154,7 +154,7 @@ def run_with_roscpp(name: str, folder: Path, environ: dict[str, str]) -> list[st
 
 def main() -> None:
     """Compare probes, or record them."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m dev.roscfe.probing", description=__doc__)
     parser.add_argument("names", nargs="*", default=NAMES, metavar="NAME")
     parser.add_argument("--record", action="store_true", help="keep what roscpp's printed")
     arguments = parser.parse_args()

@@ -5,6 +5,7 @@ CFEPY_REAL_CFE says where the folder of NASA's core-cpu1 is, built from cFE 7.0.
 
 from __future__ import annotations
 
+import argparse
 import sys
 import tempfile
 from pathlib import Path
@@ -15,10 +16,13 @@ from dev.twin.real import VARIABLE, installed
 
 def main() -> None:
     """Fly all, or those that are named."""
+    parser = argparse.ArgumentParser(prog="python -m dev.c.api", description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="such as cds; all when none is given")
+    names = parser.parse_args().names
     built = installed()
     if built is None:
         sys.exit(f"{VARIABLE} does not say where the folder of NASA's core-cpu1 is")
-    for name in sys.argv[1:] or NAMES:
+    for name in names or NAMES:
         with tempfile.TemporaryDirectory() as folder:
             lines = fly_on_real_cfe(name, built, Path(folder))
         (HERE / f"{name}.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import sys
+import argparse
 from pathlib import Path
 
 from dev.c.emulated.computer import VARIABLE
 from dev.c.emulated.root import make_root
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    make_root(Path(sys.argv[1]))
-    print(f"{VARIABLE}={Path(sys.argv[1]).resolve()}")
+    parser = argparse.ArgumentParser(prog="python -m dev.c.emulated", description=__doc__)
+    parser.add_argument("folder", metavar="FOLDER", type=Path, help="a new one, which takes 400 MB")
+    folder = parser.parse_args().folder
+    make_root(folder)
+    print(f"{VARIABLE}={folder.resolve()}")

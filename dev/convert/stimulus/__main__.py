@@ -85,7 +85,7 @@ def tried(node: Node, sources: Path, folder: Path, seed: int) -> dict[str, Any]:
 
 def main() -> None:
     """Try nodes."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m dev.convert.stimulus", description=__doc__)
     parser.add_argument("sources", type=Path, nargs="?", help="folder OWNER/NAME/...")
     parser.add_argument("--only", default="", help="a part of OWNER/NAME/file")
     parser.add_argument("--converts", type=Path, required=True, help="the verdicts of dev.convert.survey --json")
