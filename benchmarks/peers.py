@@ -24,8 +24,8 @@ from benchmarks.measure import rate
 from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
 from cfepy.nodes import NodeConfig
-from tests.host_ports import free_port
-from tests.twin.real import VARIABLE, RealCfe, installed
+from dev.host_ports import free_port
+from dev.twin.real import VARIABLE, RealCfe, installed
 
 HERE = Path(__file__).parent
 NODES = HERE / "nodes" / "peers"

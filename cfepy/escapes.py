@@ -3,7 +3,7 @@
 A name or a text of a file, a mission or a peer may hold characters that move the cursor, set the title of a window,
 hide what stands beside them or turn its order round. All that cfepy prints comes through here: `safe_output` puts a
 `SafeStream` in the place of standard output and standard error, and `rich_console` makes consoles of rich. What goes
-past them, such as data for another program, takes `raw` or `for_data`; tests/house has the list of the places.
+past them, such as data for another program, takes `raw` or `for_data`; tests/test_layers.py has the list of the places.
 
 Colours are the one exception, and only for the lines that nodes print, as roslaunch shows them (`console_line`).
 """

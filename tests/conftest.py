@@ -13,7 +13,7 @@ from hypothesis import settings
 
 # What tests share says as much when it fails, and is not left out by python -O.
 pytest.register_assert_rewrite(
-    *(f"tests.{each.stem}" for each in Path(__file__).parent.iterdir() if each.stem.isidentifier())
+    "dev", *(f"tests.{each.stem}" for each in Path(__file__).parent.iterdir() if each.stem.isidentifier())
 )
 
 from cfepy.host_system import ending_signals  # noqa: E402

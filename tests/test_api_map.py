@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import pytest
 
 from cfepy.mission import Mission
-from tests import api_map
-from tests.api_names import snake
+from dev.pages import api_map
+from dev.pages.api_names import snake
 from tests.c.building import needs_compiler
 
 pytestmark = needs_compiler  # the engine knows what it answers itself
@@ -44,7 +44,7 @@ def test_what_c_does_not_find_is_missing() -> None:
 
 
 def test_the_page_is_fresh(mission: Mission) -> None:
-    assert api_map.PAGE.read_text(encoding="utf-8") == api_map.page(mission.cfe), "run `python -m tests.api_map`"
+    assert api_map.PAGE.read_text(encoding="utf-8") == api_map.page(mission.cfe), "run `python -m dev.pages.api_map`"
 
 
 def test_the_lists_are_whole() -> None:

@@ -16,7 +16,7 @@ DOCS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("missions
 FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ +(.+)$", re.MULTILINE)
-OURS = re.compile(r"`((?:cfepy|rospy_shim|apps|boards|missions|tests|docs|benchmarks|\.ci)/[\w./*-]+)`")
+OURS = re.compile(r"`((?:cfepy|rospy_shim|apps|boards|missions|tests|dev|docs|benchmarks|\.ci)/[\w./*-]+)`")
 
 each_document = pytest.mark.parametrize("path", DOCS, ids=lambda path: str(path.relative_to(ROOT)))
 

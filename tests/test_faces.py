@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from tests.house.tree import ROOT, TOPS, Tree, the_tree
+from dev.house.tree import ROOT, TOPS, Tree, the_tree
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import socket
 
 import pytest
 
-from tests.host_ports import LOWEST, first_picked, free_port
+from dev.host_ports import LOWEST, first_picked, free_port
 
 
 @pytest.mark.parametrize("kind", [socket.SOCK_STREAM, socket.SOCK_DGRAM])
@@ -25,7 +25,7 @@ def test_one_that_somebody_has_is_left_out(monkeypatch: pytest.MonkeyPatch) -> N
         free = free_port()
         taken.bind(("127.0.0.1", free_port()))
         wanted = (taken.getsockname()[1], free)
-        monkeypatch.setattr("tests.host_ports._any_number", lambda *limits: wanted[next(numbers)])
+        monkeypatch.setattr("dev.host_ports._any_number", lambda *limits: wanted[next(numbers)])
         assert free_port() == free
 
 

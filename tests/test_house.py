@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from dev.house import figures
+from dev.house.floors import allowed, homeless, wrong_arrows
+from dev.house.picture import HOUSE, MESSAGE, draw
+from dev.house.tree import ROOT, Tree, the_tree
 from tests import quick
-from tests.house import figures
-from tests.house.floors import allowed, homeless, wrong_arrows
-from tests.house.picture import HOUSE, MESSAGE, draw
-from tests.house.tree import ROOT, Tree, the_tree
 
 FILES = {
     "cfepy/__init__.py": '"""The face."""\n__version__ = "1"\n',
@@ -109,9 +109,9 @@ def test_the_pictures_are_those_of_this_tree(path: Path) -> None:
     """Numbers of imports may lag behind by a quarter, or each new import would be a new picture."""
     committed, drawn = (ROOT / path).read_text(encoding="utf-8"), draw(the_tree())[path]
     number = re.compile(r'class="count">([\d,]+)<')
-    assert number.sub("", committed) == number.sub("", drawn), "run python -m tests.house --picture"
+    assert number.sub("", committed) == number.sub("", drawn), "run python -m dev.house --picture"
     for old, new in zip(number.findall(committed), number.findall(drawn), strict=True):
-        assert abs(int(old.replace(",", "")) / int(new.replace(",", "")) - 1) < 0.25, "python -m tests.house --picture"
+        assert abs(int(old.replace(",", "")) / int(new.replace(",", "")) - 1) < 0.25, "python -m dev.house --picture"
 
 
 def test_what_the_quick_loop_leaves_out_is_there() -> None:

@@ -1,6 +1,6 @@
 """The rules of the house: who imports whom, no circles, one name for one thing, and who may touch the host.
 
-Floors and figures are those of `tests.house`. Numbers here hold what has been reached: lower one when its figure has
+Floors and figures are those of `dev.house`. Numbers here hold what has been reached: lower one when its figure has
 become lower, and never raise one.
 """
 
@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.house import figures
-from tests.house.floors import homeless, wrong_arrows
-from tests.house.tree import ROOT, Module, Tree, the_tree
+from dev.house import figures
+from dev.house.floors import homeless, wrong_arrows
+from dev.house.tree import ROOT, Module, Tree, the_tree
 
 LONGEST = 600  # lines of a module: more than that is more than one idea
 PAST_FACES = 62  # pairs of modules that meet past the face of a package
@@ -61,7 +61,7 @@ def tree() -> Tree:
 
 
 def test_every_package_has_a_floor(tree: Tree) -> None:
-    assert not homeless(tree), "give it a place in tests/house/floors.py and in docs/design.md"
+    assert not homeless(tree), "give it a place in dev/house/floors.py and in docs/design.md"
 
 
 def test_imports_go_down(tree: Tree) -> None:
@@ -101,7 +101,7 @@ def test_a_module_is_one_idea(tree: Tree) -> None:
 
 def test_docstrings_do_not_say_what_is_imported(tree: Tree) -> None:
     told = figures.sentences_about_imports(tree)
-    assert len(told) <= ABOUT_IMPORTS, f"tests/house/floors.py says it: {told}"
+    assert len(told) <= ABOUT_IMPORTS, f"dev/house/floors.py says it: {told}"
 
 
 def test_a_name_stands_for_one_thing(tree: Tree) -> None:
@@ -115,6 +115,12 @@ def test_nothing_holds_a_lock_of_the_host_unseen(tree: Tree) -> None:
     for module in tree.modules.values():
         touched = {each.name for each in module.imports} & locking
         assert not touched or module.part in MAY_TOUCH_THE_HOST, f"{module.where}: {touched}; see cfepy/cached.py"
+
+
+def test_nothing_needs_programs_benchmarks_or_tests(tree: Tree) -> None:
+    for module in tree.modules.values():
+        found = {each.name.split(".")[0] for each in module.imports} & {"benchmarks", "dev", "tests"}
+        assert not found, f"{module.where}: {found} are of the checkout alone"
 
 
 def test_only_the_kernel_knows_the_host(tree: Tree) -> None:

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 import cfepy
-from tests import python_api
+from dev.pages import python_api
 
 ROOT = Path(__file__).parents[1]
 GUIDE = ROOT / "docs" / "python_api.md"
@@ -65,7 +65,7 @@ def test_the_options_are_those_of_a_plan() -> None:
 
 @needs_docstrings
 def test_the_reference_is_not_stale() -> None:
-    assert python_api.PAGE.read_text(encoding="utf-8") == python_api.page(), "python -m tests.python_api"
+    assert python_api.PAGE.read_text(encoding="utf-8") == python_api.page(), "python -m dev.pages.python_api"
 
 
 def test_an_import_loads_next_to_nothing() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.site_pages import ROOT, linked, pages, slug
+from dev.site import ROOT, linked, pages, slug
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from dev.c.emulated.computer import VARIABLE, Computer, lacking
 from tests.c.building import compile_c, digest_of, needs_compiler, write_mission
-from tests.c.emulated.computer import VARIABLE, Computer, lacking
 
 REPOSITORY = Path(__file__).parents[2]
 NOT_THERE = {"test_aarch64.py", "test_gdb.py"}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.c.api.flights import MARK, NAMES, WITHOUT_DEPRECATED, expected, fly
+from dev.c.api.flights import MARK, NAMES, WITHOUT_DEPRECATED, expected, fly
 from tests.c.building import needs_compiler
 
 pytestmark = needs_compiler

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tests.c.osal_tests.__main__ import row
-from tests.c.osal_tests.flight import read
+from dev.c.osal_tests.__main__ import row
+from dev.c.osal_tests.flight import read
 
 CONSOLE = """\
 CFE_PSP: Starting the cFE with a POWER ON reset.

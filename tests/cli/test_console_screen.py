@@ -8,7 +8,7 @@ from textual.widgets import RichLog, Static
 
 from cfepy.cli.ground.console.screen import KEYS, ConsoleScreen, LineInput
 from cfepy.cli.main import main
-from tests.console_picture import idle, in_a_console, say
+from dev.pages.console_picture import idle, in_a_console, say
 
 
 def text_of(screen: ConsoleScreen, name: str) -> str:

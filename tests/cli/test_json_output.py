@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
+from dev.convert.ping import ping_package
 from tests.cli.parsers import options, parsers
-from tests.convert.ping import ping_package
 
 DATA = Path(__file__).parents[1] / "data"
 LAB = ["lab", "--for", "0.7"]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import cfepy
-from tests.roscfe.building import needs_cpp
+from dev.roscfe.building import needs_cpp
 
 pytestmark = [needs_cpp, pytest.mark.slow]
 ARM = Path(__file__).parents[2] / "examples/arm/mission"

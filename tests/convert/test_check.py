@@ -8,9 +8,9 @@ import pytest
 
 from cfepy.convert import Profile
 from cfepy.convert.check import RULES, CheckReport, Level, ProgramSources, SourcePlace, read_source, rule_of
+from dev.convert import rules
+from dev.convert.survey import DOCUMENT, between
 from rospy_shim.msgs import shipped
-from tests.convert import rules
-from tests.convert.survey import DOCUMENT, between
 
 MAIN = "int main(int argc, char **argv) { return 0; }\n"
 
@@ -237,4 +237,4 @@ def test_every_rule_says_what_why_and_what_to_do() -> None:
 
 def test_the_documents_table_is_that_of_the_rules() -> None:
     text = DOCUMENT.read_text(encoding="utf-8")
-    assert between(text, rules.BEGIN, rules.END, rules.table()) == text, "python -m tests.convert.rules writes it"
+    assert between(text, rules.BEGIN, rules.END, rules.table()) == text, "python -m dev.convert.rules writes it"

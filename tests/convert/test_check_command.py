@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from cfepy.cli.main import main
-from tests.convert.ping import ping_package
+from dev.convert.ping import ping_package
 
 NODE = """#include <ros/ros.h>
 #include <std_msgs/String.h>

@@ -10,8 +10,8 @@ import pytest
 from cfepy.convert.configurations import configuration_headers
 from cfepy.convert.packages import CppPackage, Program
 from cfepy.status import UsageError
-from tests.convert.node_flights import mission_of
-from tests.roscfe.building import needs_cpp
+from dev.convert.node_flights import mission_of
+from dev.roscfe.building import needs_cpp
 
 SCRIPT = """
 from dynamic_reconfigure.parameter_generator_catkin import *

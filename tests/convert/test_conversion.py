@@ -13,9 +13,9 @@ from cfepy.convert.entry import NodeEntry, entry_symbol, parameter_rows, quoted
 from cfepy.mission import read_mission
 from cfepy.osal import OS_MAX_FILE_NAME
 from cfepy.status import UsageError
+from dev.convert.ping import ping_package
 from rospy_shim.parameters.table import ROW_BYTES
 from rospy_shim.roslaunch.plan import app_name
-from tests.convert.ping import ping_package
 
 
 def convert(package: Path, out: Path, *more: str) -> int:

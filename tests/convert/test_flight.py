@@ -15,7 +15,7 @@ from cfepy.convert.build import unique_symbols
 from cfepy.journal import read_journal, replay
 from cfepy.mission import read_mission
 from cfepy.pilot.plan import built_node
-from tests.convert.ping import ping_package
+from dev.convert.ping import ping_package
 
 pytestmark = pytest.mark.slow
 

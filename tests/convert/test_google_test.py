@@ -10,8 +10,8 @@ import pytest
 from cfepy.cli.main import main
 from cfepy.convert.google_test import google_test_folder
 from cfepy.status import UsageError
-from tests.convert.ping import ping_package
-from tests.roscfe.building import needs_cpp
+from dev.convert.ping import ping_package
+from dev.roscfe.building import needs_cpp
 
 pytestmark = [needs_cpp, pytest.mark.slow]
 

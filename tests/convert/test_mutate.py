@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.convert.check.compiler import Compiled, Compiler
-from tests.convert.mutate import DAMAGES, NODES, OWN, STUB, Damaging
+from dev.convert.mutate import DAMAGES, NODES, OWN, STUB, Damaging
 
 
 @pytest.mark.parametrize("kind", sorted(DAMAGES))

@@ -16,9 +16,9 @@ from cfepy.mission import Mission, read_mission
 from cfepy.pilot.plan import built_node
 from cfepy.tbl import TableImage, build
 from cfepy.tbl.packets import ACTIVATE, LOAD, VALIDATE
+from dev.roscfe.building import needs_cpp
 from rospy_shim.msgs import Packages, shipped
 from rospy_shim.parameters.table import pack
-from tests.roscfe.building import needs_cpp
 
 pytestmark = [needs_cpp, pytest.mark.slow]
 

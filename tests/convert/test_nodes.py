@@ -6,9 +6,9 @@ import pytest
 
 from cfepy.es.packets import RESTART_APP, STOP_APP
 from cfepy.mission import Mission
-from tests.convert.node_flights import mission_of
-from tests.convert.twin_flights import recorded
-from tests.roscfe.building import needs_cpp
+from dev.convert.node_flights import mission_of
+from dev.convert.twin_flights import recorded
+from dev.roscfe.building import needs_cpp
 
 pytestmark = [needs_cpp, pytest.mark.slow]
 

@@ -15,7 +15,7 @@ from tests.test_docs import FENCE
 ROOT = Path(__file__).parents[2]
 GUIDE = (ROOT / "docs/porting.md").read_text(encoding="utf-8")
 SECTION = re.compile(r"^## (\d+)\. [^\n]+\n(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
-BY_HAND = "make "  # in a mission tree of cFS, which is not here; tests.convert.mission_tree does it
+BY_HAND = "make "  # in a mission tree of cFS, which is not here; dev.convert.mission_tree does it
 CROSS = "aarch64-linux-gnu-g++"
 SHOWN = {
     1: ("host: 2 nodes, 0 refused",),

@@ -8,14 +8,14 @@ import pytest
 
 from cfepy.convert.check import programs_of
 from cfepy.convert.flight import message_library
+from dev.convert.stimulus.comparing import Likeness, Part, compared
+from dev.convert.stimulus.flight import NodeFlight, ended, printed_by_node
+from dev.convert.stimulus.outcome import Outcome, log_of, outcome_of
+from dev.convert.stimulus.report import rows
+from dev.convert.stimulus.script import Scene, Seen, script
+from dev.convert.twin_flights import TWINS
+from dev.roscfe.building import needs_cpp
 from rospy_shim.msgs import Packages, shipped
-from tests.convert.stimulus.comparing import Likeness, Part, compared
-from tests.convert.stimulus.flight import NodeFlight, ended, printed_by_node
-from tests.convert.stimulus.outcome import Outcome, log_of, outcome_of
-from tests.convert.stimulus.report import rows
-from tests.convert.stimulus.script import Scene, Seen, script
-from tests.convert.twin_flights import TWINS
-from tests.roscfe.building import needs_cpp
 
 SEEN = Seen({}, {"/in": "geometry_msgs/PoseStamped", "/any": "*"}, {"/reset": "std_srvs/SetBool"}, {})
 

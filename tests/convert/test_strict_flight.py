@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
-from tests.convert.ping import ping_package
-from tests.roscfe.building import needs_cpp
+from dev.convert.ping import ping_package
+from dev.roscfe.building import needs_cpp
 
 pytestmark = [needs_cpp, pytest.mark.slow]
 

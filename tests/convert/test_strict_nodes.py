@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 import cfepy
-from tests.convert.node_flights import NODES
-from tests.convert.real_flights import GREEDY, spoken
-from tests.convert.twin_flights import TWINS, recorded
-from tests.roscfe.building import needs_cpp
+from dev.convert.node_flights import NODES
+from dev.convert.real_flights import GREEDY, spoken
+from dev.convert.twin_flights import TWINS, recorded
+from dev.roscfe.building import needs_cpp
 
 pytestmark = [needs_cpp, pytest.mark.slow]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.convert.twin_flights import PACKAGES, fly
-from tests.roscfe.building import needs_cpp
+from dev.convert.twin_flights import PACKAGES, fly
+from dev.roscfe.building import needs_cpp
 
 pytestmark = [needs_cpp, pytest.mark.slow]
 

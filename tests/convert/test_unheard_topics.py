@@ -10,8 +10,8 @@ import pytest
 
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec, TopicMessage, TopicWatch
-from tests.convert.small_missions import node, said_by, small_mission
-from tests.roscfe.building import needs_cpp
+from dev.convert.small_missions import node, said_by, small_mission
+from dev.roscfe.building import needs_cpp
 
 pytestmark = [needs_cpp, pytest.mark.slow]
 

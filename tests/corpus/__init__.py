@@ -1,4 +1,0 @@
-"""Public ROS nodes, unmodified, on cfepy: what each is given and what it must do, and the program that tries it.
-
-Their sources are not here: `python -m tests.corpus fetch FOLDER` gets them from GitHub.
-"""

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.corpus.scenarios import read_corpus
-from tests.corpus.sources import ENVIRONMENT, FETCH
+from dev.corpus.scenarios import read_corpus
+from dev.corpus.sources import ENVIRONMENT, FETCH
 
 HOW = f"{len(read_corpus().scenarios)} scenarios with public ROS nodes were NOT run: `{FETCH}`, then set {ENVIRONMENT}"
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.corpus.flight import Flight
-from tests.corpus.scenarios import read_corpus
-from tests.corpus.sources import Sources
-from tests.corpus.verdict import judge
+from dev.corpus.flight import Flight
+from dev.corpus.scenarios import read_corpus
+from dev.corpus.sources import Sources
+from dev.corpus.verdict import judge
 
 
 @pytest.mark.corpus

@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from cfepy.status import UsageError
-from tests.corpus import report
-from tests.corpus.flight import Flight
-from tests.corpus.likeness import differences, digest, lines, messages
-from tests.corpus.pool import run_all
-from tests.corpus.scenarios import Corpus, Program, Scenario, read_corpus
-from tests.corpus.sources import Sources
-from tests.corpus.verdict import Outcome, Verdict, judge
+from dev.corpus import report
+from dev.corpus.flight import Flight
+from dev.corpus.likeness import differences, digest, lines, messages
+from dev.corpus.pool import run_all
+from dev.corpus.scenarios import Corpus, Program, Scenario, read_corpus
+from dev.corpus.sources import Sources
+from dev.corpus.verdict import Outcome, Verdict, judge
 
 ECHO = """#!/usr/bin/env python
 import rospy, sys

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from random import Random
-from types import SimpleNamespace
-from typing import Any, cast
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cfepy.es.cds import RECORD, SIGNATURE_BEGIN, SIGNATURE_END, CdsBlock, CriticalDataStore, pack
+from cfepy.es.cds import RECORD, SIGNATURE_BEGIN, SIGNATURE_END, CdsBlock, pack
 from cfepy.es.pools import DESCRIPTOR
 from cfepy.fs import crc16
 from cfepy.psp.profile import load_profile
-from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_ES_BUFFER_NOT_IN_POOL,
@@ -28,36 +25,11 @@ from cfepy.status import (
     CFE_SUCCESS,
     CfeError,
 )
+from dev.fuzz.cds_board import ENTRIES, SIZE, Board
 from tests.statuses import status_of
 
-SIZE = 4096
-ENTRIES = 8
 POOL_AT = 12 + ENTRIES * RECORD.size
 FIRST_BLOCK = 0x150001
-
-
-class Board:
-    """The PSP as the CDS sees it; `boot` is a processor reset."""
-
-    def __init__(self, size: int = SIZE, entries: int = ENTRIES) -> None:
-        self.memory = bytearray(size)
-        self.entries = entries
-        self.log: list[str] = []
-        self.cds = self.boot(RST_TYPE_POWERON)
-
-    def boot(self, reset_type: int = RST_TYPE_PROCESSOR) -> CriticalDataStore:
-        psp = SimpleNamespace(
-            get_cds_size=lambda: len(self.memory),
-            read_from_cds=lambda offset, size: bytes(self.memory[offset : offset + size]),
-            write_to_cds=self._write,
-            get_restart_type=lambda: SimpleNamespace(reset_type=reset_type),
-        )
-        self.cds = CriticalDataStore(cast(Any, psp), self.entries, self.log.append)
-        self.cds.early_init()
-        return self.cds
-
-    def _write(self, data: bytes, offset: int) -> None:
-        self.memory[offset : offset + len(data)] = data
 
 
 def test_data_outlive_a_reset() -> None:

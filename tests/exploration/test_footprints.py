@@ -14,8 +14,8 @@ from cfepy.mission import CORE_APPS
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Schedule
 from cfepy.status import UsageError
+from dev.quality.bugs import MISSIONS, SECONDS, by_name
 from tests.mission.flights import write_mission
-from tests.quality.bugs import MISSIONS, SECONDS, by_name
 
 FROM = "600ms"
 

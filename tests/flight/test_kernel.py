@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.notebook import kernel_sockets
+from dev.pages.notebook import kernel_sockets
 
 jupyter_client = pytest.importorskip("jupyter_client")
 

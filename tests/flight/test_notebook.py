@@ -10,7 +10,7 @@ import pytest
 
 import cfepy
 from cfepy import markup
-from tests import notebook
+from dev.pages import notebook
 
 FAILS = """
 import rospy
@@ -123,7 +123,7 @@ def test_the_notebook_of_the_documentation_shows_what_it_says(tmp_path: Path) ->
     nbformat = pytest.importorskip("nbformat")
     committed = nbformat.read(notebook.FILE, as_version=4)
     executed = notebook.executed(str(tmp_path))
-    assert notebook.texts(executed) == notebook.texts(committed), "python -m tests.notebook"
+    assert notebook.texts(executed) == notebook.texts(committed), "python -m dev.pages.notebook"
     kinds = [set(output.get("data", ())) for cell in executed.cells for output in cell.get("outputs", ())]
     assert sum("image/png" in kind for kind in kinds) == 1
     assert sum("text/html" in kind for kind in kinds) >= 3

@@ -1,7 +1,7 @@
 """Every test here that takes `cfe` is the main function of an application: it runs in a task of a mission.
 
 The tests stand for the segments of NASA's functional tests (cfe_testcase), a file for each of theirs, a test for each
-segment, named alike; `python -m tests.requirements.report` counts them. test_misuse.py goes beyond them.
+segment, named alike; `python -m dev.pages.requirements` counts them. test_misuse.py goes beyond them.
 """
 
 from __future__ import annotations

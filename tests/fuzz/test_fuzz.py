@@ -1,4 +1,4 @@
-"""A few damaged inputs of each kind; `python -m tests.fuzz` does many."""
+"""A few damaged inputs of each kind; `python -m dev.fuzz` does many."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.fuzz.kinds import KINDS
-from tests.fuzz.runs import failures
+from dev.fuzz.kinds import KINDS
+from dev.fuzz.runs import failures
 
 SLOW = {
     "mission": 3,

@@ -16,9 +16,9 @@ from cfepy.ground.bag import BagReader, storage
 from cfepy.ground.mcap_writer import McapWriter
 from cfepy.ground.recording import KINDS, rewrite, summary_of
 from cfepy.status import UsageError
+from dev.fuzz.bit_flips import flips_of
+from dev.fuzz.recordings import COUNT, FORMATS, SECOND, converted, ends, placed_chunks, read, written
 from rospy_shim.msgs import message_class
-from tests.ground.bit_flips import flips_of
-from tests.ground.recordings import COUNT, FORMATS, SECOND, converted, ends, placed_chunks, read, written
 
 DATA = Path(__file__).parents[1] / "data" / "bags"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from dev.fuzz.sample_journal import paths
 from tests.mission.flights import write_mission
 
 NODE = "CFE_APP, {name}.py, __main__, {app}, 100, 16384, 0x0, 0;\n"
@@ -45,22 +46,6 @@ RACE = """
     print(order, random.random(), hash("a") == hash("b"))
     rospy.sleep(0.5)
 """
-PATHS = """
-    import os, sys
-    import rospy
-    import helper
-
-    rospy.init_node("paths")
-    print(os.getcwd(), __file__, helper.__file__, sys.argv, os.environ["HOME"])
-    print(open("data.txt").read(), os.path.abspath("data.txt"), sorted(os.listdir(".")))
-    open("out.txt", "w").write("written")
-    rospy.loginfo(open("out.txt").read())
-    helper.fail()
-"""
-HELPER = """
-    def fail():
-        raise ValueError("as asked")
-"""
 
 
 def keyboard(folder: Path) -> str:
@@ -83,13 +68,6 @@ def race(folder: Path) -> str:
     """Two nodes, whose threads and random numbers show who goes first."""
     lines = NODE.format(name="race", app="RACE_A") + NODE.format(name="race", app="RACE_B")
     return write_mission(folder, lines + "!", race=RACE)
-
-
-def paths(folder: Path) -> str:
-    """A node that says where it is, reads and writes beside it, and dies in a module of its own."""
-    (folder / "data.txt").write_text("from disk", encoding="utf-8")
-    startup = NODE.format(name="paths", app="PATHS") + "!"
-    return write_mission(folder, startup, paths=PATHS, helper=HELPER)
 
 
 SMALL = {each.__name__: each for each in (keyboard, resets, restarts, race, paths)}

@@ -11,7 +11,7 @@ import pytest
 
 from cfepy.cli.main import main
 from cfepy.pilot import RunPlan, fly
-from tests.twin.flight_apps import FLIGHT_APPS
+from dev.twin.flight_apps import FLIGHT_APPS
 
 FOLDER = Path(__file__).parents[2] / "missions" / "cfs"
 DEFINITIONS = sorted(

@@ -1,4 +1,4 @@
-"""`python -m tests.release`, as docs/install.md has it: what it refuses, and a whole one."""
+"""`python -m dev.release`, as docs/install.md has it: what it refuses, and a whole one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 
 from cfepy import __version__
 from cfepy.status import UsageError
-from tests.release import ROOT, check_clean, check_contents, check_version, dated, wanted_in
+from dev.release import ROOT, check_clean, check_contents, check_version, dated, wanted_in
 
 CHANGES = "# Changelog\n\n## [0.2.0] - unreleased\n\n- News.\n\n## [0.1.0] - 2026-01-02\n\n- All.\n"
 LEFT = shutil.ignore_patterns(
@@ -110,7 +110,7 @@ def test_one_command_makes_a_version_ready(tmp_path: Path) -> None:
     who = {
         f"GIT_{role}_{what}": f"{role}@example.org" for role in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")
     }
-    command = [sys.executable, "-m", "tests.release", __version__]
+    command = [sys.executable, "-m", "dev.release", __version__]
     environment = {**os.environ, **who}
     done = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -70,7 +70,9 @@ def test_the_wheel_brings_everything_along(wheel: Path) -> None:
     names = set(zipfile.ZipFile(wheel).namelist())
     assert names.issuperset(SHIPPED)
     assert any(name.endswith("licenses/LICENSE") for name in names)
-    assert not [name for name in names if name.startswith(("tests/", "benchmarks/", "docs/")) or "__pycache__" in name]
+    assert not [
+        name for name in names if name.startswith(("tests/", "dev/", "benchmarks/", "docs/")) or "__pycache__" in name
+    ]
 
 
 def test_the_capture_mission_flies_as_in_the_checkout(home: Path) -> None:

@@ -6,10 +6,10 @@ import os
 
 import pytest
 
-from tests.peers.__main__ import ENVIRONMENT
-from tests.peers.peers import read_peers
+from dev.peers.__main__ import ENVIRONMENT
+from dev.peers.peers import read_peers
 
-HOW = f"{len(read_peers().files)} public test files were NOT run: `python -m tests.peers fetch FOLDER`, then set "
+HOW = f"{len(read_peers().files)} public test files were NOT run: `python -m dev.peers fetch FOLDER`, then set "
 HOW += ENVIRONMENT
 
 

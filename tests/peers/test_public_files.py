@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.corpus.sources import Sources
-from tests.peers.__main__ import ENVIRONMENT
-from tests.peers.flight import run
-from tests.peers.peers import read_peers
+from dev.corpus.sources import Sources
+from dev.peers.__main__ import ENVIRONMENT
+from dev.peers.flight import run
+from dev.peers.peers import read_peers
 
 
 @pytest.mark.corpus

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from cfepy.status import UsageError
-from tests.corpus.sources import Sources
-from tests.peers import report
-from tests.peers.flight import Verdict, run
-from tests.peers.peers import FILE, ROSTEST, UNIT, Peer, Peers, read_peers
+from dev.corpus.sources import Sources
+from dev.peers import report
+from dev.peers.flight import Verdict, run
+from dev.peers.peers import FILE, ROSTEST, UNIT, Peer, Peers, read_peers
 
 UNIT_FILE = """
 import unittest

@@ -16,7 +16,7 @@ from cfepy.status import (
     CFE_SUCCESS,
     CfeError,
 )
-from tests.es.test_cds import ENTRIES, Board
+from dev.fuzz.cds_board import ENTRIES, Board
 
 NAMES = [f"APP.{number}" for number in range(ENTRIES + 2)]
 SIZES = st.sampled_from((1, 4, 12, 13, 100, 900))

@@ -7,8 +7,8 @@ import json
 import pytest
 
 from cfepy.exploration.search import GREYBOX
-from tests.quality.bugs import by_name, reference_trial
-from tests.quality.coverage_report import MEASURED, PAGE, first, median, page
+from dev.quality.bugs import by_name, reference_trial
+from dev.quality.coverage_report import MEASURED, PAGE, first, median, page
 
 
 def test_the_page_shows_what_was_measured() -> None:

@@ -11,12 +11,12 @@ from cfepy.exploration.shrink import SUBSETS_OF
 from cfepy.exploration.trial import Trial
 from cfepy.exploration.verdict import Verdict
 from cfepy.rtos import Schedule
-from tests.quality.bugs import BUGS, MISSIONS, Bug, by_name, reference_trial
-from tests.quality.measure import as_deviations, find, simplest
-from tests.quality.mended import mended_trial
-from tests.quality.programs import PROGRAMS
-from tests.quality.report import best, load, shown_by
-from tests.quality.shrinking import shrunk
+from dev.quality.bugs import BUGS, MISSIONS, Bug, by_name, reference_trial
+from dev.quality.measure import as_deviations, find, simplest
+from dev.quality.mended import mended_trial
+from dev.quality.programs import PROGRAMS
+from dev.quality.report import best, load, shown_by
+from dev.quality.shrinking import shrunk
 
 EACH = pytest.mark.parametrize("bug", BUGS, ids=[bug.name for bug in BUGS])
 LONG = ("changed_while_iterated", "lost_wakeup", "packet_burst", "preempt_race")

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from cfepy.rtos import Schedule
-from tests.quality.measure import as_deviations, find
-from tests.quality.mended import verdicts
-from tests.quality.program_report import PAGE, load, missed, page
-from tests.quality.programs import PROGRAMS, Program, program_trial
+from dev.quality.measure import as_deviations, find
+from dev.quality.mended import verdicts
+from dev.quality.program_report import PAGE, load, missed, page
+from dev.quality.programs import PROGRAMS, Program, program_trial
 
 EACH = pytest.mark.parametrize("program", PROGRAMS, ids=[program.name for program in PROGRAMS])
 FOUND = pytest.mark.parametrize(
@@ -20,7 +20,7 @@ FOUND = pytest.mark.parametrize(
 
 
 def test_the_page_is_what_was_measured() -> None:
-    assert PAGE.read_text(encoding="utf-8") == page(load()), "run python -m tests.quality programs"
+    assert PAGE.read_text(encoding="utf-8") == page(load()), "run python -m dev.quality programs"
 
 
 def test_most_are_found() -> None:

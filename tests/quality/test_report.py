@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import statistics
 
-from tests.quality.bugs import BUGS, CFE
-from tests.quality.measure import LONGEST, TRIALS
-from tests.quality.report import PAGE, SHRUNK, best, complete, load, medians, page
-from tests.quality.shrinking import Shrunk
+from dev.quality.bugs import BUGS, CFE
+from dev.quality.measure import LONGEST, TRIALS
+from dev.quality.report import PAGE, SHRUNK, best, complete, load, medians, page
+from dev.quality.shrinking import Shrunk
 
 
 def test_everything_was_measured() -> None:
     measured = load()
-    assert complete(measured), "run python -m tests.quality report"
+    assert complete(measured), "run python -m dev.quality report"
     assert set(measured) == {bug.name for bug in BUGS}
     for bug in BUGS:
         for policy, found in medians(measured, bug.name).items():
@@ -20,7 +20,7 @@ def test_everything_was_measured() -> None:
 
 
 def test_the_page_is_what_was_measured() -> None:
-    assert PAGE.read_text(encoding="utf-8") == page(load()), "run python -m tests.quality report"
+    assert PAGE.read_text(encoding="utf-8") == page(load()), "run python -m dev.quality report"
 
 
 def test_every_bug_is_found_and_half_of_them_soon() -> None:

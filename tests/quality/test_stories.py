@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.quality.bugs import BUGS, Bug
-from tests.quality.stories import read, told
+from dev.quality.bugs import BUGS, Bug
+from dev.quality.stories import read, told
 
 QUICK = ("lock_order", "parameter_update", "lost_wakeup")
 

@@ -15,8 +15,8 @@ from cfepy.reports.collector import Collector
 from cfepy.reports.html_text import numbers_in
 from cfepy.reports.page import About, page_of
 from cfepy.reports.page_story import PageStory, StoryRow
+from dev.pages.browser import Browser, find_browser
 from tests.reports import looked_at
-from tests.reports.browser import Browser, find_browser
 from tests.reports.conftest import Shown
 
 NEEDS = "needs a browser: install the package chromium"

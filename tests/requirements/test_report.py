@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from tests.functional.segments import missing, segments
-from tests.requirements.not_covered import NOT_COVERED
-from tests.requirements.report import PAGE, evidence, ids, page
+from dev.pages.not_covered import NOT_COVERED
+from dev.pages.requirements import PAGE, evidence, ids, page
+from dev.pages.segments import missing, segments
 
 
 def test_the_page_is_up_to_date() -> None:
-    assert PAGE.read_text(encoding="utf-8") == page(), "run python -m tests.requirements.report"
+    assert PAGE.read_text(encoding="utf-8") == page(), "run python -m dev.pages.requirements"
 
 
 def test_every_id_has_a_test_or_a_reason() -> None:

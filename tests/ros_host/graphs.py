@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from tests.host_ports import free_port
+from dev.host_ports import free_port
 
 TALKER = Path(__file__).parent / "talker.py"
 PYTHON = "/usr/bin/python3"

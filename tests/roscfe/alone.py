@@ -15,10 +15,10 @@ from cfepy.convert.build import WITHOUT_TYPES, WRAPPED, library_includes, librar
 from cfepy.convert.entry import FREE_ROWS, NodeEntry, main_header
 from cfepy.convert.messages import Profile, write_headers
 from cfepy.convert.sources import collect, message_types
+from dev.roscfe.building import FLIGHT_FLAGS, HERE, STRICT_FLAGS, Target, compile_objects, link_program
+from dev.roscfe.probing import REMAPS, marked
+from dev.roscfe.random_messages import LIBRARY
 from rospy_shim.parameters.table import FREE
-from tests.roscfe.building import FLIGHT_FLAGS, HERE, STRICT_FLAGS, Target, compile_objects, link_program
-from tests.roscfe.probing import REMAPS, marked
-from tests.roscfe.random_messages import LIBRARY
 
 FOLDER = Path(__file__).parent
 ACTIONS = ("count", "shy")
@@ -48,7 +48,7 @@ class Alone:
         self._library = [*library, *self._objects([FOLDER / "cfe_stand_in.cpp"], FLIGHT_FLAGS)]
 
     def fly(self, source: Path) -> list[str]:
-        """What a node prints; it has the name, the namespace and the remappings of `tests.roscfe.probing`."""
+        """What a node prints; it has the name, the namespace and the remappings of `dev.roscfe.probing`."""
         main = self._folder / "main.h"
         main.write_text(main_header(True), encoding="utf-8")
         ids = {f"/probes/{name}": (FIRST_ID + at, False) for at, name in enumerate(TOPICS)}

@@ -1,6 +1,6 @@
 """The whole library on computers of other kinds, big-endian and of 32 bits: nodes print what roscpp's printed.
 
-The probes of `tests.roscfe.probing` with a stand-in for cFE, here and emulated.
+The probes of `dev.roscfe.probing` with a stand-in for cFE, here and emulated.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from dev.roscfe.building import needs_cpp, target_named
+from dev.roscfe.probing import PROBES
 from tests.roscfe.alone import Alone
-from tests.roscfe.building import needs_cpp, target_named
-from tests.roscfe.probing import PROBES
 
 pytestmark = [pytest.mark.slow, needs_cpp]
 NODES = ("actions", "clouds", "logs", "names", "params", "timers", "topics", "values")

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from cfepy.convert.messages import Profile, write_headers
-from tests.roscfe.building import CPP, INCLUDE, ROSCFE, STRICT_FLAGS, SYSTEM, compile_program, needs_cpp
-from tests.roscfe.random_messages import LIBRARY
+from dev.roscfe.building import CPP, INCLUDE, ROSCFE, STRICT_FLAGS, SYSTEM, compile_program, needs_cpp
+from dev.roscfe.random_messages import LIBRARY
 
 pytestmark = [pytest.mark.slow, needs_cpp]
 needs_boost = pytest.mark.skipif(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.roscfe.building import compile_program, needs_cpp
+from dev.roscfe.building import compile_program, needs_cpp
 from tests.roscfe.test_fuzz import SANITIZERS
 
 pytestmark = [pytest.mark.slow, needs_cpp]

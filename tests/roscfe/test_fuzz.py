@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from cfepy.convert.messages import Profile
+from dev.roscfe.building import needs_cpp
+from dev.roscfe.random_messages import LIBRARY, all_types
+from dev.roscfe.roundtrip import Program, frames_of, hash_of
 from rospy_shim.msgs.spec import PRIMITIVES
-from tests.roscfe.building import needs_cpp
-from tests.roscfe.random_messages import LIBRARY, all_types
-from tests.roscfe.roundtrip import Program, frames_of, hash_of
 
 pytestmark = [pytest.mark.slow, needs_cpp]
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize=vptr", "-fno-sanitize-recover=all")

@@ -9,8 +9,8 @@ import pytest
 
 from cfepy.convert.build import BOOST_REFUSED
 from cfepy.convert.messages import Profile, write_headers
-from tests.roscfe.building import FLIGHT_FLAGS, ROSCFE, STRICT_FLAGS, compile_program, complaints, needs_cpp
-from tests.roscfe.random_messages import LIBRARY, all_types, capacities
+from dev.roscfe.building import FLIGHT_FLAGS, ROSCFE, STRICT_FLAGS, compile_program, complaints, needs_cpp
+from dev.roscfe.random_messages import LIBRARY, all_types, capacities
 
 pytestmark = [pytest.mark.slow, needs_cpp]
 BOOST = sorted((ROSCFE / "boost").rglob("*.hpp"))

@@ -10,7 +10,7 @@ import pytest
 
 from cfepy.convert.build import OWN_CPP_LIBRARY, WITH_ARENA, profile_flags
 from cfepy.convert.messages import Profile
-from tests.roscfe.building import ROSCFE, STRICT_FLAGS, compile_objects, link_program, needs_cpp
+from dev.roscfe.building import ROSCFE, STRICT_FLAGS, compile_objects, link_program, needs_cpp
 
 pytestmark = [pytest.mark.slow, needs_cpp]
 PROGRAM = Path(__file__).parent / "heap.cpp"

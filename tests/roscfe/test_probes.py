@@ -1,4 +1,4 @@
-"""Small nodes of roscpp print on cfepy what was recorded of them with Debian's roscpp (`tests.roscfe.probing`)."""
+"""Small nodes of roscpp print on cfepy what was recorded of them with Debian's roscpp (`dev.roscfe.probing`)."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.roscfe.building import needs_cpp
-from tests.roscfe.probing import NAMES, PROBES, fly
+from dev.roscfe.building import needs_cpp
+from dev.roscfe.probing import NAMES, PROBES, fly
 
 pytestmark = [pytest.mark.slow, needs_cpp]
 

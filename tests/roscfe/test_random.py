@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.roscfe.building import ROSCFE, compile_program, needs_cpp
+from dev.roscfe.building import ROSCFE, compile_program, needs_cpp
 
 pytestmark = [needs_cpp, pytest.mark.slow]
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from cfepy.convert.messages import Profile, write_headers
-from tests.roscfe.building import ROSCPP, STRICT_FLAGS, SYSTEM, compile_program, needs_cpp
-from tests.roscfe.random_messages import LIBRARY, all_types
-from tests.roscfe.roundtrip import Program, frames_of
+from dev.roscfe.building import ROSCPP, STRICT_FLAGS, SYSTEM, compile_program, needs_cpp
+from dev.roscfe.random_messages import LIBRARY, all_types
+from dev.roscfe.roundtrip import Program, frames_of
 
 pytestmark = [pytest.mark.slow, needs_cpp]
 HEADERS = ("ros/serialization.h", "actionlib_msgs", "geometry_msgs", "tf2_msgs")

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from cfepy.convert.messages import Profile
-from tests.roscfe.building import needs_cpp, target_named
-from tests.roscfe.random_messages import all_types
-from tests.roscfe.roundtrip import Program, frames_of
+from dev.roscfe.building import needs_cpp, target_named
+from dev.roscfe.random_messages import all_types
+from dev.roscfe.roundtrip import Program, frames_of
 
 pytestmark = [pytest.mark.slow, needs_cpp]
 MESSAGES = {"here": 200, "powerpc": 30, "arm": 30}  # of each type; an emulated processor takes its time

@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 
 from cfepy.convert.messages import Profile, write_headers
-from tests.roscfe.building import HERE, STRICT_FLAGS, Target, compile_program, needs_cpp, target_named
+from dev.roscfe.building import HERE, STRICT_FLAGS, Target, compile_program, needs_cpp, target_named
+from dev.roscfe.random_messages import LIBRARY
 from tests.roscfe.frame_scripts import scripts
-from tests.roscfe.random_messages import LIBRARY
 from tests.roscfe.test_fixed import REFUSED
 from tests.roscfe.test_frames import CACHE
 from tests.roscfe.test_frames import LIBRARY as TRANSFORMS

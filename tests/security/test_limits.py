@@ -21,8 +21,8 @@ from cfepy.journal.frame_check import check_values
 from cfepy.journal.journal import JournalError
 from cfepy.plain_yaml import YamlError, plain_yaml
 from cfepy.status import UsageError
+from dev.fuzz.sample_journal import sample, with_frames
 from ros_libraries.rosbag_storage import compression
-from tests.fuzz.sample_journal import sample, with_frames
 
 
 def test_a_file_of_another_kind_or_size_is_refused(tmp_path: Path) -> None:

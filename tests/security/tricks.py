@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.ground.bag import storage
-from tests.fuzz.kinds import DATA
-from tests.fuzz.sample_journal import with_frames
+from dev.fuzz.kinds import DATA
+from dev.fuzz.sample_journal import with_frames
 
 CANARY = "canary"
 HARMLESS = ""

@@ -22,7 +22,7 @@ from cfepy.resources import shipped
 from cfepy.rtos import Pacer
 from cfepy.tbl import build
 from cfepy.units import NS_PER_S
-from tests.twin.real import RealCfe
+from dev.twin.real import RealCfe
 
 SBN_VARIABLE, CLIENT_VARIABLE = "CFEPY_REAL_SBN", "CFEPY_REAL_SBN_CLIENT"
 """Folders of NASA's cFE with NASA's SBN: a server of the time, and a client."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from tests.twin.api import real, twin
-from tests.twin.api.compare import differences
-from tests.twin.api.recorded import Record, read_record, records
-from tests.twin.api.script import GROUPS, Writer, write_script
-from tests.twin.api.words import quote, unquote
+from dev.twin.api import real, twin
+from dev.twin.api.compare import differences
+from dev.twin.api.recorded import Record, read_record, records
+from dev.twin.api.script import GROUPS, Writer, write_script
+from dev.twin.api.words import quote, unquote
 
 SHORT = 700
 LONG_ONES = [each for each in records() if each[2] > SHORT]

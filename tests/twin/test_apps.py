@@ -9,13 +9,13 @@ import pytest
 
 from cfepy import msg
 from cfepy.fs import FileHeader
-from tests.twin import apps_flight, cfdp_pdus
-from tests.twin.apps_commands import AppsCommander
-from tests.twin.apps_files import DS_FILE, FM_FILE, of_file
-from tests.twin.apps_flight import differences, of_packet
-from tests.twin.flight import Observed
-from tests.twin.flight_apps import FLIGHT_APPS
-from tests.twin.real import VARIABLE, installed
+from dev.twin import apps_flight, cfdp_pdus
+from dev.twin.apps_commands import AppsCommander
+from dev.twin.apps_files import DS_FILE, FM_FILE, of_file
+from dev.twin.apps_flight import differences, of_packet
+from dev.twin.flight import Observed
+from dev.twin.flight_apps import FLIGHT_APPS
+from dev.twin.real import VARIABLE, installed
 
 BUILT = installed()
 needs_apps = pytest.mark.skipif(

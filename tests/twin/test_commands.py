@@ -1,7 +1,7 @@
 """Random ground commands, to the letter: what NASA's cFE answers to them, ours answers.
 
 The answers are on record; where NASA's executable is installed (CFEPY_REAL_CFE says where), it is asked as well. More
-commands than here are flown by `python -m tests.twin`.
+commands than here are flown by `python -m dev.twin`.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ import pytest
 from cfepy.es import packets as es
 from cfepy.evs import packets as evs
 from cfepy.sb import packets as sb
-from tests.twin import masks, recorded
-from tests.twin.__main__ import fly
-from tests.twin.commands import PLAIN, Step
-from tests.twin.flight import Simulated, differences, real, simulated
-from tests.twin.real import VARIABLE, installed
+from dev.twin import masks, recorded
+from dev.twin.__main__ import fly
+from dev.twin.commands import PLAIN, Step
+from dev.twin.flight import Simulated, differences, real, simulated
+from dev.twin.real import VARIABLE, installed
 
 RELEASES = ("7.0.0", "7.0.1")
 FLIGHTS = [

@@ -12,8 +12,8 @@ from cfepy.config import IDENTITIES
 from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.pilot import RunPlan
+from dev.twin.real import VARIABLE, RealCfe, installed
 from tests.mission.flights import write_mission
-from tests.twin.real import VARIABLE, RealCfe, installed
 
 NO_GROUND = (7000, 7001)  # CI_LAB of processor 2 has the port of telemetry
 STARTUP = "CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;\n!\n"

@@ -6,10 +6,10 @@ import itertools
 
 import pytest
 
-from tests.twin import recorded
-from tests.twin.flight import differences
-from tests.twin.lives import LivesCommander
-from tests.twin.lives_flight import settled, simulated
+from dev.twin import recorded
+from dev.twin.flight import differences
+from dev.twin.lives import LivesCommander
+from dev.twin.lives_flight import settled, simulated
 
 RELEASES = ("7.0.0", pytest.param("7.0.1", marks=pytest.mark.slow))
 ORDINARY = 25

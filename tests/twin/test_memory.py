@@ -9,10 +9,10 @@ import pytest
 
 from cfepy import msg
 from cfepy.fs import HEADER_SIZE, crc16
-from tests.twin import memory_flight
-from tests.twin.flight_apps import CS, MD, MM
-from tests.twin.memory_commands import LOADS, MemoryCommander, files
-from tests.twin.real import installed
+from dev.twin import memory_flight
+from dev.twin.flight_apps import CS, MD, MM
+from dev.twin.memory_commands import LOADS, MemoryCommander, files
+from dev.twin.real import installed
 
 ADDRESS = 0x1000000000
 BUILT = installed(memory_flight.VARIABLE)

@@ -15,8 +15,8 @@ from cfepy.mission import Arrival, Mission
 from cfepy.msg import command, get_msg_id
 from cfepy.time import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID
 from cfepy.time import packets as time
-from tests.host_ports import free_port
-from tests.twin.real import in_network_of, installed
+from dev.host_ports import free_port
+from dev.twin.real import in_network_of, installed
 from tests.twin.sbn_flight import CLIENT_VARIABLE, PAIR, SBN_VARIABLE, Paced, paced, real_sbn
 from tests.twin.sbn_peer import RealPeer, VirtualPeer, serve_time
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.twin import tables_flight
+from dev.twin import tables_flight
 
 DATA = Path(__file__).parent / "data"
 ORDINARY = 250

@@ -10,7 +10,7 @@ import pytest
 
 from cfepy.pilot.check import cfe_names
 from cfepy.pilot.check.cfe_names import wrong_names
-from tests.house.tree import ROOT
+from dev.house.tree import ROOT
 
 FOLDERS = ("apps", "missions", "examples", "tests/quality", "tests/mission", "cfepy/cli/run/templates")
 

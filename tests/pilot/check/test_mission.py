@@ -13,7 +13,7 @@ from cfepy.monitors.demands import read_demands
 from cfepy.pilot.check import check_mission
 from cfepy.psp.profile import load_profile
 from cfepy.status import UsageError
-from tests.house.tree import ROOT
+from dev.house.tree import ROOT
 
 HK = "CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 0;\n"
 

@@ -14,10 +14,10 @@ from typing import Any
 import numpy
 import pytest
 
+from dev.roscfe.random_messages import all_types
 from rospy_shim import genpy
 from rospy_shim.msgs import from_full_text, message_class
 from rospy_shim.msgs.classes import MessageClass
-from tests.roscfe.random_messages import all_types
 from tests.roscfe.test_fuzz import ANGLED, is_message, packets
 
 LINE = "\n" + "=" * 80 + "\nMSG: pkg/"

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from cfepy.mission import spec_of_node
+from dev.record.exchanges import RESPONSE, comparable
 from tests.viewers.rosbridge.bridged import Client, bridged_mission
-from tests.viewers.rosbridge.exchanges import RESPONSE, comparable
 
 DATA = Path(__file__).parents[2] / "data" / "rosbridge" / "exchanges.json"
 PEER = Path(__file__).parents[2] / "ros_nodes" / "rosbridge_peer.py"

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.reports.browser import Browser, find_browser
+from dev.pages.browser import Browser, find_browser
 from tests.viewers.robot import PATIENCE_S, robot
 
 pytestmark = pytest.mark.slow

@@ -1,0 +1,1 @@
+"""Programs for those who work on cfepy; docs/dev_programs.md lists them. Nothing here is part of the package."""

@@ -1,0 +1,1 @@
+"""Programs about compiled applications: NASA's own tests, NASA's answers, another kind of processor."""

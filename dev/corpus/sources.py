@@ -1,0 +1,118 @@
+"""The repositories that the nodes come from: fetching them, each at its commit, and finding them again.
+
+A repository is a folder "owner+name" below the folder of sources. Large files of no use to a node, such as meshes and
+pictures, are left out.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import subprocess
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from cfepy.status import UsageError
+from dev.corpus.scenarios import Program, Scenario
+
+GITHUB = "https://github.com/{repo}.git"
+ENVIRONMENT = "CFEPY_CORPUS_SOURCES"
+FETCH = "python -m dev.corpus fetch FOLDER"
+_LEFT_OUT = (".stl", ".obj", ".png", ".jpg", ".jpeg", ".gif", ".tif", ".svg", ".pdf", ".mp4", ".bag", ".pgm")
+_LARGEST = "300k"  # of the files that are asked of a server
+
+
+class Sources:
+    """A folder of sources.
+
+    Args:
+        folder: with the repositories in it.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.root = folder.absolute()
+
+    def folder(self, repo: str) -> Path:
+        """Where a repository is."""
+        return self.root / repo.replace("/", "+")
+
+    def script(self, program: Program) -> tuple[Path, str]:
+        """The folder of a program's package, or its repository when it is in none, and the script's path in it."""
+        root = self.folder(program.repo)
+        script = root / program.path
+        inside = [folder for folder in script.parents if folder.is_relative_to(root)]
+        package = next((folder for folder in inside if (folder / "package.xml").is_file()), root)
+        return package, str(script.relative_to(package))
+
+    def missing(self, scenario: Scenario) -> str:
+        """What a scenario lacks here, "" when it is complete."""
+        lacking = [repo for repo in scenario.repos if not self.folder(repo).is_dir()]
+        if lacking:
+            return f"no sources of {', '.join(lacking)} in {self.root}; run `{FETCH}`"
+        return self._fault_of(scenario.node, scenario.sha256)
+
+    def _fault_of(self, node: Program, sha256: str) -> str:
+        script = self.folder(node.repo) / node.path
+        if not script.is_file():
+            return f"{script} is not there; remove the repository's folder and run `{FETCH}`"
+        if hashlib.sha256(script.read_bytes()).hexdigest() != sha256:
+            return f"{script} is not the script that is meant: its SHA-256 is another one"
+        return ""
+
+    def fetch(self, repo: str, commit: str, mirrors: Path | None = None) -> bool:
+        """Get a repository at a commit, unless it is there already; whether it had to be got.
+
+        Args:
+            repo: "owner/name" on GitHub.
+            commit: its full name.
+            mirrors: a folder with bare repositories as owner+name/repo, to be used instead of GitHub.
+
+        Raises:
+            UsageError: git could not get it.
+        """
+        target = self.folder(repo)
+        if target.is_dir():
+            return False
+        with tempfile.TemporaryDirectory() as scratch:
+            bare = Path(scratch) if mirrors is None else mirrors / repo.replace("/", "+") / "repo"
+            if mirrors is None:
+                _download(GITHUB.format(repo=repo), commit, bare)
+            for name, content in _files(bare, commit):
+                file = target / name
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_bytes(content)
+        return True
+
+    def fetch_all(self, commits: Mapping[str, str], mirrors: Path | None = None) -> list[str]:
+        """Get all repositories that are not there yet; their names."""
+        return [repo for repo, commit in commits.items() if self.fetch(repo, commit, mirrors)]
+
+
+def _download(url: str, commit: str, bare: Path) -> None:
+    """The files of one commit, without its history, and without what is too large to be a program."""
+    _git(bare, "init", "--quiet", "--bare", ".")
+    _git(bare, "fetch", "--quiet", "--depth", "1", f"--filter=blob:limit={_LARGEST}", url, commit)
+
+
+def _files(bare: Path, commit: str) -> Iterator[tuple[str, bytes]]:
+    """Name and content of the files of a commit that a program may need."""
+    entries = _git(bare, "ls-tree", "-r", "-z", "--format=%(objecttype) %(objectname) %(path)", commit).decode()
+    names = [entry.split(" ", 2)[1:] for entry in entries.split("\0") if entry.startswith("blob ")]
+    wanted = [(blob, name) for blob, name in names if not name.lower().endswith(_LEFT_OUT)]
+    stream = io.BytesIO(_git(bare, "cat-file", "--batch", given="".join(f"{blob}\n" for blob, _ in wanted)))
+    for _, name in wanted:
+        about = stream.readline().split()
+        if about[-1] != b"missing":  # left out by the server for its size
+            yield name, stream.read(int(about[-1]))
+            stream.read(1)
+
+
+def _git(folder: Path, *arguments: str, given: str = "") -> bytes:
+    command = ["git", "-C", str(folder), *arguments]
+    environment = {**os.environ, "GIT_NO_LAZY_FETCH": "1"}
+    done = subprocess.run(command, input=given.encode(), env=environment, capture_output=True, check=False)
+    if done.returncode:
+        raise UsageError(f"git {' '.join(arguments[:4])}: {done.stderr.decode().strip()}", file=str(folder))
+    return done.stdout

@@ -1,0 +1,265 @@
+"""The figures of the house: how large its rooms are, what crosses their walls, which names stand for two things."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from typing import NamedTuple
+
+from dev.house.floors import wrong_arrows
+from dev.house.tree import Import, Module, Tree
+
+NAMES_OF_NODES: dict[str, str] = {
+    "Duration": "genpy's and rospy's",
+    "Time": "genpy's and rospy's",
+}
+"""Class names that ROS fixes, so that they may stand for more than one thing."""
+
+
+class Face(NamedTuple):
+    """Imports across packages of cfepy: past the face of the other, and through it."""
+
+    past: int
+    through: int
+
+
+class Room(NamedTuple):
+    """A package: its files, their lines, and how many of the lines are docstrings and imports at the head."""
+
+    name: str
+    files: int
+    lines: int
+    head: int
+
+
+def of_cfepy(tree: Tree) -> list[Module]:
+    """The modules of cfepy itself."""
+    return [module for name, module in tree.modules.items() if name.partition(".")[0] == "cfepy"]
+
+
+def rooms(tree: Tree) -> list[Room]:
+    """Packages by name; the modules beside them are one room."""
+    found: dict[str, list[Module]] = {}
+    for module in tree.modules.values():
+        top, _, rest = module.name.partition(".")
+        inside = top == "cfepy" and ((tree.root / top / module.part).is_dir() and bool(rest))
+        name = f"cfepy/{module.part}" if inside else "cfepy/*.py" if top == "cfepy" else top
+        found.setdefault(name, []).append(module)
+    return [
+        Room(name, len(those), sum(each.lines for each in those), sum(each.head for each in those))
+        for name, those in sorted(found.items())
+    ]
+
+
+def faces(tree: Tree) -> Face:
+    """How many pairs of modules of cfepy meet past the face of a package, and how many through it."""
+    past = through = 0
+    for module in of_cfepy(tree):
+        for name in tree.arrows(module):
+            target = tree.modules[name]
+            if target.name.partition(".")[0] != "cfepy" or target.part == module.part:
+                continue
+            if (tree.root / "cfepy" / target.part).is_dir():
+                face = f"cfepy.{target.part}"
+                past += name != face
+                through += name == face
+    return Face(past, through)
+
+
+def past_faces(tree: Tree) -> Counter[str]:
+    """Modules that are imported past the face of their package, with the number of those that do."""
+    found: Counter[str] = Counter()
+    for module in of_cfepy(tree):
+        for name in tree.arrows(module):
+            target = tree.modules[name]
+            if name.count(".") > 1 and name.startswith("cfepy.") and target.part != module.part:
+                found[name] += 1
+    return found
+
+
+def users(tree: Tree) -> dict[str, set[str]]:
+    """Each module with those that import it."""
+    found: dict[str, set[str]] = {name: set() for name in tree.modules}
+    for module in tree.modules.values():
+        for name in tree.arrows(module):
+            found[name].add(module.name)
+    return found
+
+
+def with_one_user(tree: Tree) -> list[Module]:
+    """Modules of cfepy that exactly one other imports, one of their own package; packages do not count as modules."""
+    imported = users(tree)
+    found = []
+    for module in of_cfepy(tree):
+        if len(imported[module.name]) == 1 and not module.is_package:
+            user = tree.modules[next(iter(imported[module.name]))]
+            if user.part == module.part and not user.is_package:
+                found.append(module)
+    return found
+
+
+def circles(tree: Tree, for_types: bool = False) -> list[list[str]]:
+    """Groups of modules that import each other in a circle, largest first.
+
+    Those that exist for type checkers alone are left out, unless they are asked for: then they are all there is.
+    """
+    running = _circles(tree, lambda imports: any(each.when != "for types" for each in imports))
+    return [each for each in _circles(tree, lambda _: True) if each not in running] if for_types else running
+
+
+def _circles(tree: Tree, counts: Callable[[list[Import]], bool]) -> list[list[str]]:
+    arrows = {
+        name: sorted(target for target, imports in tree.arrows(module).items() if counts(imports))
+        for name, module in tree.modules.items()
+    }
+    found = [sorted(group) for group in _strongly_connected(arrows) if len(group) > 1]
+    return sorted(found, key=lambda group: (-len(group), group))
+
+
+def _strongly_connected(arrows: dict[str, list[str]]) -> Iterator[list[str]]:
+    """Tarjan's algorithm, without recursion."""
+    number: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    for root in arrows:
+        work = [(root, iter(arrows[root]))] if root not in number else []
+        while work:
+            name, rest = work[-1]
+            if name not in number:
+                number[name] = low[name] = len(number)
+                stack.append(name)
+            for other in rest:
+                if other not in number:
+                    work.append((other, iter(arrows[other])))
+                    break
+                if other in stack:
+                    low[name] = min(low[name], number[other])
+            else:
+                work.pop()
+                if work:
+                    low[work[-1][0]] = min(low[work[-1][0]], low[name])
+                if low[name] == number[name]:
+                    at = stack.index(name)
+                    yield stack[at:]
+                    del stack[at:]
+
+
+def by_name(tree: Tree) -> list[tuple[str, str]]:
+    """Arrows that are hidden in a string: modules of cfepy that load one of another package by its name."""
+    return sorted(
+        (module.name, each.name)
+        for module in of_cfepy(tree)
+        for each in module.imports
+        if each.when == "by name" and each.module and tree.modules.get(each.module, module).part != module.part
+    )
+
+
+def names_twice(tree: Tree) -> dict[str, list[str]]:
+    """Public classes at the top of modules that have the same name, with the modules."""
+    found: dict[str, list[str]] = {}
+    for module in tree.modules.values():
+        for name in module.classes:
+            found.setdefault(name, []).append(module.name)
+    return {name: places for name, places in sorted(found.items()) if len(places) > 1}
+
+
+def class_names(tree: Tree) -> int:
+    """How many names of public classes there are."""
+    return len({name for module in tree.modules.values() for name in module.classes})
+
+
+def most_complex(tree: Tree, count: int = 10) -> list[tuple[int, str]]:
+    """The functions of highest complexity, with where they are."""
+    found = [
+        (function.complexity, f"{module.where}:{function.name}")
+        for module in tree.modules.values()
+        for function in module.functions()
+    ]
+    return sorted(found, key=lambda pair: (-pair[0], pair[1]))[:count]
+
+
+def offered(tree: Tree) -> list[str]:
+    """What `import cfepy` offers: `__all__`, or else the names that its module binds."""
+    names: list[str] = []
+    for node in tree.modules["cfepy"].tree.body:
+        if not isinstance(node, ast.Assign | ast.AnnAssign) or node.value is None:
+            continue
+        for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+            if isinstance(target, ast.Name) and target.id == "__all__" and isinstance(node.value, ast.List | ast.Tuple):
+                return [element.value for element in node.value.elts if isinstance(element, ast.Constant)]  # type: ignore[misc]
+            if isinstance(target, ast.Name) and (not target.id.startswith("_") or target.id == "__version__"):
+                names.append(target.id)
+    return names
+
+
+ABOUT_IMPORTS = re.compile(
+    r"\b(imports? (only|nothing|no[nt]|every)|imports? [^.]{0,60} only|(may|must not|can) import)",
+    re.IGNORECASE,
+)
+
+
+def sentences_about_imports(tree: Tree) -> list[str]:
+    """Modules whose docstring says what they import; the rule of the floors says it, and is tested."""
+    return [
+        module.name
+        for module in tree.modules.values()
+        if ABOUT_IMPORTS.search(" ".join((ast.get_docstring(module.tree) or "").split()))
+    ]
+
+
+def table(rows: Iterable[tuple[object, ...]], *titles: str) -> str:
+    """A table in Markdown."""
+    lines = [titles, *(("---",) * len(titles),), *rows]
+    return "".join(f"| {' | '.join(str(cell) for cell in line)} |\n" for line in lines)
+
+
+def report(tree: Tree) -> str:
+    """All figures as Markdown."""
+    modules = of_cfepy(tree)
+    lines = sum(module.lines for module in modules)
+    head = sum(module.head for module in modules)
+    alone = with_one_user(tree)
+    face = faces(tree)
+    rings, of_types = circles(tree), circles(tree, for_types=True)
+    hidden = by_name(tree)
+    twice = names_twice(tree)
+    told = sentences_about_imports(tree)
+    longest = sorted(modules, key=lambda module: -module.lines)[:5]
+    what = [
+        ("files and lines in `cfepy`", f"{len(modules):,}; {lines:,}"),
+        ("head (docstring and imports) of all lines", f"{100 * head / lines:.1f} %"),
+        ("modules imported by exactly one sibling", f"{len(alone)} ({sum(each.lines for each in alone):,} lines)"),
+        ("files below 60 lines, above 600", f"{_below(modules, 60)}, {sum(each.lines > 600 for each in modules)}"),
+        ("longest", ", ".join(f"`{each.where}` {each.lines}" for each in longest)),
+        ("imports past a package's face; through it", f"{face.past}; {face.through}"),
+        ("circles of imports, lazy ones included", "; ".join((str(len(rings)), *map(_ring, rings)))),
+        ("circles for type checkers alone", "; ".join((str(len(of_types)), *map(_ring, of_types)))),
+        ("imports up or of a peer", len(list(wrong_arrows(tree)))),
+        ("imports of other packages by name", f"{len(hidden)}, not readable: {_unread(tree)}"),
+        ("public class names that stand for two things", f"{len(twice)} of {class_names(tree)}: {', '.join(twice)}"),
+        ("what `import cfepy` offers", f"{len(offered(tree))}: {', '.join(offered(tree))}"),
+        ("module heads that say what is imported", len(told)),
+    ]
+    return "\n".join(
+        (
+            table(what, "what", "figure"),
+            table(
+                ((f"`{each.name}`", each.files, f"{each.lines:,}") for each in rooms(tree)), "room", "files", "lines"
+            ),
+            table(((f"`{where}`", number) for number, where in most_complex(tree)), "function", "complexity"),
+        )
+    )
+
+
+def _below(modules: list[Module], lines: int) -> int:
+    return sum(module.lines < lines and not module.is_package for module in modules)
+
+
+def _ring(names: list[str]) -> str:
+    return f"{len(names)}: {', '.join(names[:6])}{' ...' if len(names) > 6 else ''}"
+
+
+def _unread(tree: Tree) -> int:
+    return sum(len(module.unread) for module in tree.modules.values())

@@ -1,0 +1,85 @@
+"""The floors of the house, lowest first, and what breaks their order.
+
+A package imports only from floors below its own. Packages on one floor are peers and do not import each other, but for
+the modules at the bottom, which are one room.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from dev.house.tree import Tree
+
+FLOORS: tuple[tuple[str, ...], ...] = (
+    (
+        *("status", "ids", "units", "texts", "trace", "console", "config", "config_api", "ports", "core_app"),
+        *("versions", "resources", "input_limits", "input_files", "contained_files", "plain_yaml", "marked_yaml"),
+        *("plain_xml", "suggestions", "faces", "cached", "markup", "escapes", "garbage", "syntax_trees", "own_code"),
+        *("host_system", "child_pipes", "compiled", "early_end"),
+    ),
+    ("rtos",),
+    ("osal",),
+    ("psp", "msg", "fs"),
+    ("es", "sb", "evs", "time", "tbl"),
+    ("app", "attachment"),
+    ("nodes", "c"),
+    ("rospy_shim", "apps"),
+    ("mission",),
+    ("convert",),
+    ("ground",),
+    ("monitors",),
+    ("script", "faults"),
+    ("pilot",),
+    ("journal",),
+    ("io",),
+    ("ros_host", "viewers", "exploration", "reports", "debugger"),
+    ("flight",),
+    ("testing",),
+    ("cli", "__main__"),
+    ("__init__",),  # the face of the whole: what a user of the library imports
+)
+LEVEL = {part: level for level, floor in enumerate(FLOORS) for part in floor}
+GROUND_FLOOR = 0
+
+PEERS_THAT_MEET: dict[tuple[str, str], str] = {
+    ("__main__", "cli"): "`python -m cfepy` is the command",
+}
+"""Who may import a peer, and why."""
+
+APPS_STAND_ON = "app"
+"""Apps see cFE as their handle shows it: nothing above this part, though they stand on a higher floor."""
+
+
+class Arrow(NamedTuple):
+    """An import from one module to another, and where it is."""
+
+    source: str
+    target: str
+    where: str
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.source} imports {self.target}"
+
+
+def allowed(source: str, target: str) -> bool:
+    """Whether a part may import another."""
+    if source == target or (source, target) in PEERS_THAT_MEET:
+        return True
+    top = LEVEL[APPS_STAND_ON] if source == "apps" else LEVEL[source]
+    if LEVEL[source] == LEVEL[target] == GROUND_FLOOR:
+        return True
+    return LEVEL[target] < top or (source == "apps" and LEVEL[target] == top)
+
+
+def wrong_arrows(tree: Tree) -> Iterator[Arrow]:
+    """Imports that go up or to a peer."""
+    for module in tree.modules.values():
+        for name, imports in tree.arrows(module).items():
+            if not allowed(module.part, tree.modules[name].part):
+                yield Arrow(module.name, name, f"{module.where}:{imports[0].line}")
+
+
+def homeless(tree: Tree) -> list[str]:
+    """Parts that have no place on a floor."""
+    return sorted({module.part for module in tree.modules.values()} - set(LEVEL))

@@ -1,0 +1,205 @@
+"""Writes docs/api_map.md: every public function of cFE, OSAL and PSP 7.0.0, its name here, and whether it is the same.
+
+    python -m dev.pages.api_map
+
+NASA's names are in tests/data/api, one file for each module; api_names.py knows what they are called here. What differs
+and what is absent is read from the tables of docs/differences.md: a name that a row mentions differs as that row says,
+or is absent for its reason. So nothing is said twice, and a name that is nowhere is missing. What compiled applications
+can call is read from the declarations of `cfepy.c.api`, for which the engine is built.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import re
+from collections.abc import Iterator
+from fnmatch import fnmatchcase
+from itertools import groupby
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
+
+from cfepy.c.api import function_names
+from cfepy.console import Console
+from cfepy.mission import Mission
+from dev.pages.api_names import python_name
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "api_map.md"
+DIFFERENCES = ROOT / "docs" / "differences.md"
+LISTS = ROOT / "tests" / "data" / "api"
+MODULES = ("ES", "EVS", "SB", "TBL", "TIME", "FS", "MSG", "SBR", "ResourceId", "Config", "osal", "psp")
+TITLES = {"osal": "OSAL", "psp": "PSP"}
+NAME = re.compile(r"\b(?:CFE|OS)_\w+\*?")
+NO_REASON = "not yet"
+NOT_OF_PYTHON = ("ROS", "Compiled applications")
+"""Sections that say nothing of NASA's functions as Python calls them."""
+
+HEAD = """\
+# API map
+
+Every public function and macro of NASA's cFE, OSAL and PSP 7.0.0 and its name here. `cfe` is the handle that an
+application's main function gets; `cfepy` a module to import. Everywhere failed calls raise and output pointers became
+return values. A function differs beyond that when a row of [differences.md](differences.md) names it; the last column
+leads there. C says what a [compiled application](c_apps.md) finds: `call`, a function; `header`, a macro or an inline
+function, which the application has inside; `core`, a function that no header for applications declares, and that only
+NASA's core calls. `python -m dev.pages.api_map` writes this page anew, and a test fails when it is stale or when a name
+is in neither place.
+"""
+
+CALL, HEADER, CORE, MISSING = "call", "header", "core", "missing"
+OF_THE_CORE = ("CFE_ES_Main", "CFE_SBR_*")
+"""Of core_private, or called once by the PSP: NASA's applications do not see them."""
+
+
+class Difference(NamedTuple):
+    """A row of docs/differences.md: section, names it mentions ("OS_Foo*" for all that begin so), and reason."""
+
+    section: str
+    names: tuple[str, ...]
+    reason: str
+
+    def mentions(self, name: str) -> bool:
+        """Whether the row is about a name."""
+        return any(fnmatchcase(name, pattern) for pattern in self.names)
+
+
+class Entry(NamedTuple):
+    """One function: NASA's header and name, the name here, whether an object stands behind that; what C finds."""
+
+    header: str
+    name: str
+    python: str
+    exists: bool
+    difference: Difference | None
+    c: str = CALL
+
+    @property
+    def is_missing(self) -> bool:
+        """Neither here nor explained."""
+        return not self.exists and (self.difference is None or self.difference.reason == NO_REASON)
+
+    @property
+    def shown(self) -> str:
+        """The second column: the name here, if there is something behind it."""
+        return f"`{self.python}`" if self.exists else ""
+
+    @property
+    def status(self) -> str:
+        """The last column."""
+        row = self.difference
+        if self.is_missing or row is None:
+            return "same" if self.exists else "missing"
+        link = f"differences.md#{_anchor(row.section)}"
+        return f"[differs]({link})" if self.exists else f"[absent]({link}): {row.reason}"
+
+
+def listed(module: str) -> Iterator[tuple[str, str, bool]]:
+    """(header, name, whether the header has it inside) of all that a module's headers declare, each once."""
+    header, seen = "", set[str]()
+    for line in (LISTS / f"api_{module}.txt").read_text(encoding="utf-8").splitlines():
+        if line.startswith("#"):
+            header = line.partition(":")[0].rpartition("/")[2]
+        elif (name := line.split()[0]) not in seen:
+            seen.add(name)
+            yield header, name, line.rstrip().endswith(")")
+
+
+def differences() -> list[Difference]:
+    """The rows of docs/differences.md that mention names."""
+    found, section = [], ""
+    for line in DIFFERENCES.read_text(encoding="utf-8").splitlines():
+        if line.startswith("## "):
+            section = line.removeprefix("## ")
+        elif line.startswith("|") and not section.startswith(NOT_OF_PYTHON) and (names := NAME.findall(line)):
+            found.append(Difference(section, tuple(names), line.strip("| ").rpartition("|")[2].strip()))
+    return found
+
+
+def resolve(dotted: str, cfe: Any) -> Any:
+    """The object behind a Python name of the map; None when there is none."""
+    first, *rest = dotted.split(".")
+    found = cfe
+    if first == "cfepy":
+        try:
+            found = importlib.import_module(f"cfepy.{rest.pop(0)}")
+        except ModuleNotFoundError:
+            return None
+    for part in rest:
+        found = getattr(found, part, None)
+    return found
+
+
+def entries(module: str, cfe: Any) -> list[Entry]:
+    """All that a module's headers declare, as it stands here."""
+    rows, functions = differences(), function_names()
+    return [
+        Entry(
+            header,
+            name,
+            python_name(name),
+            callable(resolve(python_name(name), cfe)),
+            next((row for row in rows if row.mentions(name)), None),
+            _in_c(name, is_inside, functions),
+        )
+        for header, name, is_inside in listed(module)
+    ]
+
+
+def _in_c(name: str, is_inside: bool, functions: set[str]) -> str:
+    """What a compiled application finds under a name."""
+    if name in functions:
+        return CALL
+    if is_inside:
+        return HEADER
+    return CORE if any(fnmatchcase(name, pattern) for pattern in OF_THE_CORE) else MISSING
+
+
+def booted() -> Mission:
+    """A mission of core services alone, after its boot."""
+    with TemporaryDirectory() as folder:
+        Path(folder, "startup.scr").write_text("! nothing\n", encoding="utf-8")
+        mission = Mission(folder, console=Console(quiet=True))
+        mission.run_for(1)
+    return mission
+
+
+def page(cfe: Any) -> str:
+    """The text of docs/api_map.md."""
+    sections = {TITLES.get(module, module): entries(module, cfe) for module in MODULES}
+    lines = [HEAD, "| module | names | same | differ | absent | called in C |", "|---|---|---|---|---|---|"]
+    lines += [f"| [{title}](#{_anchor(title)}) | {_counts(rows)} |" for title, rows in sections.items()]
+    for title, rows in sections.items():
+        lines += ["", f"## {title}"]
+        for header, group in groupby(rows, key=lambda row: row.header):
+            lines += ["", f"{header}:", "", "| NASA | cfepy | C | |", "|---|---|---|---|"]
+            lines += [f"| {row.name} | {row.shown} | {row.c} | {row.status} |" for row in group]
+    return "\n".join(lines) + "\n"
+
+
+def _anchor(heading: str) -> str:
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+def _counts(rows: list[Entry]) -> str:
+    same = sum(row.status == "same" for row in rows)
+    there = sum(row.exists for row in rows)
+    called = sum(row.c == CALL for row in rows)
+    return f"{len(rows)} | {same} | {there - same} | {len(rows) - there} | {called}"
+
+
+def main() -> None:
+    """Write the page, and tell what is missing."""
+    argparse.ArgumentParser(prog="python -m dev.pages.api_map", description=__doc__).parse_args()
+    with booted() as mission:
+        PAGE.write_text(page(mission.cfe), encoding="utf-8")
+        for module in MODULES:
+            rows = entries(module, mission.cfe)
+            missing = [f"{row.name} ({row.python})" for row in rows if row.is_missing]
+            missing += [f"{row.name} (in C)" for row in rows if row.c == MISSING]
+            print(f"{module}: {len(missing)} missing", *missing, sep="\n  ")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,86 @@
+"""`python -m dev.peers`: fetch public test files of ROS packages, run them, report what came of it."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from cfepy.status import UsageError
+from dev.corpus.sources import Sources
+from dev.peers.flight import Verdict, run
+from dev.peers.peers import Peers, read_peers
+from dev.peers.report import PAGE, row, write_page
+
+ENVIRONMENT = "CFEPY_PEERS_SOURCES"
+
+
+def main() -> int:
+    """Do what the command line says; the exit status."""
+    arguments = _parser().parse_args()
+    try:
+        status: int = arguments.action(arguments, read_peers())
+    except UsageError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return status
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m dev.peers", description=__doc__)
+    actions = parser.add_subparsers(required=True)
+    fetch = actions.add_parser("fetch", help="get the sources from GitHub, each repository at its commit")
+    fetch.add_argument("folder", type=Path)
+    fetch.add_argument("--mirrors", type=Path, help="folder with bare repositories as owner+name/repo")
+    fetch.set_defaults(action=_fetch)
+    for name, action in (("run", _run), ("report", _report)):
+        sub = actions.add_parser(name, help=(action.__doc__ or "").splitlines()[0])
+        sub.add_argument("names", nargs="*", metavar="NAME", help="test files, or how their names begin; else all")
+        sub.add_argument("--sources", type=Path, default=os.environ.get(ENVIRONMENT), help=f"default: ${ENVIRONMENT}")
+        sub.add_argument("--jobs", type=int, default=1, help="how many at a time")
+        sub.add_argument("--verbose", action="store_true", help="show what failing tests say")
+        sub.set_defaults(action=action)
+    return parser
+
+
+def _fetch(arguments: argparse.Namespace, peers: Peers) -> int:
+    """Get the sources."""
+    for repo in Sources(arguments.folder).fetch_all(peers.commits, arguments.mirrors):
+        print(repo)
+    return 0
+
+
+def _run(arguments: argparse.Namespace, peers: Peers) -> int:
+    """Run test files and say what came of them."""
+    verdicts = _verdicts(arguments, peers)
+    good = sum(verdict.good for verdict in verdicts)
+    print(f"{good} of {len(verdicts)} files pass as on ROS; {sum(each.passed for each in verdicts)} tests passed")
+    return 0 if good == len(verdicts) else 1
+
+
+def _report(arguments: argparse.Namespace, peers: Peers) -> int:
+    """Run test files and write the page about them."""
+    write_page(peers, _verdicts(arguments, peers))
+    print(PAGE)
+    return 0
+
+
+def _verdicts(arguments: argparse.Namespace, peers: Peers) -> list[Verdict]:
+    if arguments.sources is None:
+        how = f"say where the sources are: --sources FOLDER, or {ENVIRONMENT}; `python -m dev.peers fetch` gets them"
+        raise UsageError(how)
+    sources, verdicts = Sources(Path(arguments.sources)), []
+    with ThreadPoolExecutor(arguments.jobs) as pool:
+        for verdict in pool.map(lambda peer: run(peer, sources), peers.chosen(arguments.names)):
+            print(row(verdict), flush=True)
+            if arguments.verbose:
+                for name, said in verdict.failing.items():
+                    print(f"--- {name}\n{said}")
+            verdicts.append(verdict)
+    return verdicts
+
+
+if __name__ == "__main__":
+    sys.exit(main())

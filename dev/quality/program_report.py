@@ -1,0 +1,188 @@
+"""The table of further programs: what was measured of each, kept in a file, and the page made of it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from cfepy.exploration import verdict
+from cfepy.rtos import Schedule
+from dev.quality import mended
+from dev.quality.measure import Median, hunts, median
+from dev.quality.programs import PROGRAMS, Program, program_trial
+
+MEASURED = Path(__file__).parent / "measured_programs.json"
+PAGE = Path(__file__).parents[2] / "docs" / "benchmarks_exploration.md"
+DEFAULT = "all"
+SCHEDULES = 200
+MOST = 10_000  # of the one search that anyone can repeat
+TRIALS = 3
+FOUND, MEDIAN, RACES = "found", "median", "races"
+
+Measured = dict[str, dict[str, Any]]
+"""By program: the first schedule that fails, or None, what `Median` is made of, whether a race is told."""
+
+
+def load() -> Measured:
+    """What has been measured so far."""
+    measured: Measured = json.loads(MEASURED.read_text(encoding="utf-8")) if MEASURED.is_file() else {}
+    return measured
+
+
+def measure(names: list[str]) -> None:
+    """Measure what is missing, one after the other, then write the page.
+
+    Args:
+        names: of the programs; all of them when empty.
+    """
+    measured = load()
+    wanted = [program for program in PROGRAMS if not names or program.name in names]
+    for column in (FOUND, MEDIAN, RACES):
+        for program in wanted:
+            if column not in measured.get(program.name, {}):
+                value = _measured(column, program)
+                measured.setdefault(program.name, {})[column] = value
+                ordered = {each.name: measured[each.name] for each in PROGRAMS if each.name in measured}
+                MEASURED.write_text(json.dumps(ordered, indent=1) + "\n", encoding="utf-8")
+                print(f"{program.name}: {column}: {value}", flush=True)
+    write(measured)
+
+
+def write(measured: Measured) -> None:
+    """Write the page, if nothing is missing."""
+    if complete(measured):
+        PAGE.write_text(page(measured), encoding="utf-8")
+
+
+def _measured(column: str, program: Program) -> Any:
+    """One cell."""
+    if column == FOUND:
+        return first_failing(program, MOST)
+    if column == MEDIAN:
+        return median(program_trial(program), DEFAULT, TRIALS, TRIALS * SCHEDULES).to_dict()
+    return tells_race(program)
+
+
+def first_failing(program: Program, most: int) -> int | None:
+    """Which schedule of the default policy, counted from 1, is the first that shows the mistake; None for none.
+
+    Args:
+        program: it.
+        most: schedules.
+    """
+    (hunt,) = hunts(program_trial(program), DEFAULT, 1)
+    for number in range(1, most + 1):
+        found = hunt.step()
+        assert found is not None
+        if found.failed:
+            assert found.failures[0].kind in program.kinds, found.failures
+            return number
+    return None
+
+
+def tells_race(program: Program) -> bool:
+    """Whether one run under fifo with `--races` tells of a data race."""
+    trial = program_trial(program)
+    failures = replace(trial, plan=replace(trial.plan, races=True)).run(Schedule()).failures
+    return any(failure.kind == verdict.RACE for failure in failures)
+
+
+# -- what it comes to ------------------------------------------------------------------------------------------------
+
+
+def complete(measured: Measured) -> bool:
+    """Whether every cell has been measured."""
+    return all(set(measured.get(program.name, {})) == {FOUND, MEDIAN, RACES} for program in PROGRAMS)
+
+
+def missed(measured: Measured) -> list[Program]:
+    """Programs whose mistake none of the first SCHEDULES shows."""
+    return [program for program in PROGRAMS if (measured[program.name][FOUND] or MOST) > SCHEDULES]
+
+
+def page(measured: Measured) -> str:
+    """The page of documentation."""
+    heads = ["program", "in", "written after", "shows as", "needs", "first", "median", "`--races`", "published"]
+    lines = ["|".join(["", *heads, ""]), "|".join(["", *["---"] * len(heads), ""])]
+    lines += [_row(measured[program.name], program) for program in PROGRAMS]
+    not_found = missed(measured)
+    return _PAGE.format(
+        count=len(PROGRAMS),
+        others=sum(bool(program.origin) for program in PROGRAMS),
+        trials=TRIALS,
+        schedules=SCHEDULES,
+        found=len(PROGRAMS) - len(not_found),
+        later=sum(measured[program.name][FOUND] is not None for program in PROGRAMS),
+        most=MOST,
+        often=sum(Median(**each[MEDIAN]).found for each in measured.values()),
+        missed=", ".join(f"`{program.name}`" for program in not_found) or "none",
+        mended=mended.sentence([program.name for program in PROGRAMS]),
+        table="\n".join(lines),
+    )
+
+
+def _row(known: dict[str, Any], program: Program) -> str:
+    asked = f"`{program.asked()}`" if program.asked() else ""
+    shows = " or ".join(program.kinds)
+    cells = [f"`{program.name}`: {program.text}", program.world, program.origin, shows, asked]
+    return "|".join(
+        [
+            "",
+            *cells,
+            _number(known[FOUND]),
+            str(Median(**known[MEDIAN])),
+            "yes" if known[RACES] else "",
+            program.published,
+            "",
+        ]
+    )
+
+
+def _number(found: int | None) -> str:
+    return f"> {MOST}" if found is None else str(found)
+
+
+_PAGE = """# Programs that others try
+
+<!-- made by `python -m dev.quality programs`; change the code in dev/quality instead -->
+
+Tools that search schedules are compared by programs with one known mistake each: SCTBench has the most, CHESS, Coyote
+and shuttle have some in their papers and documents, and there are the protocols that every course on TLA+ begins with.
+`tests/quality/missions` has {others} of that kind, written anew as ROS nodes and cFE applications, with threads, locks
+and messages as they are there, and further races of such software: {count} in all, besides the
+[planted bugs](planted_bugs.md). Each has a mended form.
+
+"first" is the first schedule that shows the mistake when `cfepy explore` is given no `--policy`: one search, which
+anyone can repeat. "median" is that of {trials} searches with seeds of their own. `> {schedules}` says that so many
+showed nothing, in the median to half of the searches or more. "needs" is what the command is given besides: points
+between calls, less urgent tasks first, or a fault whose instant is explored. "`--races`" says whether a single run
+under `fifo` tells of a data race in it. "published" has what its authors' records say of the original: in how many runs
+Maple found it (Yu, Narayanasamy, Pereira, Pokam: OOPSLA 2012), or had not when it had nothing left to try, from
+mapleRes.txt among the benchmarks of the repository mc-imperial/sctbench. It is empty where nothing comparable is known.
+
+The first search finds {found} of {count} within {schedules} schedules and {later} within {most:,}; in the median
+{often} are found within {schedules}. The first one does not find {missed} within {schedules}.
+
+{mended}.
+
+{table}
+
+What keeps some away: of twenty threads, as `two_stages_many` has them, two have to overlap in one way while no other
+has come as far; `lock_free_stack` needs five switches, each at one of a few places among 150. `safe_stack` needs as
+many, and came down from over 200 schedules when `random` got long stretches of one task for `--points`. What helped
+the others: Python's own `threading` had a dozen points where a thread is started or joined, so there were 40
+decisions in `bank_account` under `fifo` where there are 14 now, and `abreast` lets threads go on side by side once all
+are there, also two or three of them that do different things.
+
+SCTBench is that of Thomson, Donaldson and Betts: Concurrency Testing Using Schedule Bounding: an Empirical Study (PPoPP
+2014); with 49 of its programs they found that PCT of depth 3 misses only one bug (Concurrency Testing Using Controlled
+Schedulers: An Empirical Study, ACM TOPC 2016).
+
+To look for one of them as a user would:
+
+```
+cfepy explore tests/quality/missions/reorder_three --for 1.3 --points attributes
+```
+"""

@@ -1,0 +1,190 @@
+"""More planted bugs: the programs by which others try their searches of schedules, written anew, and further races.
+
+They are measured with the default policy alone, as one flies `cfepy explore` first, and stand in a page of their own.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from cfepy.exploration import verdict
+from cfepy.exploration.stuck import waits_of
+from cfepy.exploration.trial import Trial
+from cfepy.pilot.plan import RunPlan
+from cfepy.rtos import Schedule
+from cfepy.units import NS_PER_S
+from dev.quality.bugs import CFE, ROS, SECONDS, Bug
+
+POINTS = "at:points=attributes"
+RAISED, DEADLOCK, STUCK = (verdict.RAISED,), (verdict.DEADLOCK,), (verdict.STUCK, verdict.DEADLOCK)
+INVARIANT, EVENT = (verdict.INVARIANT,), (verdict.EVENT,)
+MAPLE = {
+    "bank_account": 20,
+    "reorder_three": -10,
+    "reorder_ten": -11,
+    "two_stages": 8,
+    "two_stages_many": -11,
+    "wrong_lock": 6,
+    "carter": 6,
+    "deadlock_two": -7,
+    "philosophers_three": 1,
+    "philosophers_six": 1,
+    "circular_buffer": -17,
+    "shared_stack": -10,
+    "lazy_sum": 1,
+    "token_ring": 5,
+    "driver_stop": -11,
+    "signal_once": 1,
+    "file_blocks": 1,
+    "text_buffer": 9,
+    "closed_queue": 4,
+    "missing_barrier": 1,
+    "safe_stack": -23,
+    "work_stealing": -12,
+}
+"""Runs in which Maple, which looks for idioms of interleaving, found the originals; below zero: not in so many."""
+
+
+@dataclass(frozen=True, slots=True)
+class Program(Bug):
+    """A mission with a mistake that others know.
+
+    Attributes:
+        origin: who tries what with a program of this kind, and its name there; empty for one of our own.
+        options: of all schedules, as behind a schedule's kind: `at` with options.
+        hangs: it fails whoever goes first, under fifo, too.
+        bound: how many preemptions the original needs, as SCTBench's authors found; empty where they do not say.
+    """
+
+    origin: str = ""
+    options: str = "at"
+    hangs: bool = False
+    bound: str = ""
+
+    @property
+    def published(self) -> str:
+        """What is known of the original; empty where nothing is."""
+        runs = MAPLE.get(self.name, 0)
+        maple = f"Maple {runs}" if runs > 0 else f"Maple > {-runs}" if runs else ""
+        return ", ".join(each for each in (maple, self.bound) if each)
+
+    def asked(self) -> str:
+        """What `cfepy explore` is given, besides the mission and `--for`."""
+        options = Schedule.parse(self.options)
+        words = [f"--points {options.points}"] if options.points else []
+        words += ["--any-priority"] if options.any_priority else []
+        words += ["--faults faults.yaml"] if (self.folder / "faults.yaml").is_file() else []
+        return " ".join(words)
+
+
+PROGRAMS = (
+    Program("bank_account", ROS, "each access has the lock, not both together", origin="SCTBench: account_bad"),
+    Program(
+        "reorder_three", ROS, "a pair is read half written", RAISED, origin="SCTBench: reorder_3_bad", options=POINTS
+    ),
+    Program(
+        "reorder_ten", ROS, "the same, with nine who write", RAISED, origin="SCTBench: reorder_10_bad", options=POINTS
+    ),
+    Program("two_stages", ROS, "a reader comes between two stages", RAISED, origin="SCTBench: twostage_bad"),
+    Program(
+        "two_stages_many",
+        ROS,
+        "the same, with 19 who work",
+        RAISED,
+        origin="SCTBench: twostage_100_bad, of 20 threads",
+    ),
+    Program("wrong_lock", ROS, "one counter, two locks", origin="SCTBench: wronglock_bad"),
+    Program("carter", ROS, "two locks in two orders, by one who counts", DEADLOCK, origin="SCTBench: carter01_bad"),
+    Program("deadlock_two", ROS, "each transfer locks its source first", DEADLOCK, origin="SCTBench: deadlock01_bad"),
+    Program("philosophers_three", ROS, "all take the left fork", DEADLOCK, origin="SCTBench: din_phil3_sat"),
+    Program("philosophers_six", ROS, "all six take the left fork", DEADLOCK, origin="SCTBench: din_phil6_sat"),
+    Program(
+        "circular_buffer",
+        ROS,
+        "counted before it is written",
+        (verdict.ENDED,),
+        origin="SCTBench: circular_buffer_bad",
+        options=POINTS,
+    ),
+    Program("shared_stack", ROS, "looked at without the lock", RAISED, origin="SCTBench: stack_bad", options=POINTS),
+    Program("lazy_sum", ROS, "nobody waits for the inspector", RAISED, origin="SCTBench: lazy01_bad"),
+    Program("token_ring", ROS, "stations do not wait for the token", origin="SCTBench: token_ring_bad"),
+    Program(
+        "driver_stop",
+        ROS,
+        "a request enters a driver that stops",
+        RAISED,
+        origin="SCTBench: bluetooth_driver_bad",
+    ),
+    Program("signal_once", ROS, "a signal before the wait for it", STUCK, origin="SCTBench: sync01_bad"),
+    Program("file_blocks", ROS, "a block is found free without its lock", RAISED, origin="SCTBench: fsbench_bad"),
+    Program("text_buffer", ROS, "a text is shorter than it was", RAISED, origin="SCTBench: stringbuffer-jdk1.4"),
+    Program("closed_queue", ROS, "a queue goes before its user", RAISED, origin="SCTBench: pbzip2-0.9.4"),
+    Program("missing_barrier", ROS, "one barrier too few", origin="SCTBench: streamcluster"),
+    Program(
+        "safe_stack",
+        ROS,
+        "a stack without locks, of depth 5",
+        RAISED
+        + STUCK,  # a cell that has two owners, or a chain that leads nowhere, at which those who pop try for ever
+        origin="SCTBench: safestack",
+        options=POINTS,
+        bound="5 preemptions",
+    ),
+    Program("work_stealing", ROS, "the tail is moved too late", origin="CHESS: work-stealing queue", options=POINTS),
+    Program("promise", ROS, "kept between look and wait", STUCK),
+    Program("state_machine", ROS, "one transition does not look again", RAISED),
+    Program("account_manager", ROS, "looked for, then made", origin="Coyote: AccountManager"),
+    Program(
+        "blocking_queue", ROS, "one condition for two reasons to wait", STUCK, origin="Coyote: BoundedBuffer; TLA+"
+    ),
+    Program("leader_election", ROS, "a lost claim makes two leaders", INVARIANT, origin="Coyote: Raft, two leaders"),
+    Program("published_early", ROS, "a value is looked at before the join", origin="shuttle: the first example"),
+    Program("lock_free_stack", ROS, "ABA in a stack", RAISED, options=POINTS),
+    Program("double_checked", ROS, "seen before it is complete", RAISED),
+    Program("peterson", ROS, "turn before flag", RAISED, origin="TLA+: Peterson", options=POINTS),
+    Program("dekker", ROS, "looked, then said", RAISED, origin="TLA+: Dekker", options=POINTS),
+    Program("bakery", ROS, "nobody says that he chooses", RAISED, origin="TLA+: bakery", options=POINTS),
+    Program(
+        "readers_writer",
+        ROS,
+        "readers count without a lock",
+        RAISED + STUCK,  # a lost count leaves the pen taken
+        origin="TLA+: readers and writers",
+        options=POINTS,
+    ),
+    Program("vote", ROS, "a vote is given before it is kept, then a crash", INVARIANT, origin="TLA+: Raft"),
+    Program(
+        "two_phase_commit",
+        ROS,
+        "decided before it is kept, then a crash",
+        INVARIANT,
+        origin="TLA+: two-phase commit",
+    ),
+    Program("shutdown_hook", ROS, "a hook closes what a callback writes to", RAISED),
+    Program("service_circle", ROS, "each asks the other with its lock held", RAISED + DEADLOCK, hangs=True),
+    Program("torn_command", ROS, "a timer sends half of a command", RAISED, options=POINTS),
+    Program("priority_inversion", CFE, "a semaphore that does not inherit", (verdict.DEADLINE,)),
+    Program("startup_order", CFE, "settings are sent before the startup sync", EVENT),
+    Program("command_counters", CFE, "two tasks count in one line", EVENT, options=POINTS),
+    Program("urgent_child", CFE, "an urgent task is trusted to be first", EVENT, options="at:any"),
+)
+
+
+@functools.cache
+def program_trial(program: Program, folder: Path | None = None, tasks: str = "greenlet") -> Trial:
+    """The trial that exploring a program makes, in which nobody may wait for ever.
+
+    Args:
+        program: it.
+        folder: of a mended form; None for the program's own.
+        tasks: what tasks run on.
+    """
+    own = folder or program.folder
+    faults = own / "faults.yaml"
+    options = Schedule.parse(program.options)
+    plan = RunPlan((str(own),), seconds=SECONDS, tasks=tasks, faults=str(faults) if faults.is_file() else None)
+    waits = waits_of(plan, round(SECONDS * NS_PER_S), options.policy())
+    return Trial(replace(plan, schedule=options), waits=waits, keep_widths=True)

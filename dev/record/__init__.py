@@ -1,0 +1,1 @@
+"""Programs that put on record what real ROS does."""

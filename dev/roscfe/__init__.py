@@ -1,0 +1,1 @@
+"""Programs about the interface library: probes beside roscpp, messages to C++ and back."""
