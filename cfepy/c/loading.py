@@ -103,7 +103,6 @@ class CompiledCode:
         self._data = data
 
     def main(self, symbol: str, app_name: str) -> Callable[[], object]:
-        """See `Code.main`."""
         runtime = self._loader.runtime
         image = self._loader.load(self._file, self._data)
         runtime.applications[app_name] = image
@@ -128,5 +127,4 @@ class CompiledCode:
         return LoadedCode(image), init
 
     def module(self, owner: str) -> object:
-        """See `Code.module`."""
         return LoadedCode(self._loader.load(self._file, self._data))

@@ -103,7 +103,6 @@ class WatchedHost(Host):
 
     @property
     def asked(self) -> bool:
-        """See `Host.asked`."""
         return self._interrupts.asked
 
     def __enter__(self) -> WatchedHost:
@@ -132,7 +131,6 @@ class WatchedHost(Host):
             self.pace(self._realtime)
 
     def step(self, until_ns: int) -> None:
-        """See `Host.step`."""
         self._go(until_ns)
         self._pause()
         try:
@@ -162,7 +160,6 @@ class WatchedHost(Host):
         os._exit(INTERRUPTED if self.asked else FOUND_PROBLEMS)
 
     def end(self) -> None:
-        """See `Host.end`."""
         if self._viewers is not None:
             self._viewers.close()
         self._bridge.close()

@@ -50,7 +50,6 @@ class MissionAction(argparse.Action):
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option_string: Any = None
     ) -> None:
-        """See `argparse.Action`."""
         setattr(namespace, self.dest, values)
 
 

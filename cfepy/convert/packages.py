@@ -381,7 +381,6 @@ class _CatkinReader(CMakeScript):
         _add(found, more)
 
     def command(self, name: str, words: list[str]) -> None:
-        """See `CMakeScript.command`."""
         match name, words:
             case "project", [project, *_]:
                 self.variables["PROJECT_NAME"] = [project]

@@ -448,7 +448,6 @@ class OrderSearch:
         return OrdersSeen(self.orders, is_complete, self._depth, self.astray, self.timed, self.has_ends)
 
     def next(self) -> Schedule | None:
-        """See `cfepy.exploration.campaign.Search`."""
         if not self._ready and not self._away:
             self._fill()
         if not self._ready:

@@ -61,11 +61,9 @@ class ResultWatch(Attachment):
             raise UsageError(error.text, file=spec.mission_file, field="results") from None
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         return self._watch.bus(base)
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
         self._watch.begin(mission)
 

@@ -79,11 +79,9 @@ class SystematicSearch:
         self._tree = DepthFirst(depth, depth, options)
 
     def next(self) -> Schedule | None:
-        """See `cfepy.exploration.campaign.Search`."""
         return self._tree.next()
 
     def tell(self, number: int, verdict: Verdict) -> None:
-        """See `cfepy.exploration.campaign.Search`."""
         widths = [abs(width) for width in verdict.widths]
         self._tree.learn(verdict.schedule, widths, [width < 0 for width in verdict.widths])
 

@@ -87,7 +87,6 @@ class WaitWatch(Attachment):
         return wrapping(base, {"block": self._blocking})
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
         mission.kernel.frames_wanted = True
 

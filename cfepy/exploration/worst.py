@@ -52,7 +52,6 @@ class MeasuredTrial(Trial):
     limit_ns: int = 0
 
     def fly(self, schedule: Schedule, attachments: Sequence[Attachment] = (), policy: Policy | None = None) -> Tried:
-        """See `Trial.fly`."""
         noted = NotingPolicy(schedule.policy() if policy is None else policy)
         at: list[int] = [0]
 
@@ -115,7 +114,6 @@ class WorstSearch:
         return found
 
     def tell(self, number: int, verdict: Verdict) -> None:
-        """See `cfepy.exploration.campaign.Search`."""
         self._told += 1
         self._seeded.tell(number, verdict)
         self._learn(number, verdict)

@@ -92,8 +92,6 @@ class _Answers(Attachment):
         self._answers = list(reversed(answers))
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
-
         def dial(source: Place, target: Place) -> Stream | None:
             values = self._answers.pop().values if self._answers else (*source, *target, False)
             ends = mission.outside.answer(source, target, tuple(values) == (*source, *target, True))
@@ -356,7 +354,6 @@ class Checker(Attachment):
         self._trace: Trace
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._trace = mission.trace
         self._trace.also(self._take)
 

@@ -64,7 +64,6 @@ class NodeScripts(Finder):
         self._node_main = node_main
 
     def find(self, file: str, symbol: str | None) -> Code | None:
-        """See `Finder.find`."""
         if symbol != NODE_SYMBOL:
             return None
         script = self._script_of(file) or find_node(file, self._folder)
@@ -170,7 +169,6 @@ class PythonCode:
         return module, lambda lib_id: init(handle())
 
     def module(self, owner: str) -> ModuleType:
-        """See `Code.module`."""
         return self._python.module(self._file, self._found, owner)
 
 
@@ -185,12 +183,10 @@ class PythonFinder(ABC):
         self._python = python
 
     def find(self, file: str, symbol: str | None) -> Code | None:
-        """See `Finder.find`."""
         found = None if symbol == NODE_SYMBOL else self.look(file)
         return None if found is None else PythonCode(self._python, file, found)
 
     def exists(self, file: str) -> bool:
-        """See `Finder.exists`."""
         return self.look(file) is not None
 
     def unload(self, app_name: str) -> None:
@@ -198,7 +194,6 @@ class PythonFinder(ABC):
         return
 
     def forget(self) -> None:
-        """See `Finder.forget`."""
         self._python.forget()
 
     @abstractmethod
@@ -221,7 +216,6 @@ class MissionFolder(PythonFinder):
         self._folder = folder
 
     def look(self, file: str) -> Found | None:
-        """See `PythonFinder.look`."""
         self._files.translate(file)
         found = _in_folder(file, self._folder)
         if found is None or not _is_changed(found, self._folder, self._files):
@@ -236,7 +230,6 @@ class ShippedApps(PythonFinder):
     """The apps that cfepy brings along."""
 
     def look(self, file: str) -> Found | None:
-        """See `PythonFinder.look`."""
         return _in_folder(file, shipped("apps"))
 
 
@@ -244,7 +237,6 @@ class InstalledModules(PythonFinder):
     """Python modules that are installed on the host."""
 
     def look(self, file: str) -> Found | None:
-        """See `PythonFinder.look`."""
         return _installed(file)
 
 
@@ -261,7 +253,6 @@ class WrittenFiles(PythonFinder):
         self._files = files
 
     def look(self, file: str) -> Found | None:
-        """See `PythonFinder.look`."""
         return find_virtual_code(file, self._files)
 
 

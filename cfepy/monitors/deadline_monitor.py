@@ -85,7 +85,6 @@ class DeadlineMonitor(Observer):
         return hearing(base, self._take_unheard) if is_paced else base
 
     def begin(self, mission: Mission) -> None:
-        """See `Observer.begin`."""
         super().begin(mission)
         self._names = LiveNames(mission)
         mission.record.part(DeadlineRecord).checks = list(self._all())

@@ -60,7 +60,6 @@ class InversionWatch(Observer):
         return self.mission.record.part(InversionRecord)
 
     def begin(self, mission: Mission) -> None:
-        """See `Observer.begin`."""
         super().begin(mission)
         mission.record.part(InversionRecord).clear()
 

@@ -111,7 +111,6 @@ class LongestWatch(DeadlineMonitor):
         mission.record.part(DeadlineRecord).checks = kept
 
     def power_up(self, processor: Processor) -> None:
-        """See `Attachment.power_up`."""
         super().power_up(processor)
         self._causes.clear()
         self._ready.clear()
@@ -159,7 +158,6 @@ class LongestWatch(DeadlineMonitor):
         return self._measure_of.kind == WAIT and fnmatchcase(task.name, self._measure_of.name)
 
     def on_ready(self, task: Task, at_ns: int) -> None:
-        """See `Observer.on_ready`."""
         super().on_ready(task, at_ns)
         if self._means(task):
             self._ready[task] = at_ns

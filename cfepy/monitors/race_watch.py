@@ -109,12 +109,10 @@ class RaceWatch(Attachment):
     # -- what orders ---------------------------------------------------------------------------------------------------
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         made: type[SoftwareBus] = listened(base, self)
         return made
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
         kernel = mission.kernel
         assert isinstance(kernel, ExploringKernel)
@@ -137,7 +135,6 @@ class RaceWatch(Attachment):
         self._clocks.hand(self._task, task)
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
-        """See `CallObserver`."""
         if call == "__init__":
             self._made(subject)
         elif call in _LOCKS_GIVEN:
@@ -152,7 +149,6 @@ class RaceWatch(Attachment):
             self._clocks.let_go(self._task, _LETS_GO[call](args))
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
-        """See `CallObserver`."""
         if call in _LOCKS_TAKEN:
             if result is not False:
                 self._clocks.take(self._task, self._lock(subject))

@@ -198,23 +198,19 @@ class ExploringKernel(Kernel):
         self._owing.pop(self.current, None)
 
     def enqueue(self, task: Task, value: Any) -> None:
-        """See `Scheduler.enqueue`."""
         if self.on_wake is not None:
             self.on_wake(task)
         super().enqueue(task, value)
 
     def delay(self, duration_ns: SupportsIndex) -> None:
-        """See `Scheduler.delay`."""
         self.point()
         super().delay(duration_ns)
 
     def make_ready(self, task: Task, value: Any = None) -> None:
-        """See `Scheduler.make_ready`."""
         self.enqueue(task, value)
         self.point()
 
     def charge(self, duration_ns: int) -> None:
-        """See `Scheduler.charge`."""
         task = self.current
         if task is self.host:
             return
@@ -281,11 +277,9 @@ class ExploringKernel(Kernel):
     # -- tasks that may start early ----------------------------------------------------------------------------------
 
     def may_start_early(self, name: str) -> None:
-        """See `Scheduler.may_start_early`."""
         self._early[name] = None
 
     def has_started(self) -> None:
-        """See `Scheduler.has_started`."""
         self._early.pop(self.current.name, None)
 
     def _starters(self, task: Task) -> list[Task]:
@@ -308,7 +302,6 @@ class ExploringKernel(Kernel):
         return delays[self.answer(Question(name, "slow connection", words, f"{topic} connects in {{}}"))]
 
     def answer(self, question: Question) -> int:
-        """See `Scheduler.answer`."""
         number = self._decisions
         self._decisions = number + 1
         assert self.policy is not None
@@ -394,13 +387,11 @@ class CallPointKernel(ExploringKernel):
         self.passed = 0
 
     def point(self) -> None:
-        """See `ExploringKernel.point`."""
         self.passed += 1
         self.entered[self.current] = True
         super().point()
 
     def charge(self, duration_ns: int) -> None:
-        """See `Scheduler.charge`."""
         self.passed += 1
         self.entered[self.current] = True
         super().charge(duration_ns)

@@ -245,7 +245,6 @@ class MovePolicy(Policy):
         self._moves = MovesToMake(moves)
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         subject = decision.alias
         if not self._moves.concerns(subject, decision.now):
             return 0
@@ -255,12 +254,10 @@ class MovePolicy(Policy):
 
     @property
     def missed(self) -> tuple[str, ...]:
-        """See `Policy.missed`."""
         return tuple(move.text() for move in self._moves.left)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """See `Policy.notes`."""
         missed, count = self.missed, self._moves.count
         if not missed:
             return ()

@@ -192,15 +192,12 @@ class OutsideSubscription(Subscription):
         """Nothing waits here."""
 
     def ignore(self, link: Link) -> None:
-        """See `Subscription.ignore`."""
         self._outlet.ignore(link.node.owner)
 
     def heed(self, link: Link) -> None:
-        """See `Subscription.heed`."""
         self._outlet.heed(link.node.owner)
 
     def deliver(self, payload: bytes, header: Header) -> None:
-        """See `Subscription.deliver`."""
         self._out(header["callerid"], payload)
 
     def close(self) -> None:

@@ -226,7 +226,6 @@ class _Reader(CMakeScript):
         self.found = CMakeLists()
 
     def command(self, name: str, words: list[str]) -> None:
-        """See `CMakeScript.command`."""
         found = self.found
         match name, words:
             case "add_cfe_app", [app, *sources] if not found.name:

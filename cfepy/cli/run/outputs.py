@@ -99,7 +99,6 @@ class SavedRunFiles(Attachment):
         self._mission: Mission | None = None
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
 
     def close(self) -> None:

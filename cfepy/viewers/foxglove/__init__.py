@@ -65,7 +65,6 @@ class FoxgloveViewer(TopicWatch):
     # -- the mission -------------------------------------------------------------------------------------------------
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         super().begin(mission)
         mission.record.tables[TABLE] = self._counts.rows
         self._dictionary = dictionary_of(mission.spec)
@@ -81,7 +80,6 @@ class FoxgloveViewer(TopicWatch):
         return True
 
     def take_packet(self, seen: Seen) -> None:
-        """See `TopicWatch.take_packet`."""
         super().take_packet(seen)
         for topic in self._shown_as.get(seen.msg_id, ()):
             self._show_as(topic, seen)
@@ -188,5 +186,4 @@ class FoxgloveViewer(TopicWatch):
         """See `WayOut.request`: viewers offer no services."""
 
     def answer(self, number: int, good: bool, body: bytes) -> None:
-        """See `WayOut.answer`."""
         self._services.answer(number, good, body)

@@ -50,7 +50,6 @@ class RosbridgeServer(PacketWatch):
         self.place = self._listener.place
 
     def begin(self, mission: Any) -> None:
-        """See `Attachment.begin`."""
         uri = f"http://{self.place}/"
         packets = ShownPackets(mission.spec).packets
         self._shown = frozenset(each.msg_id for each in packets.values())

@@ -37,7 +37,6 @@ class RemoteScene(Scene):
         return self._watch.elapsed_ns()
 
     def here(self) -> Since:
-        """See `Scene.here`."""
         return Since(len(self.packets), 0)
 
     def send(self, packet: bytes, must_arrive: bool) -> str:
@@ -97,12 +96,10 @@ class RemoteCraft:
 
     @property
     def stands_ns(self) -> int:
-        """See `Craft.stands_ns`."""
         return self.script.scene.now_ns
 
     @property
     def is_asked(self) -> bool:
-        """See `Craft.is_asked`."""
         return self._interrupts.asked
 
     def step(self, until_ns: int) -> bool:
@@ -125,7 +122,6 @@ class RemoteCraft:
         """See `Craft.stand`: what arrives waits in the socket."""
 
     def next_event(self) -> int | None:
-        """See `Craft.next_event`."""
         return None
 
     def pace(self, factor: float | None) -> None:
