@@ -46,7 +46,7 @@ class Udp:
     # -- opening and closing -----------------------------------------------------------------------------------------
 
     def init_net(self, net: Net) -> None:
-        """See `Module.init_net`: bind the port of this processor."""
+        """Bind the port of this processor."""
         os = self._cfe.os
         self._info(ev.UDP_SOCK_EID, f"creating socket (Address={net.address})")
         here = self._address(net.address)

@@ -112,7 +112,7 @@ class CompiledCode:
         return lambda: runtime.run_main(function)
 
     def library(self, symbol: str) -> tuple[object, Callable[[int], object]]:
-        """See `Code.library`; the init function gets the LibId."""
+        """The init function gets the LibId."""
         runtime = self._loader.runtime
         image = self._loader.load(self._file, self._data)
         function = 0 if symbol == NO_SYMBOL else self._loader.symbol(image, self._file, symbol)

@@ -53,7 +53,7 @@ class PlainDisplay:
         self._broken: OSError | None = None
 
     def line(self, text: str) -> None:
-        """See `Display.line`. A reader that went away must not look like an error of the app that wrote."""
+        """A reader that went away must not look like an error of the app that wrote."""
         if self._broken is None:
             try:
                 raw(self._stream).write(console_line(text, self._colours) + "\n")
@@ -63,7 +63,7 @@ class PlainDisplay:
                 self._broken = BrokenPipeError(str(error))
 
     def tell(self, text: str) -> None:
-        """See `Display.tell`; whoever reads a pipe may wait for it."""
+        """Whoever reads a pipe may wait for it."""
         self.line(text)
         with contextlib.suppress(OSError, ValueError):  # which `line` has kept, or will meet
             self._stream.flush()
@@ -88,7 +88,7 @@ class SilentDisplay:
         """Nothing of the run is shown."""
 
     def tell(self, text: str) -> None:
-        """See `Display.tell`; not of the run, so it is shown, and is not in the way of a report that is piped."""
+        """It is not of the run, so it is shown, and is not in the way of a report that is piped."""
         tell([text])
 
     def update(self, mission: Mission) -> None:

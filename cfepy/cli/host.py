@@ -119,7 +119,7 @@ class WatchedHost(Host):
             raise self._unshown
 
     def begin(self, run: LiveRun) -> None:
-        """See `Host.begin`; what the user should know is said before anything runs."""
+        """What the user should know is said before anything runs."""
         super().begin(run)
         for each in run.notes:
             self._note(each)
@@ -153,7 +153,7 @@ class WatchedHost(Host):
         return True
 
     def give_up(self, why: BaseException) -> None:
-        """See `Host.give_up`; there is no report, since the thread that would write it does not come back."""
+        """There is no report, since the thread that would write it does not come back."""
         with contextlib.suppress(Exception):
             sys.stdout.flush()
         os.write(STDERR, f"cfepy: {visible(str(why))}\ncfepy: it cannot be ended; gave up\n".encode(errors="replace"))

@@ -118,7 +118,7 @@ class Debugger(Observer):
         return super().bus(base)
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """See `Attachment.kernel`: a task that begins, or goes on with what it was doing, may stop."""
+        """A task that begins, or goes on with what it was doing, may stop."""
         debugger = self
 
         class StoppingKernel(super().kernel(base)):  # type: ignore[misc]  # mypy follows no class that is a result
@@ -158,7 +158,7 @@ class Debugger(Observer):
         return begin
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: at the end of the run there is a way back, too."""
+        """At the end of the run there is a way back, too."""
         super().conclude()
         journey = self._journey
         if journey is None or self._is_over:
@@ -209,7 +209,7 @@ class Debugger(Observer):
         self._look_around(text)
 
     def on_console(self, line: str, at_ns: int) -> None:
-        """See `Observer.on_console`; a task that writes a traceback there has just caught the exception."""
+        """A task that writes a traceback there has just caught the exception."""
         self._look_around(f"console: {line}")
         error = sys.exc_info()[1]
         is_silent = self._journey is not None and self._journey.is_silent

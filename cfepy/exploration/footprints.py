@@ -102,7 +102,7 @@ class Footprints(Attachment):
                 _also(graph.params, name, lambda *args, **options: self.touch(PARAMETERS, READS))
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: what nodes do when they are ended is no part of it."""
+        """What nodes do when they are ended is no part of it."""
         self._log.close()
 
     def touch(self, thing: str, how: str = WRITES) -> None:
@@ -120,7 +120,7 @@ class Footprints(Attachment):
             self._log.begin(self._things(subject, call, args), wanted)
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
-        """See `CallObserver.returned`: a lock is taken when a call comes back with it."""
+        """A lock is taken when a call comes back with it."""
         if call == "is_set" or not self._is_of_calls(subject):  # told of without a call
             return
         if not self._log.end():
@@ -308,7 +308,7 @@ class _Touching(PutHook):
         self._pipes = pipes
 
     def limit(self, destination: Destination) -> int:
-        """See `PutHook.limit`; the limit stays as it is."""
+        """The limit stays as it is."""
         limit = super().limit(destination)
         self._pipes.puts(destination, limit)
         return limit

@@ -68,7 +68,7 @@ class ResultWatch(Attachment):
         self._watch.begin(mission)
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: what the shutdown of the nodes adds does not count."""
+        """What the shutdown of the nodes adds does not count."""
         self._found = [result for each in self._selected for result in self._results_of(each)]
 
     def results(self) -> tuple[Result, ...]:

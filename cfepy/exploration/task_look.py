@@ -106,7 +106,7 @@ class TaskLook(Attachment):
         return _told(self._messages.bus(base), self._take_bus)
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """See `Attachment.kernel`; every wait goes through `block`."""
+        """Every wait goes through `block`."""
         return wrapping(base, {"block": self._blocking})
 
     def begin(self, mission: Mission) -> None:
@@ -117,7 +117,7 @@ class TaskLook(Attachment):
             mission.accesses.observers.append(self._take_touch)
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: how tasks are ended is no part of it."""
+        """How tasks are ended is no part of it."""
         self._closed = True
 
     def policy(self, inner: Policy) -> Policy:
@@ -213,7 +213,7 @@ class TaskLook(Attachment):
             self._lock_taken(task, use_of(subject, call, frame), result)
 
     def failed(self, subject: Any, call: str) -> None:
-        """See `CallObserver.failed`: nothing was done."""
+        """Nothing was done."""
 
     def _call_of_app(
         self, task: Task, service: Any, call: str, args: tuple[Any, ...], frame: FrameType | None, ended: bool
@@ -428,7 +428,7 @@ class _LookingPolicy(AskingPolicy):
         self._look = look
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`. It is asked in the task that gives the processor away."""
+        """It is asked in the task that gives the processor away."""
         choice = self._inner.choose(decision)
         self._look.reached(decision.number)
         self._look.look(sys._getframe(1))

@@ -98,7 +98,7 @@ class WorstSearch:
         self._parents: list[tuple[int, Verdict]] = []  # the longest first; of equals the first one found
 
     def next(self) -> Schedule | None:
-        """See `cfepy.exploration.campaign.Search`: a generation waits for the verdicts on all schedules before it."""
+        """A generation waits for the verdicts on all schedules before it."""
         if not self._waiting and not self._fresh:
             if self._told < self._given:
                 return None

@@ -75,7 +75,7 @@ class FaultInjector(Attachment):
         self._failing[name].strike(args)
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """See `Attachment.kernel`; what comes later in the plan is wrapped around what comes earlier."""
+        """What comes later in the plan is wrapped around what comes earlier."""
         self._strain, self._calls, self._works = Strain(), OpenCalls(), {}
         hooks: dict[Strain | OpenCalls | Work, None] = {}
         for fault in self.plan.faults:

@@ -443,7 +443,7 @@ class SeriesRecorder(SeriesSet, Attachment):
                     self._want(packet)
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: how the nodes shut down is no part of the run's time."""
+        """How the nodes shut down is no part of the run's time."""
         self._is_over = True
         self._silent = [topic.name for topic in topics_of(self._mission)]
         self._silent += (name for names in self._names.values() for name in names.values())

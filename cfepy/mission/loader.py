@@ -184,4 +184,4 @@ class BuiltInApps(Finder):
         return file in self._mains
 
     def forget(self) -> None:
-        """See `Finder.forget`; there is nothing to let go of."""
+        """There is nothing to let go of."""

@@ -70,14 +70,14 @@ class NodeScripts(Finder):
         return None if script is None else MainCode(file, lambda app_name: self._node_main(script, app_name))
 
     def exists(self, file: str) -> bool:
-        """See `Finder.exists`; a script that the mission changed or removed is none."""
+        """A script that the mission changed or removed is none."""
         if self._script_of(file) is not None:
             return True
         script = find_node(file, self._folder)
         return script is not None and not _is_changed(script, self._folder, self._files)
 
     def forget(self) -> None:
-        """See `Finder.forget`; there is nothing to let go of."""
+        """There is nothing to let go of."""
 
 
 def find_node(file: str, folder: Path) -> Path | None:
@@ -156,12 +156,12 @@ class PythonCode:
         self._found = found
 
     def main(self, symbol: str, app_name: str) -> Callable[[], object]:
-        """See `Code.main`; it is called with the handle of the services."""
+        """The function is called with the handle of the services."""
         main, handle = self._python.function(self.module(app_name), self._file, symbol), self._python.handle
         return lambda: main(handle())
 
     def library(self, symbol: str) -> tuple[ModuleType, Callable[[int], object]]:
-        """See `Code.library`; the init function gets the handle of the services, and not the LibId."""
+        """The init function gets the handle of the services, and not the LibId."""
         module, handle = self.module(f"library {self._file}"), self._python.handle
         if symbol == NO_SYMBOL:
             return module, lambda lib_id: 0
@@ -190,7 +190,7 @@ class PythonFinder(ABC):
         return self.look(file) is not None
 
     def unload(self, app_name: str) -> None:
-        """See `Finder.unload`; the module goes when the application starts again."""
+        """The module goes when the application starts again."""
         return
 
     def forget(self) -> None:

@@ -79,7 +79,7 @@ class DeadlineMonitor(Observer):
         return found
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`; a message without a subscriber is never sent, and has come all the same."""
+        """A message without a subscriber is never sent, and has come all the same."""
         base = super().bus(base)
         is_paced = any(state.checks.keys() & set(BETWEEN_MESSAGES) for _, state in self._topics)
         return hearing(base, self._take_unheard) if is_paced else base

@@ -100,7 +100,7 @@ class FunctionJudge(Judge):
         self._code = code_of(invariant)
 
     def end(self, now_ns: int) -> None:
-        """See `Judge.end`: an object that has a method of this name is asked once more."""
+        """An object that has a method of this name is asked once more."""
         last_word = getattr(self._code, "end", None)
         if last_word is not None:
             self._ask(last_word, now_ns, "")
@@ -132,7 +132,7 @@ class AnswerJudge(Judge):
         return super().selects(topic) or _selects(self._answer.selection, topic)
 
     def take(self, heard: Heard) -> bool:
-        """See `Judge.take`. A message that is both answers first."""
+        """A message that is both answers first."""
         self._expire(heard.at_ns)
         names = self._names(heard)
         if self._open and _selects(self._answer.selection, heard.topic):
@@ -149,7 +149,7 @@ class AnswerJudge(Judge):
         return is_cause
 
     def end(self, now_ns: int) -> None:
-        """See `Judge.end`; what still has time is not judged."""
+        """What still has time is not judged."""
         self._expire(now_ns)
 
     def _expire(self, now_ns: int) -> None:

@@ -68,7 +68,7 @@ class LivenessWatch(Observer):
         self._processor: Processor
 
     def power_up(self, processor: Processor) -> None:
-        """See `Observer.power_up`: what was ready is gone."""
+        """What was ready is gone."""
         super().power_up(processor)
         self._processor = processor
         self._ready.clear()

@@ -122,7 +122,7 @@ class RaceWatch(Attachment):
         mission.accesses.on_gone(self._gone)
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: how nodes end when they are asked to is no part of what is judged."""
+        """How nodes end when they are asked to is no part of what is judged."""
         self._is_over = True
 
     @property
@@ -158,7 +158,7 @@ class RaceWatch(Attachment):
             self._clocks.take(self._task, _TAKES[call](args))
 
     def failed(self, subject: Any, call: str) -> None:
-        """See `CallObserver`: it has taken nothing, so it orders nothing."""
+        """The call has taken nothing, so it orders nothing."""
 
     def _lock(self, lock: Any) -> Hashable:
         assert self._mission is not None

@@ -51,7 +51,7 @@ class BoardLedger(Attachment):
         self._mission = mission
 
     def power_up(self, processor: Processor) -> None:
-        """See `Attachment.power_up`: from now on nothing is refused."""
+        """From now on nothing is refused."""
         memory = processor.memory
         claim = memory.claim
         memory.limit = None

@@ -192,7 +192,7 @@ class _SwitchNotes(AskingPolicy):
         self._numbers = MoveNumbers()
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`; a policy is asked in the task that gives the processor away, so its stack is there."""
+        """A policy is asked in the task that gives the processor away, so its stack is there."""
         choice = self._inner.choose(decision)
         moves = self._numbers.moves(decision)
         if choice:

@@ -69,7 +69,7 @@ class JoinedMaster:
         self._from_there: dict[str, Any] = {}  # parameters as the master told them last
 
     def begin(self) -> None:
-        """See `RosWorld.begin`; the mission's own parameters are set there, as roslaunch does it."""
+        """The mission's own parameters are set there, as roslaunch does it."""
         try:
             self._pid = ask(self.uri, "getPid", self.caller)
             self._params_there = self._subscribe_params()
@@ -85,7 +85,7 @@ class JoinedMaster:
         self._look_at_s = 0.0
 
     def close(self) -> None:
-        """See `RosWorld.close`: the mission's nodes leave the master, unless it is gone."""
+        """The mission's nodes leave the master, unless it is gone."""
         try:
             for entry, uri in self._registered.items():
                 ask(self.uri, f"unregister{entry.kind}", entry.node, entry.name, uri)
@@ -234,7 +234,7 @@ class JoinedMaster:
         self.params_changed([name for name, value in ours.items() if self._from_there.get(name) != value])
 
     def params_changed(self, keys: list[str]) -> None:
-        """See `RosWorld.params_changed`: set them there, too."""
+        """Set them there, too."""
         host = self._host
         assert host.ros is not None
         if self._is_lost:

@@ -56,7 +56,7 @@ class ServedMaster:
         self._host.tell(f"ROS master at {self.uri}: export ROS_MASTER_URI={self.uri}")
 
     def enter(self) -> None:
-        """See `RosWorld.enter`: what outside nodes have registered holds on."""
+        """What outside nodes have registered holds on."""
         for body in self._entered.values():
             self._host.ask_inside("", body)
 
@@ -112,7 +112,7 @@ class ServedMaster:
     # -- the mission and outside nodes -------------------------------------------------------------------------------
 
     def look(self, seen: OwnGraph, now_s: float) -> None:
-        """See `RosWorld.look`: tell outside subscribers of the publishers, if there are others now."""
+        """Tell outside subscribers of the publishers, if there are others now."""
         registry = self._registry
         publishers, told = registry.publishers(), {}
         for topic, held in registry.subscribers().items():
@@ -125,7 +125,7 @@ class ServedMaster:
         self._told = told
 
     def params_changed(self, keys: list[str]) -> None:
-        """See `RosWorld.params_changed`: tell those that have subscribed."""
+        """Tell those that have subscribed."""
         host = self._host
         assert host.ros is not None
         for subscribed, held in self._registry.param_subscribers.items():

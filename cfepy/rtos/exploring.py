@@ -135,7 +135,7 @@ class ExploringKernel(Kernel):
         self.observer = None if not watching else watching[0] if len(watching) == 1 else _All(watching)
 
     def tell(self, subject: object, call: str, args: tuple[object, ...] = ()) -> None:
-        """See `Scheduler.tell`; observers are told of it as of a call that begins."""
+        """Observers are told of it as of a call that begins."""
         if self.observer is not None:
             self.observer.called(subject, call, args)
 
@@ -290,7 +290,7 @@ class ExploringKernel(Kernel):
     # -- questions -----------------------------------------------------------------------------------------------------
 
     def connection_delay(self, publisher: str, subscriber: str, topic: str, usual_ns: int) -> int:
-        """See `Scheduler.connection_delay`; the policy chooses, if connections are open to it."""
+        """The policy chooses, if connections are open to it."""
         assert self.policy is not None
         longest_ns = self.policy.connect_ns
         if not longest_ns:

@@ -326,7 +326,7 @@ class InOrder(Policy):
         self._runs = list(runs)
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`. A task that cannot run now keeps its turns for later."""
+        """A task that cannot run now keeps its turns for later."""
         candidates = {task.path: (at, task) for at, task in enumerate(decision.tasks)}
         runs = self._runs
         for place, (path, number) in enumerate(runs):

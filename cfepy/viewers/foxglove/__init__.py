@@ -177,13 +177,13 @@ class FoxgloveViewer(TopicWatch):
     # -- the way out of the nodes that viewers are ---------------------------------------------------------------------
 
     def message(self, topic: str, publisher: str, subscriber: str, payload: bytes) -> None:
-        """See `WayOut.message`: viewers watch the bus, and subscribe to nothing in the graph."""
+        """Viewers watch the bus, and subscribe to nothing in the graph."""
 
     def packet(self, topic: str, packet: bytes) -> None:
-        """See `WayOut.packet`: as above."""
+        """Viewers watch the bus, and subscribe to nothing in the graph."""
 
     def request(self, service: str, number: int, header: dict[str, str], body: bytes) -> None:
-        """See `WayOut.request`: viewers offer no services."""
+        """Viewers offer no services."""
 
     def answer(self, number: int, good: bool, body: bytes) -> None:
         self._services.answer(number, good, body)

@@ -104,7 +104,7 @@ class Viewer:
 
     @property
     def is_ready(self) -> bool:
-        """See `ConnectedClient.is_ready`: what it publishes waits elsewhere for room."""
+        """What it publishes waits elsewhere for room."""
         return True
 
     @property
@@ -113,7 +113,7 @@ class Viewer:
 
     @property
     def takes_part(self) -> bool:
-        """See `ConnectedClient.takes_part`; one that publishes is heard now and then."""
+        """One that publishes is heard now and then."""
         return bool(self._subscribed or self.watched or self.watches_graph)
 
     def begin(self, connection: WebSocket) -> None:

@@ -569,7 +569,7 @@ class BridgeNode:
         self._put(topic, publisher, payload)
 
     def packet(self, topic: str, packet: bytes) -> None:
-        """See `WayOut.packet`; packets of applications are watched (`show`), and not asked for."""
+        """Packets of applications are watched (`show`), and not asked for."""
 
     def request(self, service: str, number: int, header: dict[str, str], body: bytes) -> None:
         self._aside.append(lambda: self._request(service, number, body))

@@ -67,12 +67,12 @@ class RosbridgeServer(PacketWatch):
         self._listener.exchange()
 
     def finish(self) -> None:
-        """See `Attachment.finish`: nothing enters any more."""
+        """Nothing enters any more."""
         self._node.close()
         self._listener.finish()
 
     def close(self) -> None:
-        """See `Attachment.close`: nobody is served any more; may be called more than once."""
+        """Nobody is served any more; may be called more than once."""
         self._listener.close()
 
     def _client(self, address: str) -> RosbridgeClient:

@@ -40,7 +40,7 @@ class RemoteScene(Scene):
         return Since(len(self.packets), 0)
 
     def send(self, packet: bytes, must_arrive: bool) -> str:
-        """See `Scene.send`; UDP has no receipts, so all that is known is whether a computer at hand listens."""
+        """UDP has no receipts, so all that is known is whether a computer at hand listens."""
         self._saved.sent(packet, self.now_ns)
         return "" if send_datagram(self._host.name, self._host.port, packet) else f"{self._host}: nobody listens there"
 
@@ -103,7 +103,7 @@ class RemoteCraft:
         return self._interrupts.asked
 
     def step(self, until_ns: int) -> bool:
-        """See `Craft.step`: take what arrives."""
+        """Take what arrives."""
         begin_ns = self.stands_ns
         rest_s = min(WAIT_S, max(0, until_ns - begin_ns) / NS_PER_S)
         packet = self._listener.receive(max(rest_s, NO_WAIT_S))
@@ -119,15 +119,15 @@ class RemoteCraft:
         return True
 
     def stand(self) -> None:
-        """See `Craft.stand`: what arrives waits in the socket."""
+        """What arrives waits in the socket."""
 
     def next_event(self) -> int | None:
         return None
 
     def pace(self, factor: float | None) -> None:
-        """See `Craft.pace`: its time is its own."""
+        """Its time is its own."""
 
     def news(self) -> list[Seen | str]:
-        """See `Craft.news`; what it prints is not seen here."""
+        """What it prints is not seen here."""
         news, self._new = self._new, []
         return news

@@ -301,7 +301,7 @@ class ConsoleScreen(App[None]):
     # -- keys ----------------------------------------------------------------------------------------------------------
 
     def on_input_changed(self, message: Input.Changed) -> None:
-        """See `Input.Changed`: say how the line may go on."""
+        """Say how the line may go on."""
         completer = self.query_one(LineInput).completer
         hint = KEYS if completer is None or not message.value else hint_of(completer.complete(message.value))
         self.query_one("#hint", Static).update(Text(hint, no_wrap=True, overflow="ellipsis"))
