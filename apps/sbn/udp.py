@@ -46,7 +46,7 @@ class Udp:
     # -- opening and closing -----------------------------------------------------------------------------------------
 
     def init_net(self, net: Net) -> None:
-        """See `Module.init_net`: bind the port of this processor."""
+        """Bind the port of this processor."""
         os = self._cfe.os
         self._info(ev.UDP_SOCK_EID, f"creating socket (Address={net.address})")
         here = self._address(net.address)
@@ -65,7 +65,6 @@ class Udp:
             self._error(ev.UDP_SOCK_EID, f"bind call failed (Address={net.address})")
 
     def unload_net(self, net: Net) -> None:
-        """See `Module.unload_net`."""
         for peer in net.peers:
             if peer.connected:
                 self._info(ev.UDP_DEBUG_EID, f"peer {peer.name} - sending disconnect")
@@ -92,7 +91,6 @@ class Udp:
     # -- peers -------------------------------------------------------------------------------------------------------
 
     def poll_peer(self, peer: Peer) -> None:
-        """See `Module.poll_peer`."""
         now = self._cfe.os.get_local_time()
         silent_s = self._seconds(now, peer.last_send)
         if not peer.connected:
@@ -106,7 +104,6 @@ class Udp:
             self._network.send(peer, HEARTBEAT_MSG)
 
     def send(self, peer: Peer, message: pr.NetMsg) -> None:
-        """See `Module.send`."""
         address = self._address(peer.address)
         if address is None:
             return
@@ -119,7 +116,6 @@ class Udp:
             raise
 
     def recv(self, net: Net, pend: bool) -> pr.NetMsg | None:
-        """See `Module.recv`."""
         received = self._cfe.os.socket_recv_from(net.socket, self._network.longest, OS_PEND if pend else OS_CHECK)
         if received is None:
             return None

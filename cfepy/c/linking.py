@@ -152,7 +152,6 @@ class LinkedWith:
         return self._exports.calls.address(name) if found is None else found
 
     def resolve_weak(self, name: str) -> int:
-        """See `Linker`."""
         return self._exports.symbol(name, self._own) or 0
 
     def resolve_thread_local(self, name: str) -> tuple[int, int]:
@@ -167,11 +166,9 @@ class LinkedWith:
         raise ElfError(f"no library has the thread-local variable {name}")
 
     def thread_local_function(self) -> int:
-        """See `Linker`."""
         return self._exports.calls.address(DESCRIPTOR)
 
     def module_of(self, image: Image) -> int:
-        """See `Linker`."""
         return self._thread_locals.module_of(image)
 
     def _seen(self) -> Iterator[Image]:

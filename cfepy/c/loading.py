@@ -103,7 +103,6 @@ class CompiledCode:
         self._data = data
 
     def main(self, symbol: str, app_name: str) -> Callable[[], object]:
-        """See `Code.main`."""
         runtime = self._loader.runtime
         image = self._loader.load(self._file, self._data)
         runtime.applications[app_name] = image
@@ -113,7 +112,7 @@ class CompiledCode:
         return lambda: runtime.run_main(function)
 
     def library(self, symbol: str) -> tuple[object, Callable[[int], object]]:
-        """See `Code.library`; the init function gets the LibId."""
+        """The init function gets the LibId."""
         runtime = self._loader.runtime
         image = self._loader.load(self._file, self._data)
         function = 0 if symbol == NO_SYMBOL else self._loader.symbol(image, self._file, symbol)
@@ -128,5 +127,4 @@ class CompiledCode:
         return LoadedCode(image), init
 
     def module(self, owner: str) -> object:
-        """See `Code.module`."""
         return LoadedCode(self._loader.load(self._file, self._data))

@@ -53,7 +53,7 @@ class PlainDisplay:
         self._broken: OSError | None = None
 
     def line(self, text: str) -> None:
-        """See `Display.line`. A reader that went away must not look like an error of the app that wrote."""
+        """A reader that went away must not look like an error of the app that wrote."""
         if self._broken is None:
             try:
                 raw(self._stream).write(console_line(text, self._colours) + "\n")
@@ -63,7 +63,7 @@ class PlainDisplay:
                 self._broken = BrokenPipeError(str(error))
 
     def tell(self, text: str) -> None:
-        """See `Display.tell`; whoever reads a pipe may wait for it."""
+        """Whoever reads a pipe may wait for it."""
         self.line(text)
         with contextlib.suppress(OSError, ValueError):  # which `line` has kept, or will meet
             self._stream.flush()
@@ -78,24 +78,24 @@ class PlainDisplay:
             raise self._broken
 
     def close(self) -> None:
-        """See `Display.close`."""
+        """There is nothing to close."""
 
 
 class SilentDisplay:
     """Nothing of the run."""
 
     def line(self, text: str) -> None:
-        """See `Display.line`."""
+        """Nothing of the run is shown."""
 
     def tell(self, text: str) -> None:
-        """See `Display.tell`; not of the run, so it is shown, and is not in the way of a report that is piped."""
+        """It is not of the run, so it is shown, and is not in the way of a report that is piped."""
         tell([text])
 
     def update(self, mission: Mission) -> None:
-        """See `Display.update`."""
+        """Nothing of the run is shown."""
 
     def close(self) -> None:
-        """See `Display.close`."""
+        """There is nothing to close."""
 
 
 class LiveDisplay:
@@ -121,13 +121,11 @@ class LiveDisplay:
         self._live.start()
 
     def line(self, text: str) -> None:
-        """See `Display.line`."""
         self._lines.append(text)
 
     tell = line
 
     def update(self, mission: Mission) -> None:
-        """See `Display.update`."""
         wall_ns = self._watch.elapsed_ns()
         since_ns = wall_ns - self._drawn_ns
         if since_ns < REFRESH_NS:
@@ -141,7 +139,6 @@ class LiveDisplay:
         self._drawn_ns, self._virtual_ns, self._messages = wall_ns, now, messages
 
     def close(self) -> None:
-        """See `Display.close`."""
         self._show_lines()
         self._live.stop()
 

@@ -103,7 +103,6 @@ class WatchedHost(Host):
 
     @property
     def asked(self) -> bool:
-        """See `Host.asked`."""
         return self._interrupts.asked
 
     def __enter__(self) -> WatchedHost:
@@ -120,7 +119,7 @@ class WatchedHost(Host):
             raise self._unshown
 
     def begin(self, run: LiveRun) -> None:
-        """See `Host.begin`; what the user should know is said before anything runs."""
+        """What the user should know is said before anything runs."""
         super().begin(run)
         for each in run.notes:
             self._note(each)
@@ -132,7 +131,6 @@ class WatchedHost(Host):
             self.pace(self._realtime)
 
     def step(self, until_ns: int) -> None:
-        """See `Host.step`."""
         self._go(until_ns)
         self._pause()
         try:
@@ -155,14 +153,13 @@ class WatchedHost(Host):
         return True
 
     def give_up(self, why: BaseException) -> None:
-        """See `Host.give_up`; there is no report, since the thread that would write it does not come back."""
+        """There is no report, since the thread that would write it does not come back."""
         with contextlib.suppress(Exception):
             sys.stdout.flush()
         os.write(STDERR, f"cfepy: {visible(str(why))}\ncfepy: it cannot be ended; gave up\n".encode(errors="replace"))
         os._exit(INTERRUPTED if self.asked else FOUND_PROBLEMS)
 
     def end(self) -> None:
-        """See `Host.end`."""
         if self._viewers is not None:
             self._viewers.close()
         self._bridge.close()

@@ -215,7 +215,6 @@ class _Version(argparse.Action):
         super().__init__(option_strings, argparse.SUPPRESS, nargs=0, help=help)
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        """See `argparse.Action`."""
         from cfepy.compiled import state
 
         print(f"cfepy {__version__} ({state()})")

@@ -50,7 +50,6 @@ class MissionAction(argparse.Action):
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option_string: Any = None
     ) -> None:
-        """See `argparse.Action`."""
         setattr(namespace, self.dest, values)
 
 
@@ -69,7 +68,7 @@ class CommandParser(argparse.ArgumentParser):
         super().__init__(**{**settings, "allow_abbrev": False, "formatter_class": HelpFormatter})
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """See `ArgumentParser.parse_known_args`; a command with actions of its own leaves the mixing to them."""
+        """A command with actions of its own leaves the mixing to them."""
         if self._is_mixing:
             return super().parse_known_args(args, namespace)
         if not self.mixes:

@@ -381,7 +381,6 @@ class _CatkinReader(CMakeScript):
         _add(found, more)
 
     def command(self, name: str, words: list[str]) -> None:
-        """See `CMakeScript.command`."""
         match name, words:
             case "project", [project, *_]:
                 self.variables["PROJECT_NAME"] = [project]
@@ -409,7 +408,7 @@ class _CatkinReader(CMakeScript):
                     super().command(name, words)
 
     def glob(self, pattern: str, deep: bool = False) -> list[str]:
-        """See `CMakeScript.glob`; a pattern may begin with this folder's path."""
+        """A pattern may begin with this folder's path."""
         return super().glob(pattern.removeprefix(f"{self.folder}/"), deep)
 
     def _of_target(self, name: str, words: list[str]) -> bool:

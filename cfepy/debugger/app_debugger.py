@@ -103,7 +103,6 @@ class AppDebugger(pdb.Pdb):
         return filename if filename in linecache.cache else super().lookupmodule(filename)
 
     def cmdloop(self, intro: Any = None) -> None:
-        """See `cmd.Cmd.cmdloop`."""
         with self._waiting():
             super().cmdloop(intro)
 

@@ -54,11 +54,9 @@ class Breakpoint(Attachment):
         self._watch = _meant(text, spec, self._stop)
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         return self._watch.bus(base)
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._watch.begin(mission)
 
     @property
@@ -131,11 +129,9 @@ class _AtPredicate(Attachment):
         self._applies = False
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         return self._watch.bus(base)
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._watch.begin(mission)
 
     def _take(self, heard: Heard) -> None:

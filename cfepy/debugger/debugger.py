@@ -113,26 +113,23 @@ class Debugger(Observer):
     # -- the attachment ----------------------------------------------------------------------------------------------
 
     def bus(self, base: Any) -> Any:
-        """See `Attachment.bus`."""
         for each in (*self._breakpoints, *self._finders):
             base = each.bus(base)
         return super().bus(base)
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """See `Attachment.kernel`: a task that begins, or goes on with what it was doing, may stop."""
+        """A task that begins, or goes on with what it was doing, may stop."""
         debugger = self
 
         class StoppingKernel(super().kernel(base)):  # type: ignore[misc]  # mypy follows no class that is a result
             """A kernel whose tasks a debugger can stop."""
 
             def block(self) -> Any:
-                """See `Scheduler.block`."""
                 value = super().block()
                 debugger._look_around("goes on")
                 return value
 
             def spawn(self, name: str, entry: Callable[[], object], *args: Any, **options: Any) -> Task:
-                """See `Kernel.spawn`."""
                 first = debugger._beginning(entry) if debugger._has_begun else entry
                 task: Task = super().spawn(name, first, *args, **options)
                 return task
@@ -140,7 +137,6 @@ class Debugger(Observer):
         return StoppingKernel
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         super().begin(mission)
         self._mission = mission
         self._names = LiveNames(mission)
@@ -162,7 +158,7 @@ class Debugger(Observer):
         return begin
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: at the end of the run there is a way back, too."""
+        """At the end of the run there is a way back, too."""
         super().conclude()
         journey = self._journey
         if journey is None or self._is_over:
@@ -187,7 +183,6 @@ class Debugger(Observer):
             self._is_over = True
 
     def close(self) -> None:
-        """See `Attachment.close`."""
         super().close()
         leave_thread()
         if self._gdb is not None:
@@ -201,24 +196,20 @@ class Debugger(Observer):
     # -- what happens ------------------------------------------------------------------------------------------------
 
     def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
-        """See `Observer.on_send`."""
         self._look_around(f"sends {self._names[sent.msg_id]} (0x{sent.msg_id:04X}), {sent.size} bytes")
 
     def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
-        """See `Observer.on_receive`."""
         what = "a message" if sent is None else self._names[sent.msg_id]
         self._look_around(f"takes {what} out of pipe {pipe.name}")
 
     def on_drop(self, msg_id: int, pipe: Pipe, why: str, at_ns: int) -> None:
-        """See `Observer.on_drop`."""
         self._look_around(f"{self._names[msg_id]} is dropped at pipe {pipe.name}: {why}")
 
     def on_note(self, text: str, at_ns: int) -> None:
-        """See `Observer.on_note`."""
         self._look_around(text)
 
     def on_console(self, line: str, at_ns: int) -> None:
-        """See `Observer.on_console`; a task that writes a traceback there has just caught the exception."""
+        """A task that writes a traceback there has just caught the exception."""
         self._look_around(f"console: {line}")
         error = sys.exc_info()[1]
         is_silent = self._journey is not None and self._journey.is_silent

@@ -57,7 +57,6 @@ class PointCounter(AskingPolicy):
         self.kinds: Counter[str] = Counter()
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         self.kinds["questions" if decision.question is not None else kind_of(sys._getframe(1))] += 1
         return self._inner.choose(decision)
 

@@ -71,12 +71,11 @@ class Inline:
     """A crew without workers: runs in this process, which a mission that ends its process takes with it."""
 
     def run(self, trial: Experiment, take: Take) -> Generator[NumberedVerdict, None, None]:
-        """See `Crew.run`."""
         while jobs := take(16):
             yield from ((number, judge(trial, schedule)) for number, schedule in jobs)
 
     def close(self) -> None:
-        """See `Crew.close`."""
+        """Nothing runs beside this process."""
 
 
 def judge(trial: Experiment, schedule: Schedule) -> Verdict:

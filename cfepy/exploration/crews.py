@@ -108,7 +108,6 @@ class Cluster:
         self._done: SimpleQueue[Any] = SimpleQueue()
 
     def run(self, trial: Experiment, take: Take) -> Generator[NumberedVerdict, None, None]:
-        """See `Crew.run`."""
         if not self._name:
             self._set_up(trial)
         self._died = trial.died if isinstance(trial, Lot) else died
@@ -122,7 +121,6 @@ class Cluster:
             self._give_up()
 
     def close(self) -> None:
-        """See `Crew.close`."""
         try:
             if self._name and self._client.status == "running":
                 self._client.unregister_worker_plugin(self._name)

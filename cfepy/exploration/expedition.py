@@ -13,22 +13,18 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from hashlib import blake2b
 from typing import Any, TextIO
 
 from cfepy.exploration.breadth import Breadth, PointCounter
 from cfepy.exploration.campaign import Campaign, Crew, Search, Tally
-from cfepy.exploration.corpus import keep_corpus, read_corpus
-from cfepy.exploration.coverage import Coverage
 from cfepy.exploration.crews import make_crew
 from cfepy.exploration.footprints import check_visible
 from cfepy.exploration.fork_server import ForkingNotes
 from cfepy.exploration.gaps import gaps_of
-from cfepy.exploration.greybox import GreyboxSearch
 from cfepy.exploration.orders import OrderSearch
 from cfepy.exploration.progress import make_progress
 from cfepy.exploration.results_file import ResultsFile, keep_failure
-from cfepy.exploration.search import GREYBOX, SeededSearch, make_search
+from cfepy.exploration.search import SeededSearch, make_search
 from cfepy.exploration.shipment import files_read, identity_of, ship
 from cfepy.exploration.shrink import Shrinker, Shrunk, budget_of
 from cfepy.exploration.stuck import waits_of
@@ -93,7 +89,6 @@ class Report:
         is_steady: whether two runs under the default schedule went the same way. If not, no others were made.
         breadth: how far it looked.
         worst: the longest that was measured; None when nothing was to be.
-        coverage: what was covered; None where that was not looked at.
     """
 
     trial: Trial
@@ -105,7 +100,6 @@ class Report:
     is_steady: bool = True
     breadth: Breadth = field(default_factory=Breadth)
     worst: Worst | None = None
-    coverage: Coverage | None = None
 
     @property
     def unsteady(self) -> Schedule | None:
@@ -140,7 +134,6 @@ class Report:
             "failures": found,
             "breadth": self.breadth.to_dict(),
             "worst": None if self.worst is None else self.worst.to_dict(),
-            "coverage": None if self.coverage is None else self.coverage.to_dict(),
             "troubles": [{"schedule": each.schedule.text(), "text": each.trouble} for each in self.troubles],
         }
 
@@ -169,8 +162,7 @@ class Expedition:
         seeds: how many schedules; None for any number within the budget.
         budget_s: wall time after which no further schedule is begun; None for no limit.
         policy: where they come from: "random", "pct", "abreast" (tasks side by side), "dfs" (every one with
-            few preemptions), "orders" (all orders that differ, each once), "greybox" (guided by what they
-            cover), or "all".
+            few preemptions), "orders" (all orders that differ, each once), or "all".
         depth: of the bugs that pct looks for; most preemptions of dfs; how many steps of a run the orders
             may differ in.
         first_seed: seed of the first schedule.
@@ -185,8 +177,6 @@ class Expedition:
             may run on without a message; None for any time.
         fair: decisions in which a task may be passed over; None for any number.
         worst: what is to take as long as it can, such as "response:ARM" (`cfepy.monitors.measures`); None for nothing.
-        coverage: whether it is looked at what runs cover, which greybox does in any case.
-        corpus: results file of an earlier campaign, with whose schedules greybox begins; None for none.
         stuck: whether a task that waits for ever, and does not by default, is a failure.
         jobs: processes on this computer; None for one on each CPU.
         cluster: address of a dask scheduler, or local:N.
@@ -214,8 +204,6 @@ class Expedition:
     livelock_s: float | None = None
     fair: int | None = None
     worst: str | None = None
-    coverage: bool = False
-    corpus: str | None = None
     stuck: bool = True
     jobs: int | None = None
     cluster: str | None = None
@@ -234,37 +222,29 @@ class Expedition:
             UsageError: it cannot be explored like this.
         """
         watch, options = Stopwatch(), self._options()
-        self._check_greybox()
         if self.policy == "orders":
             check_visible(self.plan.spec())
         measure = None if self.worst is None else Measure.parse(self.worst)
-        bare = Trial(self.plan, self.events, keep_widths=self.policy in ("dfs", GREYBOX))
+        bare = Trial(self.plan, self.events, keep_widths=self.policy == "dfs")
         if measure is not None:
             bare = MeasuredTrial(self.plan, self.events, keep_widths=True, measure=measure)
-        is_covered = self.coverage or self.policy == GREYBOX
-        bare = replace(bare, liveness=self._liveness, usual=frozenset() if is_covered else None)
+        bare = replace(bare, liveness=self._liveness)
         counter = PointCounter(options.policy() or Policy())
         first = bare.fly(options, policy=counter)
         breadth = Breadth(dict(counter.kinds), first.tasks)
-        reference, notes = replace(first.verdict, covered=(), uses=()), first.notes
+        reference, notes = first.verdict, first.notes
         tell(notes)
         if self.from_s == FROM_OPERATIONAL:
             options = self._from_operational(options, first.booted_ns)
-        coverage = Coverage.beside(first.verdict.covered, first.code) if is_covered else None
-        plain = replace(bare, usual=None)
-        if coverage is not None:
-            bare = replace(bare, usual=coverage.usual)
         trial = beside_fifo(bare, first, options if self.stuck else None)
         findings = Findings(reference)
-        search = self._search(first, options, coverage)
+        search = self._search(first, options)
         if self.policy == "orders":
             trial = replace(trial, steps_from_ns=options.from_ns)
         distribution = None if measure is None else Distribution.of(measure, reference)
 
         def see(number: int, verdict: Verdict) -> None:
             breadth.take(verdict)
-            if coverage is not None and not isinstance(search, GreyboxSearch):
-                coverage.take(number, verdict.covered)
             if distribution is not None:
                 distribution.take(number, verdict)
 
@@ -274,16 +254,13 @@ class Expedition:
         if isinstance(search, OrderSearch):
             breadth.seen = search.seen
             trial = replace(trial, steps_from_ns=None)
-        trial = replace(trial, usual=None)
-        report = Report(trial, reference, tally, findings.troubles, notes=notes, breadth=breadth, coverage=coverage)
+        report = Report(trial, reference, tally, findings.troubles, notes=notes, breadth=breadth)
         for finding in findings.all():
             report.findings.append(self._told(trial, finding, tally))
         self._keep(report)
-        if self.results is not None and isinstance(search, GreyboxSearch) and not tally.interrupted:
-            keep_corpus(self.results, trial, search.corpus)
         if not report.findings and not tally.interrupted and not self.points:
             try:
-                breadth.gaps = gaps_of(plain, options)
+                breadth.gaps = gaps_of(bare, options)
             except KeyboardInterrupt:  # what was found must not be lost with it
                 tally.interrupted = True
         if distribution is not None and isinstance(trial, MeasuredTrial):
@@ -291,29 +268,12 @@ class Expedition:
             report.worst = worst_of(trial, distribution, 0 if tally.interrupted else budget)
         return report
 
-    def _search(self, first: Tried, options: Schedule, coverage: Coverage | None) -> Search:
-        """The schedules, as `make_search` gives them, or with which a search in generations begins."""
+    def _search(self, first: Tried, options: Schedule) -> Search:
+        """The schedules, as `make_search` gives them, or with which the search for the longest begins."""
         holds = self.worst is None  # a task that is held up is late by that time, which says nothing about the mission
         steps, tick_ns = first.verdict.decisions, first.tick_ns
         found = make_search(self.policy, self.depth, steps, options, self.first_seed, tick_ns, holds=holds)
-        if not isinstance(found, SeededSearch):
-            return found
-        if self.policy == GREYBOX:
-            assert coverage is not None
-            corpus = () if self.corpus is None else read_corpus(self.corpus, options)
-            return GreyboxSearch(found, coverage, first.verdict, options, self.first_seed, corpus)
-        return found if holds else WorstSearch(found, self.first_seed)
-
-    def _check_greybox(self) -> None:
-        """What goes together.
-
-        Raises:
-            UsageError: something does not.
-        """
-        if self.corpus is not None and self.policy != GREYBOX:
-            raise UsageError(f"goes with --policy {GREYBOX}; add it, or leave the corpus out", field="--corpus")
-        if self.worst is not None and self.policy == GREYBOX:
-            raise UsageError("--worst makes generations of its own; leave out one of the two", field="--policy")
+        return found if holds or not isinstance(found, SeededSearch) else WorstSearch(found, self.first_seed)
 
     @property
     def _liveness(self) -> Limits:
@@ -412,15 +372,7 @@ class Expedition:
         search |= {"worst": self.worst} if self.worst is not None else {}
         search |= {"liveness": list(self._liveness)} if any(self._liveness) else {}
         search |= {"fair": self.fair} if self.fair is not None else {}
-        search |= {"coverage": True} if self.coverage and self.policy != GREYBOX else {}
-        search |= {"corpus": self._corpus_digest()} if self.corpus is not None else {}
         return identity_of(trial.plan, files, search)
-
-    def _corpus_digest(self) -> str:
-        """Which schedules come first."""
-        assert self.corpus is not None
-        schedules = read_corpus(self.corpus, Schedule(BASE))
-        return blake2b(" ".join(each.text() for each in schedules).encode(), digest_size=8).hexdigest()
 
     def _told(self, trial: Trial, finding: Finding, tally: Tally) -> Told:
         """A failure, flown once more, shrunk, and with its timeline."""

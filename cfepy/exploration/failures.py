@@ -29,11 +29,9 @@ class FailureWatch(Attachment):
         self._mission: Mission | None = None
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`."""
         assert self._mission is not None
         self.end_ns = self._mission.kernel.now
 

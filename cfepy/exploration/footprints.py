@@ -72,16 +72,13 @@ class Footprints(Attachment):
         return self._log.steps
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         return _touching(base, self._pipes)
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """See `Attachment.kernel`."""
         about_waits = dict.fromkeys(("wait_on", "wake_first", "wake_all"), self._about_waits)
         return wrapping(self._log.kernel(base), {"charge": self._charging, **about_waits})
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         kernel = mission.kernel
         assert isinstance(kernel, ExploringKernel)
         self._log.begin_with(kernel)
@@ -90,7 +87,6 @@ class Footprints(Attachment):
         kernel.watch(self)
 
     def power_up(self, processor: Processor) -> None:
-        """See `Attachment.power_up`."""
         services = (getattr(processor.cfe, field.name) for field in fields(processor.cfe))
         self._services = {id(each): each for each in services}
         registry = processor.cfe.tbl.registry
@@ -106,7 +102,7 @@ class Footprints(Attachment):
                 _also(graph.params, name, lambda *args, **options: self.touch(PARAMETERS, READS))
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: what nodes do when they are ended is no part of it."""
+        """What nodes do when they are ended is no part of it."""
         self._log.close()
 
     def touch(self, thing: str, how: str = WRITES) -> None:
@@ -124,7 +120,7 @@ class Footprints(Attachment):
             self._log.begin(self._things(subject, call, args), wanted)
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
-        """See `CallObserver.returned`: a lock is taken when a call comes back with it."""
+        """A lock is taken when a call comes back with it."""
         if call == "is_set" or not self._is_of_calls(subject):  # told of without a call
             return
         if not self._log.end():
@@ -150,7 +146,6 @@ class Footprints(Attachment):
         return "no table" if access is None else f"table {access.table.name}"
 
     def failed(self, subject: Any, call: str) -> None:
-        """See `CallObserver.failed`."""
         self._log.fail()
 
     def _is_of_calls(self, subject: Any) -> bool:
@@ -313,7 +308,7 @@ class _Touching(PutHook):
         self._pipes = pipes
 
     def limit(self, destination: Destination) -> int:
-        """See `PutHook.limit`; the limit stays as it is."""
+        """The limit stays as it is."""
         limit = super().limit(destination)
         self._pipes.puts(destination, limit)
         return limit
@@ -338,13 +333,11 @@ def _touching(base: type[SoftwareBus], pipes: _Pipes) -> type[SoftwareBus]:
             self.put_hook = _Touching(pipes, self.put_hook)
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
-            """See `SoftwareBus.transmit_msg`."""
             pipes.touch(f"route {packet[0] << 8 | packet[1]}", READS)
             pipes.touch(f"message {packet[0] << 8 | packet[1]}")
             super().transmit_msg(packet, is_origination)
 
         def receive_buffer(self, pipe_id: int, timeout_ms: int = PEND_FOREVER) -> bytes | None:
-            """See `SoftwareBus.receive_buffer`."""
             pipes.touch(f"pipe {pipe_id}", READS)
             pipe = self.find_pipe(pipe_id)
             if pipe is None:
@@ -371,14 +364,12 @@ def _touching(base: type[SoftwareBus], pipes: _Pipes) -> type[SoftwareBus]:
             pipes.touch(GRAPH)  # a node publishes nothing where nobody listens
 
         def create_pipe(self, *args: Any) -> int:
-            """See `SoftwareBus.create_pipe`."""
             pipes.touch(PIPES)
             pipe_id = cast(int, super().create_pipe(*args))
             pipes.touch(f"pipe {pipe_id}")
             return pipe_id
 
         def delete_pipe(self, pipe_id: int) -> None:
-            """See `SoftwareBus.delete_pipe`."""
             pipes.touch(PIPES, READS)
             pipes.touch(f"pipe {pipe_id}")
             pipe = self.find_pipe(pipe_id)

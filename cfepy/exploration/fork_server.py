@@ -44,11 +44,9 @@ class LateSchedule:
         return self._gate.schedule
 
     def text(self) -> str:
-        """See `Schedule.text`."""
         return self.decided.text()
 
     def policy(self) -> Policy:
-        """See `Schedule.policy`."""
         return self._gate
 
     def watched(self) -> Attachment:
@@ -69,7 +67,6 @@ class _Gate(Policy):
         self.paused: Callable[[], AbstractContextManager[None]] = nullcontext
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         if self._inner is None:
             if decision.now < self._from_ns:
                 return self._early.choose(decision)
@@ -84,7 +81,6 @@ class _Pause(Attachment):
         self._gate = gate
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._gate.paused = mission.stall_watch.paused
 
 

@@ -42,7 +42,6 @@ class GapWatch(RaceWatch):
         self._gaps: dict[tuple[CodeType, str], tuple[tuple[int, str], Touch]] = {}
 
     def begin(self, mission: Any) -> None:
-        """See `Attachment.begin`."""
         super().begin(mission)
         self._kernel: CallPointKernel = mission.kernel
         mission.accesses.observers.append(self._pair)

@@ -68,7 +68,6 @@ class MoveNotingPolicy(AskingPolicy):
         self.choices: list[Choice] = []
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         taken = self._inner.choose(decision)
         moves = self._numbers.moves(decision)
         question = "" if decision.question is None else decision.question.kind

@@ -448,7 +448,6 @@ class OrderSearch:
         return OrdersSeen(self.orders, is_complete, self._depth, self.astray, self.timed, self.has_ends)
 
     def next(self) -> Schedule | None:
-        """See `cfepy.exploration.campaign.Search`."""
         if not self._ready and not self._away:
             self._fill()
         if not self._ready:
@@ -458,7 +457,7 @@ class OrderSearch:
         return self._options.in_order(() if beginning is None else beginning.runs)
 
     def tell(self, number: int, verdict: Verdict) -> None:
-        """See `cfepy.exploration.campaign.Search`. What is new counts when all that were handed out are back."""
+        """What is new counts when all that were handed out are back."""
         order = Order(verdict.steps[: self._depth])
         self._told.append(order)
         if len(self._told) < len(self._away) or self._ready:

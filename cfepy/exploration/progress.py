@@ -27,10 +27,10 @@ class NoProgress:
     """Shows nothing."""
 
     def arrived(self, failed: bool) -> None:
-        """See `Progress.arrived`."""
+        """Nothing is shown."""
 
     def close(self) -> None:
-        """See `Progress.close`."""
+        """Nothing is shown."""
 
 
 class CampaignMeter:
@@ -115,14 +115,13 @@ class PlainProgress:
         self._due_ns = EVERY_NS
 
     def arrived(self, failed: bool) -> None:
-        """See `Progress.arrived`."""
         self._meter.arrived(failed)
         if self._meter.elapsed_ns() >= self._due_ns:
             print(self._meter.text(), file=self._stream, flush=True)
             self._due_ns = self._meter.elapsed_ns() + EVERY_NS
 
     def close(self) -> None:
-        """See `Progress.close`."""
+        """It has written nothing but finished lines."""
 
 
 class BarProgress:
@@ -145,12 +144,10 @@ class BarProgress:
         keep_output_safe()
 
     def arrived(self, failed: bool) -> None:
-        """See `Progress.arrived`."""
         self._meter.arrived(failed)
         self._bar.update(self._task, completed=self._meter.share, description=self._meter.text())
 
     def close(self) -> None:
-        """See `Progress.close`."""
         self._bar.stop()
 
 

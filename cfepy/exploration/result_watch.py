@@ -61,16 +61,14 @@ class ResultWatch(Attachment):
             raise UsageError(error.text, file=spec.mission_file, field="results") from None
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         return self._watch.bus(base)
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
         self._watch.begin(mission)
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: what the shutdown of the nodes adds does not count."""
+        """What the shutdown of the nodes adds does not count."""
         self._found = [result for each in self._selected for result in self._results_of(each)]
 
     def results(self) -> tuple[Result, ...]:
@@ -81,7 +79,7 @@ class ResultWatch(Attachment):
         for each in self._selected:
             if each.compare in OF_MESSAGES and _is_of(each, heard.topic):
                 kept = self._messages.setdefault((each.name, heard.topic), [])
-                text = "" if each.compare == COUNT else message_text(heard, each.ignore)
+                text = "" if each.compare == COUNT else _message_text(heard, each.ignore)
                 if each.compare == LAST:
                     kept.clear()
                 kept.append(text)
@@ -163,7 +161,7 @@ def _digest(texts: Sequence[str]) -> str:
     return blake2b("\0".join(texts).encode("utf-8", "surrogatepass"), digest_size=16).hexdigest()
 
 
-def message_text(heard: Heard, ignore: tuple[str, ...]) -> str:
+def _message_text(heard: Heard, ignore: tuple[str, ...]) -> str:
     """A message as text, without the fields that may differ."""
     try:
         values = plain(heard.msg)

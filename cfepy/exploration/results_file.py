@@ -1,7 +1,6 @@
 """The results of a campaign in a file: JSON, a line a verdict behind a line that says which campaign it is.
 
-Behind the verdicts there is a line for each distinct failure, with the shortest schedule that is known to show it, and
-for each schedule of the corpus of a search that was guided by coverage.
+Behind the verdicts there is a line for each distinct failure, with the shortest schedule that is known to show it.
 
 Lines are only ever added, each in one write, as verdicts come in. Whatever ends the process in the middle of a write
 leaves half a line at the end, which the next run cuts off; then it goes on with what is missing.
@@ -12,7 +11,7 @@ from __future__ import annotations
 import json
 import os
 from array import array
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -112,7 +111,7 @@ class ResultsFile:
             self._write({"format": FORMAT, "campaign": identity})
 
     def _take_in(self, record: dict[str, Any], start: int, line: int) -> None:
-        if _is_told(record):
+        if is_failure(record):
             return
         number, _ = _numbered(record, self.path, line)
         self._remember(number, start)
@@ -164,11 +163,6 @@ def is_failure(record: Mapping[str, Any]) -> bool:
     return isinstance(record.get("failure"), dict) and "number" not in record
 
 
-def _is_told(record: Mapping[str, Any]) -> bool:
-    """Whether a line is none of a verdict: it has been told from them all."""
-    return is_failure(record) or (isinstance(record.get("corpus"), str) and "number" not in record)
-
-
 def keep_failure(path: str | Path, group: str, title: str, schedule: Schedule) -> None:
     """Add a distinct failure to a results file that is whole; the last line about a group counts.
 
@@ -181,32 +175,7 @@ def keep_failure(path: str | Path, group: str, title: str, schedule: Schedule) -
     Raises:
         UsageError: it cannot be written.
     """
-    _add(path, {"failure": {"group": group, "title": title, "schedule": schedule.text()}})
-
-
-def add_schedules(path: str | Path, schedules: Iterable[Schedule]) -> None:
-    """Add schedules of the corpus to a results file that is whole.
-
-    Raises:
-        UsageError: it cannot be written.
-    """
-    for each in schedules:
-        _add(path, {"corpus": each.text()})
-
-
-def read_schedules(path: str | Path) -> list[Schedule]:
-    """The schedules of the corpus of a results file, each once.
-
-    Raises:
-        UsageError: it is no results file, or cannot be read.
-    """
-    path = Path(path)
-    with _opened(path) as file:
-        texts = [record["corpus"] for _, record in whole_lines(file, path) if _is_told(record) and "corpus" in record]
-    return [Schedule.parse(text) for text in dict.fromkeys(texts)]
-
-
-def _add(path: str | Path, record: Mapping[str, Any]) -> None:
+    record = {"failure": {"group": group, "title": title, "schedule": schedule.text()}}
     try:
         with Path(path).open("ab") as file:
             file.write(json.dumps(record, separators=(",", ":")).encode() + b"\n")
@@ -230,7 +199,7 @@ def read_failures(path: str | Path) -> dict[str, tuple[str, Schedule]]:
         for line, (_, record) in enumerate(whole_lines(file, path), 1):
             if is_failure(record):
                 told |= _told_failure(record["failure"], path, line)
-            elif line > 1 and not _is_told(record):
+            elif line > 1:
                 _, plain = _numbered(record, path, line)
                 verdict = Verdict.from_dict(plain)
                 for failure in verdict.failures[:1]:
@@ -266,7 +235,7 @@ def read_results(path: str | Path) -> tuple[dict[str, Any], Iterator[tuple[int, 
 
 def _verdicts(path: Path, lines: Iterator[tuple[int, dict[str, Any]]]) -> Iterator[tuple[int, dict[str, Any]]]:
     for line, (_, record) in enumerate(lines, 2):
-        if not _is_told(record):
+        if not is_failure(record):
             yield _numbered(record, path, line)
 
 

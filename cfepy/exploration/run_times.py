@@ -32,11 +32,9 @@ class RunTimes(Observer):
         self._since_ns = 0
 
     def on_run(self, task: Task, at_ns: int) -> None:
-        """See `Observer.on_run`."""
         self._since_ns = at_ns
 
     def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
-        """See `Observer.on_leave`."""
         if at_ns > self._since_ns:
             self.turns.append(Turn(task.name, self._since_ns, at_ns))
 

@@ -18,8 +18,7 @@ from cfepy.exploration.verdict import Verdict
 from cfepy.mission import CORE_APPS
 from cfepy.rtos import Schedule
 
-GREYBOX = "greybox"
-POLICIES = ("all", "random", "pct", "abreast", "dfs", "orders", GREYBOX)
+POLICIES = ("all", "random", "pct", "abreast", "dfs", "orders")
 PCT_DEPTH, DFS_DEPTH = 3, 2
 PORTFOLIO_DEPTHS = (2, 3, 1)
 """Of PCT in the policy `all`: most races need two ordered events, some three, and starvation one."""
@@ -80,11 +79,9 @@ class SystematicSearch:
         self._tree = DepthFirst(depth, depth, options)
 
     def next(self) -> Schedule | None:
-        """See `cfepy.exploration.campaign.Search`."""
         return self._tree.next()
 
     def tell(self, number: int, verdict: Verdict) -> None:
-        """See `cfepy.exploration.campaign.Search`."""
         widths = [abs(width) for width in verdict.widths]
         self._tree.learn(verdict.schedule, widths, [width < 0 for width in verdict.widths])
 
@@ -105,7 +102,7 @@ def make_search(
     """The search that a command asks for.
 
     Args:
-        policy: one of POLICIES; of greybox what it takes from seeds.
+        policy: one of POLICIES.
         depth: of the bugs that PCT looks for, and the most preemptions of a systematic search; None takes 3 and 2,
             and for `all` PCT of depths 1 to 3, with points of 3 alone. Of a search of orders it is how many steps may
             come in another order.
@@ -132,7 +129,7 @@ def seeded_kinds(
     So PCT has one turn in six there.
     """
     random, abreast = replace(options, kind="random"), replace(options, kind="abreast")
-    is_mixed = policy in ("all", GREYBOX)
+    is_mixed = policy == "all"
     depths = PORTFOLIO_DEPTHS if depth is None and is_mixed else (PCT_DEPTH if depth is None else depth,)
     pct = tuple(replace(options, kind="pct", depth=each, steps=max(steps, 1)) for each in depths)
     if not is_mixed:

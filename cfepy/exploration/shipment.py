@@ -103,11 +103,9 @@ class PlanElsewhere(RunPlan):
     root: str = ""
 
     def spec(self) -> MissionSpec:
-        """See `RunPlan.spec`."""
         return settled(RunPlan.spec(self), self.root)
 
     def attachments(self) -> list[Attachment]:
-        """See `RunPlan.attachments`."""
         return [HiddenRoot(self.root)]
 
 

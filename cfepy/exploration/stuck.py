@@ -83,16 +83,15 @@ class WaitWatch(Attachment):
         self._mission: Mission | None = None
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """See `Attachment.kernel`; every wait goes through `block`."""
+        """Every wait goes through `block`."""
         return wrapping(base, {"block": self._blocking})
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
         mission.kernel.frames_wanted = True
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: note the tasks that wait now."""
+        """Note the tasks that wait now."""
         assert self._mission is not None
         now = self._mission.kernel.now
         left: list[Left] = []

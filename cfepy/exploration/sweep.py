@@ -134,7 +134,6 @@ class Sweep(Lot[Point, PointNumbers]):
     topics: tuple[str, ...] = ()
 
     def judge(self, subject: Point) -> PointNumbers:
-        """See `Lot.judge`."""
         watch = TrafficWatch()
         try:
             flown = fly(subject.plan(self.plan), attachments=[watch])
@@ -154,7 +153,6 @@ class Sweep(Lot[Point, PointNumbers]):
         )
 
     def died(self, subject: Point, fate: str, words: str) -> PointNumbers:
-        """See `Lot.died`."""
         return PointNumbers(board=subject.board or "", problem=f"the process died: {fate}")
 
     def _numbers(self, results: Results, watch: TrafficWatch, sent: SentNames) -> Iterator[TopicNumbers]:

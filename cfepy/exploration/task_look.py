@@ -103,15 +103,13 @@ class TaskLook(Attachment):
         self._ros: Any = None  # of the processor whose parameters are looked at
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         return _told(self._messages.bus(base), self._take_bus)
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """See `Attachment.kernel`; every wait goes through `block`."""
+        """Every wait goes through `block`."""
         return wrapping(base, {"block": self._blocking})
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
         self._messages.begin(mission)
         if isinstance(mission.kernel, ExploringKernel):
@@ -119,7 +117,7 @@ class TaskLook(Attachment):
             mission.accesses.observers.append(self._take_touch)
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: how tasks are ended is no part of it."""
+        """How tasks are ended is no part of it."""
         self._closed = True
 
     def policy(self, inner: Policy) -> Policy:
@@ -195,7 +193,6 @@ class TaskLook(Attachment):
     # -- calls, which are scheduling points ---------------------------------------------------------------------------
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
-        """See `CallObserver.called`."""
         task, frame = self._watched(), _outside(sys._getframe(1))
         if task is None or not self._goes_on() or _is_nested(subject, sys._getframe(2)):
             return
@@ -207,7 +204,6 @@ class TaskLook(Attachment):
             self._call_of_node(task, subject, call, frame)
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
-        """See `CallObserver.returned`."""
         task, frame = self._watched(), _outside(sys._getframe(1))
         if task is None or not self._goes_on() or _is_nested(subject, sys._getframe(2)):
             return
@@ -217,7 +213,7 @@ class TaskLook(Attachment):
             self._lock_taken(task, use_of(subject, call, frame), result)
 
     def failed(self, subject: Any, call: str) -> None:
-        """See `CallObserver.failed`: nothing was done."""
+        """Nothing was done."""
 
     def _call_of_app(
         self, task: Task, service: Any, call: str, args: tuple[Any, ...], frame: FrameType | None, ended: bool
@@ -432,7 +428,7 @@ class _LookingPolicy(AskingPolicy):
         self._look = look
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`. It is asked in the task that gives the processor away."""
+        """It is asked in the task that gives the processor away."""
         choice = self._inner.choose(decision)
         self._look.reached(decision.number)
         self._look.look(sys._getframe(1))
@@ -464,13 +460,11 @@ def _told(base: type[SoftwareBus], tell: Tell) -> type[SoftwareBus]:
             tell(do.SUBSCRIBES, route.msg_id, pipe)
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
-            """See `SoftwareBus.transmit_msg`."""
             if len(packet) > 1:
                 tell(do.SENDS, packet[0] << 8 | packet[1], None)
             super().transmit_msg(packet, is_origination)
 
         def receive_buffer(self, pipe_id: int, timeout_ms: int = PEND_FOREVER) -> bytes | None:
-            """See `SoftwareBus.receive_buffer`."""
             pipe = self.find_pipe(pipe_id) or self._gone.get(pipe_id)
             if pipe is not None:
                 tell(do.RECEIVES, None, pipe)
@@ -480,7 +474,6 @@ def _told(base: type[SoftwareBus], tell: Tell) -> type[SoftwareBus]:
             return packet
 
         def remove_pipe(self, pipe: Pipe) -> None:
-            """See `SoftwareBus.remove_pipe`."""
             tell(do.DELETES, None, pipe)
             self._gone[pipe.pipe_id] = pipe
             super().remove_pipe(pipe)

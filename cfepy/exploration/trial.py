@@ -12,8 +12,6 @@ from typing import NamedTuple, Self
 
 from cfepy.attachment import Attachment
 from cfepy.exploration import verdict
-from cfepy.exploration.coverage import ANSWERS, Covered, Known, kept_of, number_of
-from cfepy.exploration.coverage_look import CoverageLook
 from cfepy.exploration.failures import FailureWatch
 from cfepy.exploration.footprints import Footprints
 from cfepy.exploration.result_watch import Result, ResultWatch, differences, digest_of
@@ -47,7 +45,6 @@ class Tried(NamedTuple):
         booted_ns: virtual time at which the mission became OPERATIONAL; None when it did not.
         tick_ns: of the board's clock; 0 for none.
         tasks: how many there have been.
-        code: the files of mission code that tell which lines are executed, and whether each is a node's script.
     """
 
     verdict: Verdict
@@ -56,7 +53,6 @@ class Tried(NamedTuple):
     booted_ns: int | None = None
     tick_ns: int = 0
     tasks: int = 0
-    code: tuple[tuple[str, bool], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +69,6 @@ class Trial:
         waits: of the default schedule (`cfepy.exploration.stuck`), against which tasks that wait for ever are found;
             None lets them wait.
         liveness: how long a task may be ready without running, and an application run without a message.
-        usual: verdicts have what their runs cover (`cfepy.exploration.coverage`) besides this; None keeps nothing.
     """
 
     plan: RunPlan
@@ -83,7 +78,6 @@ class Trial:
     steps_from_ns: int | None = None
     waits: Waits | None = None
     liveness: Limits = FOR_EVER
-    usual: Known | None = None
 
     def run(self, schedule: Schedule, attachments: Sequence[Attachment] = ()) -> Verdict:
         """Fly the mission in this process.
@@ -116,8 +110,7 @@ class Trial:
         waits = [WaitWatch()] if self.waits is not None else []
         steps = [Footprints(self.steps_from_ns)] if self.steps_from_ns is not None else []
         alive = [LivenessWatch(self.liveness)] if any(self.liveness) else []
-        looks = [] if self.usual is None else [CoverageLook(spec, lambda: len(recorded.choices))]
-        watching = [*attachments, watch, results, *waits, *steps, *alive, *looks]
+        watching = [*attachments, watch, results, *waits, *steps, *alive]
         failed: tuple[Failure, ...]
         try:
             flown = fly(self.plan, spec=spec, attachments=watching, policy=recorded)
@@ -141,22 +134,8 @@ class Trial:
         trouble = "\n".join(watch.trouble)
         told = replace(told, results=digest_of(found), trace=flown.trace, end_ns=watch.end_ns, trouble=trouble)
         told = replace(told, steps=steps[0].steps if steps else ())
-        if looks:
-            told = self._with_coverage(told, looks[0], recorded)
         kernel = flown.mission.kernel
-        code = tuple(looks[0].files.items()) if looks else ()
-        return Tried(told, found, flown.notes, flown.mission.booted, kernel.tick_ns, kernel.tasks_made, code)
-
-    def _with_coverage(self, told: Verdict, look: CoverageLook, policy: NotingPolicy) -> Verdict:
-        assert self.usual is not None
-        answers = (
-            Covered(ANSWERS, number_of(each.instead_of, each.chosen), each.decision)
-            for each in policy.moments
-            if each.question
-        )
-        covered = kept_of([*look.covered((told.groups, told.results)), *answers], self.usual)
-        uses = {(each.kind, each.number) for each in covered}
-        return replace(told, covered=covered, uses=tuple(each for each in look.uses if each.known in uses))
+        return Tried(told, found, flown.notes, flown.mission.booted, kernel.tick_ns, kernel.tasks_made)
 
     def _stuck(self, found: Waits, schedule: Schedule, policy: NotingPolicy, end_ns: int) -> Iterator[Failure]:
         assert self.waits is not None
@@ -200,7 +179,7 @@ class Trial:
         return self.plan.command_line(schedule=schedule)
 
     def _verdict(self, schedule: Schedule, policy: NotingPolicy, failed: tuple[Failure, ...]) -> Verdict:
-        is_kept = failed or self.steps_from_ns is not None or self.usual is not None
+        is_kept = failed or self.steps_from_ns is not None
         deviations = tuple(sorted(policy.deviations.items())) if is_kept else ()
         schedule = told_as(schedule, policy.deviations)
         pairs = zip(policy.widths, policy.running, strict=True)

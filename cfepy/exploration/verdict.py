@@ -12,7 +12,6 @@ from itertools import pairwise
 from statistics import median
 from typing import Any
 
-from cfepy.exploration.coverage import Covered, ThingUse, from_plain, to_plain
 from cfepy.exploration.steps import TaskStep
 from cfepy.pilot import Failure, FailureKind
 from cfepy.rtos import Schedule
@@ -75,13 +74,11 @@ class Verdict:
         trace: digest of the whole run.
         decisions: how often the policy had a choice: those that `from` leaves to fifo are none.
         deviations: (decision, candidate) where it did not choose as fifo would; kept for runs with failures, and where
-            steps or what they cover are.
+            steps are.
         preemptions: how many of them took the processor from a task that could have gone on.
         widths: how many answers each decision had, negative where the running task could have gone on; kept only for a
             systematic search.
         steps: what the tasks did, and what they touched; kept only for a search of orders.
-        covered: what the run did that the default schedule does not, where that is looked at.
-        uses: the uses of things that are among that.
         end_ns: virtual time at the end of the run, before the nodes were asked to shut down.
         longest: of a run in which something was measured: how long it took at most, when that ended, in virtual ns, and
             how many decisions there had been by then; empty when nothing was.
@@ -98,8 +95,6 @@ class Verdict:
     preemptions: int = 0
     widths: tuple[int, ...] = ()
     steps: tuple[TaskStep, ...] = ()
-    covered: tuple[Covered, ...] = ()
-    uses: tuple[ThingUse, ...] = ()
     end_ns: int = 0
     longest: tuple[int, ...] = ()
     trouble: str = ""
@@ -122,8 +117,7 @@ class Verdict:
     def to_dict(self) -> dict[str, Any]:
         """Plain data, for JSON and msgpack."""
         same = {each.name: getattr(self, each.name) for each in fields(self)}
-        own = {"schedule": self.schedule.text(), "failures": tuple(map(asdict, self.failures))}
-        return same | own | {"covered": to_plain(self.covered)}
+        return same | {"schedule": self.schedule.text(), "failures": tuple(map(asdict, self.failures))}
 
     @classmethod
     def from_dict(cls, plain: dict[str, Any]) -> Verdict:
@@ -147,8 +141,6 @@ class Verdict:
         missed = tuple(plain.get("missed", ()))
         steps = tuple(TaskStep.of(each) for each in plain.get("steps", ()))
         own = {"schedule": schedule, "failures": failures, "deviations": deviations, "missed": missed, "steps": steps}
-        own["covered"] = from_plain(plain.get("covered", {}))
-        own["uses"] = tuple(ThingUse.of(each) for each in plain.get("uses", ()))
         longest = tuple(map(int, plain.get("longest", ())))
         found = cls(**{**plain, **own, "widths": tuple(map(int, plain["widths"])), "longest": longest})
         texts = [found.results, found.trace, found.trouble, *found.missed]

@@ -214,7 +214,6 @@ class Processes:
         self._batch = 1
 
     def run(self, trial: Experiment, take: Take) -> Generator[NumberedVerdict, None, None]:
-        """See `Crew.run`."""
         pickled = pickle.dumps(trial)
         self._died = trial.died if isinstance(trial, Lot) else died
         try:
@@ -229,7 +228,6 @@ class Processes:
             self._alone.clear()
 
     def close(self) -> None:
-        """See `Crew.close`."""
         for worker in list(self.workers):
             self._drop(worker)
 

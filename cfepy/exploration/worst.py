@@ -3,21 +3,23 @@
     search = WorstSearch(make_search(...))
     campaign = Campaign(MeasuredTrial(plan, measure=Measure.parse("response:ARM")), search, 200, crew)
 
-It is a search in generations. Each has the neighbours of the longest run, which answer one decision otherwise; changed
-ones of the longest runs; and a few more from seeds. What comes after the longest does not matter to it, so all changes
-are before that.
+It is a search in generations. It begins with schedules from seeds. Then come generations, each made when the verdicts
+on all schedules before it are known, so they are the same for any number of processes. Each has the neighbours of the
+longest run, which answer one decision otherwise; changed ones of the longest runs; and a few more from seeds, so that
+the search does not stay where it began. What comes after the longest does not matter to it, so all changes are before
+that.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from random import Random
 from statistics import median_low
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.exploration.generations import Generations, changed
 from cfepy.exploration.search import SeededSearch
 from cfepy.exploration.shrink import Shrinker, Shrunk
 from cfepy.exploration.timeline import Story, story_of
@@ -32,6 +34,8 @@ FROM_SEEDS = 40  # schedules before the first generation
 NEIGHBOURS, CHANGED, FRESH = 6, 10, 4
 """A generation: how many schedules of each kind. It does not depend on how many processes there are."""
 PARENTS = 8
+MOST_CHANGES = 4
+WINDOW = 12  # decisions before the one that matters, which matter more often than others
 NOTHING = Measure("", "")
 
 
@@ -48,7 +52,6 @@ class MeasuredTrial(Trial):
     limit_ns: int = 0
 
     def fly(self, schedule: Schedule, attachments: Sequence[Attachment] = (), policy: Policy | None = None) -> Tried:
-        """See `Trial.fly`."""
         noted = NotingPolicy(schedule.policy() if policy is None else policy)
         at: list[int] = [0]
 
@@ -77,7 +80,7 @@ def _why_nothing(measure: Measure, mission: Mission) -> str:
     return "" if measure.kind == WAIT else SentNames(mission).why_not(filter(None, (measure.name, measure.effect)))
 
 
-class WorstSearch(Generations):
+class WorstSearch:
     """Schedules with ever longer runs; see the module.
 
     Args:
@@ -86,23 +89,59 @@ class WorstSearch(Generations):
     """
 
     def __init__(self, seeded: SeededSearch, seed: int = 0) -> None:
-        super().__init__(seeded, Random(f"worst {seed}"), FROM_SEEDS, FRESH)
+        self._random = Random(f"worst {seed}")
+        self._seeded = seeded
+        self._given = self._told = 0
+        self._waiting: deque[Schedule] = deque()
+        self._fresh = FROM_SEEDS  # schedules from seeds that are still to come in this generation
+        self._tried: set[Schedule] = set()
         self._parents: list[tuple[int, Verdict]] = []  # the longest first; of equals the first one found
 
-    def learn(self, number: int, verdict: Verdict) -> None:
-        """See `Generations.learn`."""
+    def next(self) -> Schedule | None:
+        """A generation waits for the verdicts on all schedules before it."""
+        if not self._waiting and not self._fresh:
+            if self._told < self._given:
+                return None
+            self._waiting.extend(self._generation())
+            self._fresh = FRESH
+        if self._waiting:
+            self._given += 1
+            return self._waiting.popleft()
+        found = self._seeded.next()
+        if found is not None:
+            self._given += 1
+            self._fresh -= 1
+        return found
+
+    def tell(self, number: int, verdict: Verdict) -> None:
+        self._told += 1
+        self._seeded.tell(number, verdict)
+        self._learn(number, verdict)
+
+    def _learn(self, number: int, verdict: Verdict) -> None:
+        """Keep the run among the longest ones, if it is one of them."""
         known = (_with(parent, _before_the_end(parent)) for _, parent in self._parents)
         if verdict.longest and _with(verdict, _before_the_end(verdict)) not in known:
             self._parents.append((number, verdict))
             self._parents.sort(key=lambda each: (-each[1].longest[0], each[0]))
             del self._parents[PARENTS:]
 
-    def generation(self) -> list[Schedule]:
-        """See `Generations.generation`."""
+    def _generation(self) -> list[Schedule]:
+        """The next generation, without what comes from seeds."""
         if not self._parents:
             return []
-        made = [*self.untried(self._neighbours(), NEIGHBOURS)]
-        return [*made, *self.untried((self._changed() for _ in range(CHANGED * 4)), CHANGED)]
+        made = [*self._untried(self._neighbours(), NEIGHBOURS)]
+        return [*made, *self._untried((self._changed() for _ in range(CHANGED * 4)), CHANGED)]
+
+    def _untried(self, candidates: Iterable[Schedule], count: int) -> Iterator[Schedule]:
+        """The first ones that were not tried yet, so many at most."""
+        for each in candidates:
+            if not count:
+                return
+            if each not in self._tried:
+                self._tried.add(each)
+                count -= 1
+                yield each
 
     def _neighbours(self) -> Iterator[Schedule]:
         """Of the longest run, and then of the others: one decision otherwise, the last ones before the end first."""
@@ -115,13 +154,44 @@ class WorstSearch(Generations):
 
     def _changed(self) -> Schedule:
         """One of the longest runs, changed."""
-        random = self.random
+        random = self._random
         parent = self._parents[int(len(self._parents) * random.random() ** 2)][1]
         widths = parent.widths[: _end(parent)]
-        return _with(parent, changed(random, _before_the_end(parent), widths, self._answers_of_any))
+        return _with(parent, _changed(random, _before_the_end(parent), widths, self._answers_of_any))
 
     def _answers_of_any(self) -> dict[int, int]:
-        return _before_the_end(self.random.choice(self._parents)[1])
+        return _before_the_end(self._random.choice(self._parents)[1])
+
+
+def _changed(
+    random: Random, answers: dict[int, int], widths: Sequence[int], other: Callable[[], dict[int, int]]
+) -> dict[int, int]:
+    """The answers of a run with some decisions otherwise, and perhaps with the beginning of another one.
+
+    Args:
+        random: makes the choices.
+        answers: that are not fifo's, by decision.
+        widths: how many answers each decision had, also as negative numbers; those behind the last one that matters are
+            left out.
+        other: gives the answers of another run.
+    """
+    end = len(widths)
+    if not end:
+        return {}
+    how = random.random()
+    if how < 0.25:
+        first, last = sorted((random.randrange(end), random.randrange(end)))
+        answers = {at: answer for at, answer in answers.items() if not first <= at <= last}
+    elif how < 0.4:
+        others, cut = other(), random.randrange(end)
+        early = {at: answer for at, answer in others.items() if at < cut}
+        answers = early | {at: answer for at, answer in answers.items() if at >= cut}
+    else:
+        answers = dict(answers)
+    for _ in range(random.randint(1, MOST_CHANGES)):
+        decision = random.randrange(max(0, end - WINDOW) if random.random() < 0.5 else 0, end)
+        answers[decision] = random.randrange(abs(widths[decision]))
+    return answers
 
 
 def _end(verdict: Verdict) -> int:

@@ -133,7 +133,6 @@ def faulty(base: type[SoftwareBus], switchboard: MessageSwitchboard) -> type[Sof
         """A Software Bus on which messages are struck."""
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
-            """See `SoftwareBus.transmit_msg`."""
             size = len(packet)
             if not SMALLEST <= size <= self.config.sb_max_msg_size or not (
                 is_origination or msg.get_size(packet) == size
@@ -190,7 +189,6 @@ def faulty(base: type[SoftwareBus], switchboard: MessageSwitchboard) -> type[Sof
                 task.owner = before
 
         def receive_buffer(self, pipe_id: int, timeout_ms: int = PEND_FOREVER) -> bytes | None:
-            """See `SoftwareBus.receive_buffer`."""
             end_ns = self.kernel.now + timeout_ms * NS_PER_MS
             while True:
                 packet: bytes | None = super().receive_buffer(pipe_id, timeout_ms)

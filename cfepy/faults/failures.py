@@ -201,7 +201,6 @@ class _Refusing(PutHook):
         self._puts = puts
 
     def limit(self, destination: Destination) -> int:
-        """See `PutHook.limit`."""
         limit = super().limit(destination)
         waiting = destination.puts - destination.gets
         fails = waiting < limit and self._puts.refuses(self._kernel.current, destination.pipe)
@@ -226,7 +225,6 @@ def refusing(base: type[SoftwareBus], puts: Puts) -> type[SoftwareBus]:
             self.put_hook = _Refusing(kernel, puts, self.put_hook)
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
-            """See `SoftwareBus.transmit_msg`."""
             with puts.transmitting(self.kernel.current):
                 super().transmit_msg(packet, is_origination)
 

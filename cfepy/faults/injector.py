@@ -60,7 +60,6 @@ class FaultInjector(Attachment):
         self._processor: Processor
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         if any(_is_put(fault) for fault in self.plan.faults):
             base = refusing(base, self._puts)
         if any(_needs_bus(fault) for fault in self.plan.faults):
@@ -76,7 +75,7 @@ class FaultInjector(Attachment):
         self._failing[name].strike(args)
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """See `Attachment.kernel`; what comes later in the plan is wrapped around what comes earlier."""
+        """What comes later in the plan is wrapped around what comes earlier."""
         self._strain, self._calls, self._works = Strain(), OpenCalls(), {}
         hooks: dict[Strain | OpenCalls | Work, None] = {}
         for fault in self.plan.faults:
@@ -92,7 +91,6 @@ class FaultInjector(Attachment):
         return base
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         kernel = self._kernel = mission.kernel
         self.report = FaultReport(self.plan.faults, lambda: kernel.now, mission.console.write, mission.trace.note)
         mission.record.tables["faults"] = self.rows
@@ -118,7 +116,6 @@ class FaultInjector(Attachment):
                 self._prepare(fault)
 
     def power_up(self, processor: Processor) -> None:
-        """See `Attachment.power_up`."""
         self._processor = processor
         for strike in self._power_ups:
             strike(processor)

@@ -132,7 +132,6 @@ class DelayMessage(MessageFault):
         self._by = self._least
 
     def strikes(self, data: bytes, flags: int, stream: object) -> bool:
-        """See `MessageFault.strikes`."""
         if self._least != self._most and (flags in (WHOLE, FIRST) or self._by_segment):
             self._by = self.gate.random.randint(self._least, self._most)
         return super().strikes(data, flags, stream)

@@ -81,7 +81,6 @@ class Explored:
         failures: each failure once, those of the default schedule first.
         schedules: how many were flown.
         failed: how many of them failed.
-        coverage: what the runs covered; None where that was not looked at.
         worst: the longest that was measured, and the schedule that gives it; None when nothing was to be.
         troubles: errors of cfepy itself, which are to be reported.
         notes: what its user should know.
@@ -90,7 +89,7 @@ class Explored:
     def __init__(self, mission: str, report: Report) -> None:
         self.failures = [FoundFailure(report, told) for told in report.findings]
         self.schedules, self.failed = report.tally.done, report.tally.failed
-        self.coverage, self.worst = report.coverage, report.worst
+        self.worst = report.worst
         self.troubles = [each.trouble for each in report.troubles]
         leak = () if report.unsteady is None else (f"not deterministic: two runs under {report.unsteady} differ",)
         self.notes = (*report.notes, *leak)
@@ -134,8 +133,6 @@ def explore(
     livelock: float | None = None,
     stuck: bool = True,
     worst: str | None = None,
-    coverage: bool = False,
-    corpus: str | os.PathLike[str] | None = None,
     jobs: int | None = None,
     results: str | os.PathLike[str] | None = None,
     shrink: int | None = None,
@@ -150,7 +147,7 @@ def explore(
         mission: as of `run`.
         seeds: how many schedules.
         budget: wall time in s after which no further schedule is begun; None for no limit.
-        policy: where they come from: "random", "pct", "abreast", "dfs", "orders", "greybox", or "all".
+        policy: where they come from: "random", "pct", "abreast", "dfs", "orders", or "all".
         depth: of the bugs that PCT looks for; most preemptions of "dfs"; how many steps "orders" may differ in. None is
             1 to 3, 2 and all.
         until_failure: whether the first failure ends it.
@@ -166,8 +163,6 @@ def explore(
         livelock: virtual time in s for which an application may run on without a message; None for any time.
         stuck: whether a task that waits for ever, and does not by default, is a failure.
         worst: what is to take as long as it can, such as "latency:/topic"; None for nothing.
-        coverage: whether it is looked at what the runs cover, which "greybox" does in any case.
-        corpus: results file of an earlier campaign, with whose schedules "greybox" begins; None for none.
         jobs: processes; None is one on each CPU.
         results: file that keeps the verdicts, and that it goes on from.
         shrink: how many runs it may take to shrink a failure; None for as many as there were schedules, 300 to 800; 0
@@ -200,8 +195,6 @@ def explore(
         livelock_s=livelock,
         stuck=stuck,
         worst=worst,
-        coverage=coverage,
-        corpus=None if corpus is None else os.fspath(corpus),
         jobs=jobs,
         results=None if results is None else os.fspath(results),
         shrink=shrink,

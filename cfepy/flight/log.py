@@ -97,11 +97,9 @@ class FlightLog(Attachment):
         return dictionary_of(self._spec)
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         return self._topic_watch.hearing(self._packet_watch.bus(base))  # a packet is looked at once
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
         self.lines = mission.console.lines
         self._topic_watch.begin(mission)

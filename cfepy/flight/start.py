@@ -25,12 +25,10 @@ class TimedHost(Host):
     """Measures the wall-clock time of a run."""
 
     def begin(self, run: LiveRun) -> None:
-        """See `Host.begin`."""
         super().begin(run)
         self._watch = Stopwatch()
 
     def wall_ns(self) -> int:
-        """See `Host.wall_ns`."""
         return self._watch.elapsed_ns()
 
 

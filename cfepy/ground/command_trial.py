@@ -50,7 +50,6 @@ class CommandTrial(PacketWatch):
         return [event for event in self.events if event.event_type >= ERROR]
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
 
     def run(self, run_until: Callable[[int], object], seconds: float, patience: float = 0) -> None:

@@ -58,7 +58,6 @@ class McapRecorder(RunRecorder):
         self._writer.finish()
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         super().begin(mission)
         self._dictionary = dictionary_of(mission.spec)
 
@@ -66,7 +65,6 @@ class McapRecorder(RunRecorder):
         return True
 
     def take_packet(self, seen: Seen) -> None:
-        """See `TopicWatch.take_packet`."""
         super().take_packet(seen)
         declared = None if get_header_version(seen.packet) else self._dictionary.declared_as(seen.packet)
         if declared is None and self._topic(seen.msg_id) is not None:

@@ -422,7 +422,6 @@ class SeriesRecorder(SeriesSet, Attachment):
             self._watches.append(PacketWatch(self._take_packet, self._names.__contains__))
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         if self._wants_all:  # one look at each packet, not one for topics and one for packets
             return PacketWatch(self._take_any, _is_telemetry).bus(self._all_topics.hearing(base))
         for each in self._watches:
@@ -430,7 +429,6 @@ class SeriesRecorder(SeriesSet, Attachment):
         return base
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
         for each in (*self._watches, self._all_topics):
             each.begin(mission)
@@ -445,7 +443,7 @@ class SeriesRecorder(SeriesSet, Attachment):
                     self._want(packet)
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: how the nodes shut down is no part of the run's time."""
+        """How the nodes shut down is no part of the run's time."""
         self._is_over = True
         self._silent = [topic.name for topic in topics_of(self._mission)]
         self._silent += (name for names in self._names.values() for name in names.values())

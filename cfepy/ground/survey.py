@@ -52,7 +52,6 @@ class Survey(PacketWatch):
         self._mission: Mission
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
 
     def rows(self) -> list[MidRow]:

@@ -31,7 +31,6 @@ class JournalPolicy(AskingPolicy):
         self._pending: list[int] = []  # the distance from one such decision to the next, and the answer, in turn
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         choice = self._inner.choose(decision)
         if choice:
             self._pending += (self.count - self._last, choice)
@@ -63,7 +62,6 @@ class RetoldPolicy(AskingPolicy):
         self._count = -1
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         self._count += 1
         own = self._inner.choose(decision)
         if self._count >= self._known:

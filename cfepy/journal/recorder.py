@@ -108,7 +108,7 @@ class JournalRecorder(Attachment):
     # -- the run -----------------------------------------------------------------------------------------------------
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`: write down what is known."""
+        """Write down what is known."""
         self._mission = mission
         self._write(HEADER, self._header(mission).to_dict())
         self._begun = True
@@ -124,7 +124,7 @@ class JournalRecorder(Attachment):
             mission.trace.flush()
 
     def finish(self) -> None:
-        """See `Attachment.finish`; the digest of the run was taken."""
+        """The digest of the run was taken."""
         mission = self._mission
         assert mission is not None
         self._check(mission.kernel.now)

@@ -68,14 +68,14 @@ class ReplayCourse(Course):
 
     @property
     def goes_on(self) -> bool:
-        """See `Course.goes_on`: the recorded run may have stood still at its last instant several times."""
+        """The recorded run may have stood still at its last instant several times."""
         if self.is_over:
             return False
         outside = self.mission.outside
         return outside.until_ns < self.until_ns or outside.visits < self._visits
 
     def next_stop(self) -> int:
-        """See `Course.next_stop`; what came here from outside comes first."""
+        """What came here from outside comes first."""
         outside, pauses = self.mission.outside, self._pauses
         while pauses and (pauses[-1].until_ns, pauses[-1].visits) <= (outside.until_ns, outside.visits):
             for event in pauses.pop().events:
@@ -92,8 +92,6 @@ class _Answers(Attachment):
         self._answers = list(reversed(answers))
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
-
         def dial(source: Place, target: Place) -> Stream | None:
             values = self._answers.pop().values if self._answers else (*source, *target, False)
             ends = mission.outside.answer(source, target, tuple(values) == (*source, *target, True))
@@ -356,7 +354,6 @@ class Checker(Attachment):
         self._trace: Trace
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._trace = mission.trace
         self._trace.also(self._take)
 
@@ -365,13 +362,13 @@ class Checker(Attachment):
         self._end = None
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: how the nodes shut down is the run's own only at the run's own end."""
+        """How the nodes shut down is the run's own only at the run's own end."""
         if self._end is None:
             self._trace.flush()
             self._finished = True
 
     def finish(self) -> None:
-        """See `Attachment.finish`: two runs may agree at all checkpoints, and yet not end alike."""
+        """Two runs may agree at all checkpoints, and yet not end alike."""
         self._finished = True
         end = self._end
         if end is not None and self.difference is None and self._hash.hexdigest() != end.trace:

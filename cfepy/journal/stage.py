@@ -300,7 +300,6 @@ class HiddenRoot(Attachment):
         self._root = root
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         console, root = mission.console, self._root
         for name in ("record", "sink"):
             show = getattr(console, name)

@@ -58,7 +58,6 @@ class CompiledWatch:
         self._ros = ros
 
     def unsent(self, app: str, msg_id: int, message: bytes) -> None:
-        """See `cfepy.c.api.unsent.PublicationWatch`."""
         sender = self._sender(app, msg_id)
         name = f"0x{msg_id:04X}" if sender is None else sender.name
         self._bus.unsent(UNSENT + name.encode() + b"\0" + message)
@@ -66,7 +65,6 @@ class CompiledWatch:
             self._show(sender, message)
 
     def latches(self, app: str, msg_id: int) -> None:
-        """See `cfepy.c.api.unsent.PublicationWatch`."""
         sender = self._sender(app, msg_id)
         if sender is not None:
             sender.latch()
@@ -99,7 +97,6 @@ class CompiledFiles(Finder):
             self._loader_made()
 
     def find(self, file: str, symbol: str | None) -> Code | None:
-        """See `Finder.find`."""
         data = self._data(file)
         return None if data is None else self._loader_made().code(file, data)
 
@@ -114,16 +111,13 @@ class CompiledFiles(Finder):
         return None if self._loader is None else self._loader.runtime
 
     def exists(self, file: str) -> bool:
-        """See `Finder.exists`."""
         return self._data(file) is not None
 
     def unload(self, app_name: str) -> None:
-        """See `Finder.unload`."""
         if self._loader is not None:
             self._loader.runtime.unload(app_name)
 
     def forget(self) -> None:
-        """See `Finder.forget`."""
         if self._loader is not None:
             self._loader.runtime.close()
             self._loader = None

@@ -154,15 +154,12 @@ class MainCode:
         self._make_main = make_main
 
     def main(self, symbol: str, app_name: str) -> Callable[[], object]:
-        """See `Code.main`."""
         return self._make_main(app_name)
 
     def library(self, symbol: str) -> tuple[object, Callable[[int], object]]:
-        """See `Code.library`."""
         raise self._no_module()
 
     def module(self, owner: str) -> object:
-        """See `Code.module`."""
         raise self._no_module()
 
     def _no_module(self) -> OsalError:
@@ -180,13 +177,11 @@ class BuiltInApps(Finder):
         self._mains = mains
 
     def find(self, file: str, symbol: str | None) -> Code | None:
-        """See `Finder.find`."""
         main = None if symbol is None else self._mains.get(file)
         return None if main is None else MainCode(file, lambda app_name: main)
 
     def exists(self, file: str) -> bool:
-        """See `Finder.exists`."""
         return file in self._mains
 
     def forget(self) -> None:
-        """See `Finder.forget`; there is nothing to let go of."""
+        """There is nothing to let go of."""

@@ -63,7 +63,6 @@ class PacketWatch(Attachment):
         self._wanted = wanted
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         return _watched(base, self._take, self._wanted)
 
 
@@ -74,7 +73,6 @@ def _watched(
         """A Software Bus that is looked at."""
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
-            """See `SoftwareBus.transmit_msg`."""
             if self._is_packet(packet) and wanted(packet[0] << 8 | packet[1]):
                 owner = self.kernel.current.owner
                 name: str = HOST if owner is None else owner.name

@@ -234,15 +234,14 @@ class Processor:
     def _object_table(self) -> ObjectTable:
         """What CFE_ES_Main calls and starts before the startup script (CFE_ES_ObjectTable)."""
         cfe, kept = self.cfe, self.machine.retained.kept
-        nothing = bool  # what C does here, Python did when it made the objects
         calls: dict[str, Callable[[], object]] = {
-            "Config_Init": nothing,
+            "Config_Init": _set_up_already,
             "ES_CDSEarlyInit": cfe.es.cds_early_init,
             "EVS_EarlyInit": lambda: cfe.evs.early_init(kept),
             "SB_EarlyInit": cfe.sb.early_init,
             "TIME_EarlyInit": lambda: cfe.time.early_init(kept),
             "TBL_EarlyInit": cfe.tbl.early_init,
-            "FS_EarlyInit": nothing,
+            "FS_EarlyInit": _set_up_already,
         }
         apps = {
             "EVS": CoreApp("CFE_EVS", cfe.evs.task_main, EVS_PRIORITY),
@@ -363,6 +362,10 @@ class Processor:
         kernel.unwind()
         self.osal.delete_all_objects()  # what `finally` blocks have made meanwhile, such as a socket on the network
         self.loader.forget()
+
+
+def _set_up_already() -> None:
+    """What C sets up here, Python did when it made the objects."""
 
 
 def _ignore(event: int, object_id: int, data: object) -> int:

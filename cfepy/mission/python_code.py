@@ -64,21 +64,20 @@ class NodeScripts(Finder):
         self._node_main = node_main
 
     def find(self, file: str, symbol: str | None) -> Code | None:
-        """See `Finder.find`."""
         if symbol != NODE_SYMBOL:
             return None
         script = self._script_of(file) or find_node(file, self._folder)
         return None if script is None else MainCode(file, lambda app_name: self._node_main(script, app_name))
 
     def exists(self, file: str) -> bool:
-        """See `Finder.exists`; a script that the mission changed or removed is none."""
+        """A script that the mission changed or removed is none."""
         if self._script_of(file) is not None:
             return True
         script = find_node(file, self._folder)
         return script is not None and not _is_changed(script, self._folder, self._files)
 
     def forget(self) -> None:
-        """See `Finder.forget`; there is nothing to let go of."""
+        """There is nothing to let go of."""
 
 
 def find_node(file: str, folder: Path) -> Path | None:
@@ -157,12 +156,12 @@ class PythonCode:
         self._found = found
 
     def main(self, symbol: str, app_name: str) -> Callable[[], object]:
-        """See `Code.main`; it is called with the handle of the services."""
+        """The function is called with the handle of the services."""
         main, handle = self._python.function(self.module(app_name), self._file, symbol), self._python.handle
         return lambda: main(handle())
 
     def library(self, symbol: str) -> tuple[ModuleType, Callable[[int], object]]:
-        """See `Code.library`; the init function gets the handle of the services, and not the LibId."""
+        """The init function gets the handle of the services, and not the LibId."""
         module, handle = self.module(f"library {self._file}"), self._python.handle
         if symbol == NO_SYMBOL:
             return module, lambda lib_id: 0
@@ -170,7 +169,6 @@ class PythonCode:
         return module, lambda lib_id: init(handle())
 
     def module(self, owner: str) -> ModuleType:
-        """See `Code.module`."""
         return self._python.module(self._file, self._found, owner)
 
 
@@ -185,20 +183,17 @@ class PythonFinder(ABC):
         self._python = python
 
     def find(self, file: str, symbol: str | None) -> Code | None:
-        """See `Finder.find`."""
         found = None if symbol == NODE_SYMBOL else self.look(file)
         return None if found is None else PythonCode(self._python, file, found)
 
     def exists(self, file: str) -> bool:
-        """See `Finder.exists`."""
         return self.look(file) is not None
 
     def unload(self, app_name: str) -> None:
-        """See `Finder.unload`; the module goes when the application starts again."""
+        """The module goes when the application starts again."""
         return
 
     def forget(self) -> None:
-        """See `Finder.forget`."""
         self._python.forget()
 
     @abstractmethod
@@ -221,7 +216,6 @@ class MissionFolder(PythonFinder):
         self._folder = folder
 
     def look(self, file: str) -> Found | None:
-        """See `PythonFinder.look`."""
         self._files.translate(file)
         found = _in_folder(file, self._folder)
         if found is None or not _is_changed(found, self._folder, self._files):
@@ -236,7 +230,6 @@ class ShippedApps(PythonFinder):
     """The apps that cfepy brings along."""
 
     def look(self, file: str) -> Found | None:
-        """See `PythonFinder.look`."""
         return _in_folder(file, shipped("apps"))
 
 
@@ -244,7 +237,6 @@ class InstalledModules(PythonFinder):
     """Python modules that are installed on the host."""
 
     def look(self, file: str) -> Found | None:
-        """See `PythonFinder.look`."""
         return _installed(file)
 
 
@@ -261,7 +253,6 @@ class WrittenFiles(PythonFinder):
         self._files = files
 
     def look(self, file: str) -> Found | None:
-        """See `PythonFinder.look`."""
         return find_virtual_code(file, self._files)
 
 

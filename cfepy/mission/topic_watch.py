@@ -64,7 +64,6 @@ class TopicWatch(PacketWatch):
         self._mission: Mission | None = None
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         return self.hearing(super().bus(base))
 
     def hearing(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
@@ -72,7 +71,6 @@ class TopicWatch(PacketWatch):
         return hearing(base, self._take_unsent)
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
 
     # -- what is seen --------------------------------------------------------------------------------------------------

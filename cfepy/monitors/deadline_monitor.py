@@ -79,13 +79,12 @@ class DeadlineMonitor(Observer):
         return found
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`; a message without a subscriber is never sent, and has come all the same."""
+        """A message without a subscriber is never sent, and has come all the same."""
         base = super().bus(base)
         is_paced = any(state.checks.keys() & set(BETWEEN_MESSAGES) for _, state in self._topics)
         return hearing(base, self._take_unheard) if is_paced else base
 
     def begin(self, mission: Mission) -> None:
-        """See `Observer.begin`."""
         super().begin(mission)
         self._names = LiveNames(mission)
         mission.record.part(DeadlineRecord).checks = list(self._all())

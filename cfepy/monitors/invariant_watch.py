@@ -100,7 +100,7 @@ class FunctionJudge(Judge):
         self._code = code_of(invariant)
 
     def end(self, now_ns: int) -> None:
-        """See `Judge.end`: an object that has a method of this name is asked once more."""
+        """An object that has a method of this name is asked once more."""
         last_word = getattr(self._code, "end", None)
         if last_word is not None:
             self._ask(last_word, now_ns, "")
@@ -132,7 +132,7 @@ class AnswerJudge(Judge):
         return super().selects(topic) or _selects(self._answer.selection, topic)
 
     def take(self, heard: Heard) -> bool:
-        """See `Judge.take`. A message that is both answers first."""
+        """A message that is both answers first."""
         self._expire(heard.at_ns)
         names = self._names(heard)
         if self._open and _selects(self._answer.selection, heard.topic):
@@ -149,7 +149,7 @@ class AnswerJudge(Judge):
         return is_cause
 
     def end(self, now_ns: int) -> None:
-        """See `Judge.end`; what still has time is not judged."""
+        """What still has time is not judged."""
         self._expire(now_ns)
 
     def _expire(self, now_ns: int) -> None:
@@ -171,7 +171,6 @@ class AgainJudge(Judge):
         self._since_ns = max(now_ns, invariant.after_ns)
 
     def take(self, heard: Heard) -> bool:
-        """See `Judge.take`."""
         is_one = super().take(heard)
         if is_one:
             self._expire(heard.at_ns)
@@ -182,7 +181,6 @@ class AgainJudge(Judge):
         """That it came is all that is asked of it."""
 
     def end(self, now_ns: int) -> None:
-        """See `Judge.end`."""
         self._expire(now_ns)
 
     def _expire(self, now_ns: int) -> None:
@@ -203,7 +201,6 @@ class EventuallyJudge(Judge):
         self._has_held = self._has_held or bool(holds.holds(names))
 
     def end(self, now_ns: int) -> None:
-        """See `Judge.end`."""
         assert self.invariant.eventually is not None
         if not self._has_held and now_ns >= self.invariant.after_ns:
             text = f"{self.invariant.eventually.source} did not hold of any message until the end of the run"
@@ -240,18 +237,15 @@ class InvariantWatch(Attachment):
         self._make_judges()
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         return self._messages.bus(base)
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
         self._messages.begin(mission)
         self._records = mission.record.part(InvariantRecords)
         self._records.update((each.name, InvariantRecord(each.name, each.place)) for each in self._invariants)
 
     def power_up(self, processor: Processor) -> None:
-        """See `Attachment.power_up`."""
         assert self._mission is not None
         if self._mission.record.resets:
             self._latest.clear()
@@ -260,7 +254,6 @@ class InvariantWatch(Attachment):
             self._make_judges()
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`."""
         assert self._mission is not None
         for judge in self._judges:
             self._ask(judge, partial(judge.end, self._mission.kernel.now))

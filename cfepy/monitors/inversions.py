@@ -60,7 +60,6 @@ class InversionWatch(Observer):
         return self.mission.record.part(InversionRecord)
 
     def begin(self, mission: Mission) -> None:
-        """See `Observer.begin`."""
         super().begin(mission)
         mission.record.part(InversionRecord).clear()
 
@@ -114,7 +113,7 @@ class InversionWatch(Observer):
     # -- who waits, and who runs -------------------------------------------------------------------------------------
 
     def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
-        """See `Observer.on_leave`: a task has run for a while, and may begin to wait."""
+        """A task has run for a while, and may begin to wait."""
         ran_ns = at_ns - self._ran_from
         if ran_ns:
             for each in self._held_up:
@@ -126,7 +125,7 @@ class InversionWatch(Observer):
             self._waits[task] = _Wait(task.waits.what, holder, holder.base_priority, at_ns)
 
     def on_run(self, task: Task, at_ns: int) -> None:
-        """See `Observer.on_run`: others may be held up by it."""
+        """Others may be held up by the task."""
         if task in self._waits:
             self._end(task, at_ns)
         self._ran_from = at_ns
@@ -139,7 +138,7 @@ class InversionWatch(Observer):
         ]
 
     def on_ready(self, task: Task, at_ns: int) -> None:
-        """See `Observer.on_ready`: a wait is over."""
+        """A wait is over."""
         if task in self._waits:
             self._end(task, at_ns)
 

@@ -68,7 +68,7 @@ class LivenessWatch(Observer):
         self._processor: Processor
 
     def power_up(self, processor: Processor) -> None:
-        """See `Observer.power_up`: what was ready is gone."""
+        """What was ready is gone."""
         super().power_up(processor)
         self._processor = processor
         self._ready.clear()
@@ -87,12 +87,10 @@ class LivenessWatch(Observer):
     # -- starving ----------------------------------------------------------------------------------------------------
 
     def on_ready(self, task: Task, at_ns: int) -> None:
-        """See `Observer.on_ready`."""
         if _is_own(task):
             self._ready[task] = at_ns
 
     def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
-        """See `Observer.on_leave`."""
         self._before = task
         if not _is_own(task):
             return
@@ -103,7 +101,6 @@ class LivenessWatch(Observer):
             self._due[task] = next(when for when, number, each in timers if each is task and number == task.timer)
 
     def on_run(self, task: Task, at_ns: int) -> None:
-        """See `Observer.on_run`."""
         if not _is_own(task):
             return
         due_ns = self._due.pop(task, None)
@@ -138,11 +135,9 @@ class LivenessWatch(Observer):
             self._tell(Lack(True, app, task.name, at_ns, text))
 
     def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
-        """See `Observer.on_send`."""
         self._moves(sent.task, sent.at_ns)
 
     def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
-        """See `Observer.on_receive`."""
         self._moves(task, at_ns)
 
     def _moves(self, task: Task, at_ns: int) -> None:

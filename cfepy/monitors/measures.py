@@ -105,13 +105,12 @@ class LongestWatch(DeadlineMonitor):
         self._due: dict[Task, int | None] = {}  # when the wait of a task is over at the latest
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`; the deadlines of the mission itself stay in its record."""
+        """The deadlines of the mission itself stay in its record."""
         kept = mission.record.part(DeadlineRecord).checks
         super().begin(mission)
         mission.record.part(DeadlineRecord).checks = kept
 
     def power_up(self, processor: Processor) -> None:
-        """See `Attachment.power_up`."""
         super().power_up(processor)
         self._causes.clear()
         self._ready.clear()
@@ -159,13 +158,12 @@ class LongestWatch(DeadlineMonitor):
         return self._measure_of.kind == WAIT and fnmatchcase(task.name, self._measure_of.name)
 
     def on_ready(self, task: Task, at_ns: int) -> None:
-        """See `Observer.on_ready`."""
         super().on_ready(task, at_ns)
         if self._means(task):
             self._ready[task] = at_ns
 
     def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
-        """See `Observer.on_leave`: it waits from now on, or could run."""
+        """The task waits from now on, or could run."""
         super().on_leave(task, at_ns, waits)
         if not self._means(task):
             return
@@ -174,7 +172,7 @@ class LongestWatch(DeadlineMonitor):
         self._due[task] = self._timer_of(task) if waits else None
 
     def on_run(self, task: Task, at_ns: int) -> None:
-        """See `Observer.on_run`: it runs at last; without a call that ended its wait, its timer did."""
+        """The task runs at last; without a call that ended its wait, its timer did."""
         super().on_run(task, at_ns)
         if not self._means(task):
             return

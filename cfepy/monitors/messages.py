@@ -108,13 +108,11 @@ class MessageWatch(Attachment):
         self._mission: Mission | None = None
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         for each in self._watches:
             base = each.bus(base)
         return base
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
         for each in self._watches:
             each.begin(mission)

@@ -228,7 +228,6 @@ def _observed(observer: Observer, base: type[SoftwareBus]) -> type[SoftwareBus]:
         """A Software Bus that tells an observer what passes it."""
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
-            """See `SoftwareBus.transmit_msg`."""
             if not PRIMARY_HEADER_SIZE < len(packet) <= self.config.sb_max_msg_size:
                 super().transmit_msg(packet, is_origination)
                 return
@@ -237,7 +236,6 @@ def _observed(observer: Observer, base: type[SoftwareBus]) -> type[SoftwareBus]:
             observer._has_sent(self, packet[0] << 8 | packet[1])
 
         def receive_buffer(self, pipe_id: int, timeout_ms: int = PEND_FOREVER) -> bytes | None:
-            """See `SoftwareBus.receive_buffer`."""
             packet: bytes | None = super().receive_buffer(pipe_id, timeout_ms)
             pipe = None if packet is None else self.find_pipe(pipe_id)
             if packet is not None and pipe is not None:
@@ -245,7 +243,6 @@ def _observed(observer: Observer, base: type[SoftwareBus]) -> type[SoftwareBus]:
             return packet
 
         def hand_on(self, packet: bytes, destination: Any) -> None:
-            """See `SoftwareBus.hand_on`."""
             super().hand_on(packet, destination)
             observer._receives(self, destination.pipe, packet)
 

@@ -109,12 +109,10 @@ class RaceWatch(Attachment):
     # -- what orders ---------------------------------------------------------------------------------------------------
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """See `Attachment.bus`."""
         made: type[SoftwareBus] = listened(base, self)
         return made
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
         kernel = mission.kernel
         assert isinstance(kernel, ExploringKernel)
@@ -124,7 +122,7 @@ class RaceWatch(Attachment):
         mission.accesses.on_gone(self._gone)
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`: how nodes end when they are asked to is no part of what is judged."""
+        """How nodes end when they are asked to is no part of what is judged."""
         self._is_over = True
 
     @property
@@ -137,7 +135,6 @@ class RaceWatch(Attachment):
         self._clocks.hand(self._task, task)
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
-        """See `CallObserver`."""
         if call == "__init__":
             self._made(subject)
         elif call in _LOCKS_GIVEN:
@@ -152,7 +149,6 @@ class RaceWatch(Attachment):
             self._clocks.let_go(self._task, _LETS_GO[call](args))
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
-        """See `CallObserver`."""
         if call in _LOCKS_TAKEN:
             if result is not False:
                 self._clocks.take(self._task, self._lock(subject))
@@ -162,7 +158,7 @@ class RaceWatch(Attachment):
             self._clocks.take(self._task, _TAKES[call](args))
 
     def failed(self, subject: Any, call: str) -> None:
-        """See `CallObserver`: it has taken nothing, so it orders nothing."""
+        """The call has taken nothing, so it orders nothing."""
 
     def _lock(self, lock: Any) -> Hashable:
         assert self._mission is not None

@@ -67,14 +67,12 @@ class TrafficWatch(Observer):
         self._processor: Processor
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         super().begin(mission)
         self.arrivals.clear()
         self.sent.clear()
         self.lost.clear()
 
     def power_up(self, processor: Processor) -> None:
-        """See `Attachment.power_up`."""
         super().power_up(processor)
         self._processor = processor
 
@@ -83,19 +81,15 @@ class TrafficWatch(Observer):
         return booted_ns is not None and at_ns >= booted_ns + SETTLE_NS and not self._is_over
 
     def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
-        """See `Observer.on_send`."""
         self.sent[sent.msg_id] += self._counts(sent.at_ns)
 
     def on_drop(self, msg_id: int, pipe: Pipe, why: str, at_ns: int) -> None:
-        """See `Observer.on_drop`."""
         self.lost[msg_id] += self._counts(at_ns)
 
     def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
-        """See `Observer.on_receive`."""
         if sent is not None and self._counts(sent.at_ns):
             self.arrivals.setdefault(sent.msg_id, {}).setdefault(pipe.name, Arrivals()).add(sent.at_ns, at_ns)
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`."""
         self._is_over = True
         self.end_ns = self._kernel.now

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from cfepy.nodes.accesses import WHOLE, Accesses, Observer, Touch
     from cfepy.nodes.app_modules import AppModules, make_app_universe
     from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
-    from cfepy.nodes.instrument import lines_to_reach
     from cfepy.nodes.reach import held_by, is_private, reaches
     from cfepy.nodes.refused import RefusedError
     from cfepy.nodes.universe import Factory, ProcessNumbers, StartThread, Universe, process_number
@@ -53,7 +52,6 @@ __all__ = [
     "below_root",
     "held_by",
     "is_private",
-    "lines_to_reach",
     "make_app_universe",
     "process_number",
     "reaches",
@@ -66,7 +64,6 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".accesses": ("WHOLE", "Touch", "Accesses", "Observer"),
             ".app_modules": ("AppModules", "make_app_universe"),
             ".files": ("ASKED", "LISTED", "MADE", "NEEDED", "PREFIX", "Overlay", "below_root"),
-            ".instrument": ("lines_to_reach",),
             ".reach": ("held_by", "is_private", "reaches"),
             ".refused": ("RefusedError",),
             ".universe": (

@@ -114,15 +114,12 @@ class Accesses:
 
     Attributes:
         observers: get each access; set before the mission boots.
-        files: the source files whose code has hooks, and whether each is a node's script.
-        reached: takes the lines that are executed, by `instrument.line_name`; None for nobody. Set before the mission
-            boots.
+        files: the source files whose code has hooks.
     """
 
     def __init__(self, kernel: Kernel) -> None:
         self.observers: list[Observer] = []
-        self.files: dict[str, bool] = {}
-        self.reached: set[str] | None = None
+        self.files: set[str] = set()
         self._kernel = kernel
         self._points = Points.parse("" if kernel.policy is None else kernel.policy.points)
         self._point = kernel.point if isinstance(kernel, ExploringKernel) else None
@@ -137,7 +134,7 @@ class Accesses:
     @property
     def is_on(self) -> bool:
         """Whether code has to be compiled with hooks."""
-        return bool(self.observers or self._points.kind or self.reached is not None)
+        return bool(self.observers or self._points.kind)
 
     def kinds(self, file: str, is_main: bool) -> Kinds | None:
         """What the code of a file has hooks at; None for nothing.
@@ -147,14 +144,12 @@ class Accesses:
             is_main: it is a node's script.
         """
         kind = self._points.kind if self._points.cover(file) else ""
-        tells_lines = self.reached is not None
-        if not (self.observers or kind or tells_lines):
+        if not (self.observers or kind):
             return None
         from cfepy.nodes.instrument import Kinds
 
-        self.files[file] = is_main
-        has_accesses = bool(self.observers) or kind == ATTRIBUTES
-        return Kinds(has_accesses, kind == LINES, kind == CALLS, is_main, tells_lines)
+        self.files.add(file)
+        return Kinds(bool(self.observers) or kind == ATTRIBUTES, kind == LINES, kind == CALLS, is_main)
 
     def number(self, thing: object) -> int:
         """The number of an object, from 1."""
@@ -166,8 +161,7 @@ class Accesses:
 
     def hooks(self) -> dict[str, Callable[..., Any]]:
         """What code with hooks needs among its builtins."""
-        found = {f"__{name}__": getattr(self, name) for name in _HOOKS}
-        return found if self.reached is None else found | {"__reached__": self.reached.add}
+        return {f"__{name}__": getattr(self, name) for name in _HOOKS}
 
     def adopt(self, variables: dict[str, Any]) -> None:
         """The variables of a module of the mission, which is about to be executed."""

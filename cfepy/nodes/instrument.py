@@ -68,14 +68,12 @@ class Kinds(NamedTuple):
         lines: the beginning of each statement.
         calls: the end of each call.
         is_main: the module's own statements count, too.
-        reached: the beginning of each statement, too, which tells its line and lets nobody in.
     """
 
     accesses: bool = False
     lines: bool = False
     calls: bool = False
     is_main: bool = False
-    reached: bool = False
 
 
 def compile_with_hooks(source: bytes | str, file: str, kinds: Kinds, ordered: bool = False) -> CodeType:
@@ -93,35 +91,11 @@ def compile_with_hooks(source: bytes | str, file: str, kinds: Kinds, ordered: bo
     tree = parsed(source, file)
     if ordered:
         tree = with_ordered_sets(tree)
-    return compiled(_Hooking(tree, kinds, file).visit(tree), file)
-
-
-def lines_to_reach(source: bytes | str, file: str, is_main: bool) -> list[int]:
-    """The lines of a module that code with `Kinds.reached` tells of, in order.
-
-    Args:
-        source: its text.
-        file: its name.
-        is_main: the module's own statements count, too.
-
-    Raises:
-        SyntaxError: as `compile` does.
-    """
-    tree = parsed(source, file)
-    hooking = _Hooking(tree, Kinds(is_main=is_main, reached=True), file)
-    hooking.visit(tree)
-    return sorted(hooking.lines)
-
-
-def line_name(file: str, line: int) -> str:
-    """What a line is told as when it is reached."""
-    return f"{file}:{line}"
+    return compiled(_Hooking(tree, kinds).visit(tree), file)
 
 
 class _Hooking(ast.NodeTransformer):
-    def __init__(self, tree: ast.Module, kinds: Kinds, file: str) -> None:
-        self.lines: set[int] = set()
-        self._file = file
+    def __init__(self, tree: ast.Module, kinds: Kinds) -> None:
         self._kinds = kinds
         self._scopes = NameScopes(tree).of
         self._scope = self._scopes[tree]
@@ -232,9 +206,6 @@ class _Hooking(ast.NodeTransformer):
             if is_docstring or isinstance(node, ast.Global | ast.Nonlocal) or _is_future(node):
                 found.append(node)
                 continue
-            if self._is_on and self._kinds.reached:
-                self.lines.add(node.lineno)
-                found.append(self._statement("__reached__", node, line_name(self._file, node.lineno)))
             if self._is_on and self._kinds.lines:
                 found.append(self._statement("__line__", node))
             found += self._before(node)

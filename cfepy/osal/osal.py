@@ -320,7 +320,7 @@ class Osal(ShellApi, ApplicationApi, DiskApi, IdMapApi):
         )
 
     def api_init(self) -> None:
-        """See `ApplicationApi.api_init`: file systems are gone after `api_teardown`, too, and OS_printf prints."""
+        """File systems are gone after `api_teardown`, too, and OS_printf prints."""
         was_shut_down = self._is_shut_down
         super().api_init()
         if was_shut_down:

@@ -27,7 +27,6 @@ class ComparedTrace(Trace):
     __slots__ = ()
 
     def flush(self) -> None:
-        """See `Trace.flush`."""
         self._hash.update(b"".join(record for record in self.records if record[:1] not in ONLY_COMPARED))
         if self._sink is not None:
             self._sink(self.records)

@@ -48,11 +48,10 @@ class BoardLedger(Attachment):
         self._mission: Mission
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
 
     def power_up(self, processor: Processor) -> None:
-        """See `Attachment.power_up`: from now on nothing is refused."""
+        """From now on nothing is refused."""
         memory = processor.memory
         claim = memory.claim
         memory.limit = None
@@ -66,7 +65,6 @@ class BoardLedger(Attachment):
         memory.claim = noting  # type: ignore[method-assign]  # of this budget only
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`."""
         cfe = self._mission.cfe
         self.sb_pool = max(self.sb_pool, cfe.sb.peaks.memory)
         self.pools = [*_tables(cfe), *_cds(cfe), *_messages(cfe)]

@@ -100,12 +100,10 @@ class Collector(Observer):
         self._since_ns = 0
 
     def begin(self, mission: Any) -> None:
-        """See `Observer.begin`."""
         super().begin(mission)
         self.names = LiveNames(mission)
 
     def power_up(self, processor: Any) -> None:
-        """See `Observer.power_up`."""
         super().power_up(processor)
         resets = self.mission.record.resets
         if resets:
@@ -118,12 +116,10 @@ class Collector(Observer):
         self.graph = graph_of(self.mission, {msg_id: topic.senders for msg_id, topic in self.topics.items()})
 
     def on_run(self, task: Task, at_ns: int) -> None:
-        """See `Observer.on_run`."""
         self._app(task).runs.add(at_ns)
         self._since_ns = at_ns
 
     def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
-        """See `Observer.on_leave`."""
         if at_ns > self._since_ns:
             self._app(task).busy.add_span(self._since_ns, at_ns)
 
@@ -135,7 +131,6 @@ class Collector(Observer):
         return app
 
     def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
-        """See `Observer.on_send`."""
         topic = self._topic(sent.msg_id)
         topic.sent.add(sent.at_ns)
         topic.senders.add(app_of(sent.task))
@@ -147,7 +142,6 @@ class Collector(Observer):
             _keep(self.events, event)
 
     def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
-        """See `Observer.on_receive`."""
         if sent is not None:
             self._topic(sent.msg_id).latency.add(at_ns - sent.at_ns)
 
@@ -158,12 +152,10 @@ class Collector(Observer):
         return topic
 
     def on_drop(self, msg_id: int, pipe: Pipe, why: str, at_ns: int) -> None:
-        """See `Observer.on_drop`."""
         drop = DropPlace(msg_id, pipe.name, why)
         self.drops[drop] = self.drops.get(drop, 0) + 1
 
     def on_console(self, line: str, at_ns: int) -> None:
-        """See `Observer.on_console`."""
         self.line_count += 1
         _keep(self.lines, ConsoleLine(at_ns, line))
         mark = mark_of(line)
@@ -171,7 +163,6 @@ class Collector(Observer):
             self._mark(*mark, at_ns)
 
     def on_note(self, text: str, at_ns: int) -> None:
-        """See `Observer.on_note`."""
         self._mark(*(mark_of(text) or ("note", text)), at_ns)
 
     def policy(self, inner: Policy) -> Policy:
@@ -201,7 +192,7 @@ class _SwitchNotes(AskingPolicy):
         self._numbers = MoveNumbers()
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`; a policy is asked in the task that gives the processor away, so its stack is there."""
+        """A policy is asked in the task that gives the processor away, so its stack is there."""
         choice = self._inner.choose(decision)
         moves = self._numbers.moves(decision)
         if choice:

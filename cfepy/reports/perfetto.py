@@ -49,7 +49,6 @@ class PerfettoTrace(Observer):
         return self._events.error
 
     def begin(self, mission: Any) -> None:
-        """See `Observer.begin`."""
         super().begin(mission)
         self._names = LiveNames(mission)
         self._events.begin()

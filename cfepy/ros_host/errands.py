@@ -176,7 +176,6 @@ class _BoundedConnection(http.client.HTTPConnection):
     """A connection whose answers come in time, and are not too large."""
 
     def connect(self) -> None:
-        """See `HTTPConnection.connect`."""
         super().connect()
         self.sock = _BoundedSocket(self.sock)
 

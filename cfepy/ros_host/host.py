@@ -409,7 +409,6 @@ class RosHost:
         self.act("subscribe no more", topic, name, publisher)
 
     def message(self, topic: str, publisher: str, subscriber: str, payload: bytes) -> None:
-        """See `WayOut.message`."""
         by_publisher = self._clients.get((topic, subscriber))
         if not by_publisher:
             return
@@ -426,7 +425,6 @@ class RosHost:
         count.size += len(payload)
 
     def packet(self, topic: str, packet: bytes) -> None:
-        """See `WayOut.packet`."""
         payload = self.shown.packets[topic].serialize(packet)
         for client in self._ears.get(topic, ()):
             count = self.counts.of(topic, client.caller, OUT_OF)
@@ -470,7 +468,6 @@ class RosHost:
             self.act("forget call", service, number, caller)
 
     def answer(self, number: int, good: bool, body: bytes) -> None:
-        """See `WayOut.answer`."""
         self._todo.append(lambda: self._answered(number, good, body))
 
     def _answered(self, number: int, good: bool, body: bytes) -> None:
@@ -484,7 +481,6 @@ class RosHost:
             client.fail(f"{error}")
 
     def request(self, service: str, number: int, header: dict[str, str], body: bytes) -> None:
-        """See `WayOut.request`."""
         self._todo.append(lambda: self._call_outside(service, number, header, body))
 
     def _call_outside(self, service: str, number: int, header: dict[str, str], body: bytes) -> None:

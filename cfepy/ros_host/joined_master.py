@@ -69,7 +69,7 @@ class JoinedMaster:
         self._from_there: dict[str, Any] = {}  # parameters as the master told them last
 
     def begin(self) -> None:
-        """See `RosWorld.begin`; the mission's own parameters are set there, as roslaunch does it."""
+        """The mission's own parameters are set there, as roslaunch does it."""
         try:
             self._pid = ask(self.uri, "getPid", self.caller)
             self._params_there = self._subscribe_params()
@@ -80,13 +80,12 @@ class JoinedMaster:
         self._host.tell(f"joined the ROS master at {self.uri}")
 
     def enter(self) -> None:
-        """See `RosWorld.enter`."""
         self._others.clear()
         self._exchange_params(self._params_there)
         self._look_at_s = 0.0
 
     def close(self) -> None:
-        """See `RosWorld.close`: the mission's nodes leave the master, unless it is gone."""
+        """The mission's nodes leave the master, unless it is gone."""
         try:
             for entry, uri in self._registered.items():
                 ask(self.uri, f"unregister{entry.kind}", entry.node, entry.name, uri)
@@ -99,7 +98,6 @@ class JoinedMaster:
     # -- registrations -----------------------------------------------------------------------------------------------
 
     def look(self, seen: OwnGraph, now_s: float) -> None:
-        """See `RosWorld.look`."""
         if not self._is_lost:
             self._register(seen)
         if now_s >= self._look_at_s and not self._asks:
@@ -194,7 +192,6 @@ class JoinedMaster:
         self._publishers |= self._told  # which may be newer than the answer
 
     def heard(self, node: str, method: str, key: Any, value: Any) -> None:
-        """See `RosWorld.heard`."""
         if method == "publisherUpdate":
             self._publishers[str(key)] = self._told[str(key)] = [str(each) for each in value]
             self._host.soon()
@@ -202,19 +199,15 @@ class JoinedMaster:
             self._take_param(str(key), value)
 
     def publishers_of(self, topic: str) -> list[str]:
-        """See `RosWorld.publishers_of`."""
         return [uri for uri in self._publishers.get(topic, ()) if not self._host.is_own(uri)]
 
     def services(self) -> dict[str, tuple[str, str]]:
-        """See `RosWorld.services`."""
         return self._services
 
     def uri_of(self, name: str) -> str:
-        """See `RosWorld.uri_of`."""
         return self._nodes.get(name, "")
 
     def name_at(self, uri: str) -> str:
-        """See `RosWorld.name_at`."""
         return next((name for name, at in self._nodes.items() if at == uri), "")
 
     # -- parameters --------------------------------------------------------------------------------------------------
@@ -241,7 +234,7 @@ class JoinedMaster:
         self.params_changed([name for name, value in ours.items() if self._from_there.get(name) != value])
 
     def params_changed(self, keys: list[str]) -> None:
-        """See `RosWorld.params_changed`: set them there, too."""
+        """Set them there, too."""
         host = self._host
         assert host.ros is not None
         if self._is_lost:

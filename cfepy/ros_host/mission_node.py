@@ -129,7 +129,6 @@ class OutsideClient:
         self._gone()
 
     def fail(self, why: str) -> None:
-        """See `Guarded.fail`."""
         self._socket.fail(why)
 
     def _take(self, data: bytes) -> None:

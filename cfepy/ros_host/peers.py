@@ -87,7 +87,6 @@ class OutsidePublisher:
             self._host.bounds.room.hold(self, len(self._frames) + sum(map(len, self._coming)))
 
     def fail(self, why: str) -> None:
-        """See `Guarded.fail`."""
         if self._socket is not None:
             self._socket.fail(why)
 

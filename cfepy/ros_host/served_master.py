@@ -53,16 +53,14 @@ class ServedMaster:
         self._entered: dict[tuple[str, ...], bytes] = {}  # registrations that stand, for after a reset
 
     def begin(self) -> None:
-        """See `RosWorld.begin`."""
         self._host.tell(f"ROS master at {self.uri}: export ROS_MASTER_URI={self.uri}")
 
     def enter(self) -> None:
-        """See `RosWorld.enter`: what outside nodes have registered holds on."""
+        """What outside nodes have registered holds on."""
         for body in self._entered.values():
             self._host.ask_inside("", body)
 
     def close(self) -> None:
-        """See `RosWorld.close`."""
         self._server.close()
 
     @property
@@ -114,7 +112,7 @@ class ServedMaster:
     # -- the mission and outside nodes -------------------------------------------------------------------------------
 
     def look(self, seen: OwnGraph, now_s: float) -> None:
-        """See `RosWorld.look`: tell outside subscribers of the publishers, if there are others now."""
+        """Tell outside subscribers of the publishers, if there are others now."""
         registry = self._registry
         publishers, told = registry.publishers(), {}
         for topic, held in registry.subscribers().items():
@@ -127,7 +125,7 @@ class ServedMaster:
         self._told = told
 
     def params_changed(self, keys: list[str]) -> None:
-        """See `RosWorld.params_changed`: tell those that have subscribed."""
+        """Tell those that have subscribed."""
         host = self._host
         assert host.ros is not None
         for subscribed, held in self._registry.param_subscribers.items():
@@ -147,12 +145,10 @@ class ServedMaster:
         """See `RosWorld.heard`: nobody but this master tells them such things, and they know."""
 
     def publishers_of(self, topic: str) -> list[str]:
-        """See `RosWorld.publishers_of`."""
         nodes = self._host.seen.nodes
         return [uri for name, uri in self._registry.publishers().get(topic, {}).items() if nodes.get(name) != uri]
 
     def services(self) -> dict[str, tuple[str, str]]:
-        """See `RosWorld.services`."""
         nodes, registry = self._host.seen.nodes, self._registry
         found = {}
         for service, body in [(key[1], key[2]) for key in self._entered if key[0] == "registerService"]:
@@ -163,11 +159,9 @@ class ServedMaster:
         return found
 
     def uri_of(self, name: str) -> str:
-        """See `RosWorld.uri_of`."""
         return self._registry.node_uri(name) or ""
 
     def name_at(self, uri: str) -> str:
-        """See `RosWorld.name_at`."""
         return next(
             (name for held in self._registry.publishers().values() for name, at in held.items() if at == uri), ""
         )

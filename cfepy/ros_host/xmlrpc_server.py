@@ -189,7 +189,6 @@ class _Connection:
         self._gone()
 
     def fail(self, why: str) -> None:
-        """See `Guarded.fail`."""
         self.close()
 
     def go_on(self) -> None:

@@ -8,7 +8,6 @@ queues and mutexes do not: OSAL builds them on the names below. The host's threa
 from __future__ import annotations
 
 from cfepy.rtos.abreast import Abreast
-from cfepy.rtos.aims import Aim, child_name
 from cfepy.rtos.context_choice import AUTO, GREENLET, THREAD, TaskKind, has_greenlets, task_kind
 from cfepy.rtos.costs import CpuCosts
 from cfepy.rtos.cpus import allowed_cpus
@@ -62,7 +61,6 @@ __all__ = [
     "THREAD",
     "TIMEOUT",
     "Abreast",
-    "Aim",
     "AskingPolicy",
     "CallObserver",
     "CallPointKernel",
@@ -103,7 +101,6 @@ __all__ = [
     "Wait",
     "WaitList",
     "allowed_cpus",
-    "child_name",
     "circles",
     "endless",
     "has_greenlets",

@@ -62,7 +62,6 @@ class Abreast(Policy):
         self._starters = StartersFirst()
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         random = self._random.random
         if decision.question is not None:
             if decision.question.is_rare:

@@ -241,7 +241,7 @@ class ThreadContext:
                     pin(carrier.native_id, cpu)
 
     def be_prompt(self) -> None:
-        """See `Context.be_prompt`. A SCHED_BATCH thread that is woken on another CPU waits for the end of a slice."""
+        """A SCHED_BATCH thread that is woken on another CPU waits for the end of a slice."""
         self._is_prompt = True
 
     def end_run(self) -> None:
@@ -394,7 +394,7 @@ class GreenletContext:
         pass
 
     def be_prompt(self) -> None:
-        """See `Context.be_prompt`: its one thread is the host's."""
+        """Its one thread is the host's."""
 
     def end_run(self) -> None:
         pass

@@ -135,7 +135,7 @@ class ExploringKernel(Kernel):
         self.observer = None if not watching else watching[0] if len(watching) == 1 else _All(watching)
 
     def tell(self, subject: object, call: str, args: tuple[object, ...] = ()) -> None:
-        """See `Scheduler.tell`; observers are told of it as of a call that begins."""
+        """Observers are told of it as of a call that begins."""
         if self.observer is not None:
             self.observer.called(subject, call, args)
 
@@ -198,23 +198,19 @@ class ExploringKernel(Kernel):
         self._owing.pop(self.current, None)
 
     def enqueue(self, task: Task, value: Any) -> None:
-        """See `Scheduler.enqueue`."""
         if self.on_wake is not None:
             self.on_wake(task)
         super().enqueue(task, value)
 
     def delay(self, duration_ns: SupportsIndex) -> None:
-        """See `Scheduler.delay`."""
         self.point()
         super().delay(duration_ns)
 
     def make_ready(self, task: Task, value: Any = None) -> None:
-        """See `Scheduler.make_ready`."""
         self.enqueue(task, value)
         self.point()
 
     def charge(self, duration_ns: int) -> None:
-        """See `Scheduler.charge`."""
         task = self.current
         if task is self.host:
             return
@@ -281,11 +277,9 @@ class ExploringKernel(Kernel):
     # -- tasks that may start early ----------------------------------------------------------------------------------
 
     def may_start_early(self, name: str) -> None:
-        """See `Scheduler.may_start_early`."""
         self._early[name] = None
 
     def has_started(self) -> None:
-        """See `Scheduler.has_started`."""
         self._early.pop(self.current.name, None)
 
     def _starters(self, task: Task) -> list[Task]:
@@ -296,7 +290,7 @@ class ExploringKernel(Kernel):
     # -- questions -----------------------------------------------------------------------------------------------------
 
     def connection_delay(self, publisher: str, subscriber: str, topic: str, usual_ns: int) -> int:
-        """See `Scheduler.connection_delay`; the policy chooses, if connections are open to it."""
+        """The policy chooses, if connections are open to it."""
         assert self.policy is not None
         longest_ns = self.policy.connect_ns
         if not longest_ns:
@@ -308,7 +302,6 @@ class ExploringKernel(Kernel):
         return delays[self.answer(Question(name, "slow connection", words, f"{topic} connects in {{}}"))]
 
     def answer(self, question: Question) -> int:
-        """See `Scheduler.answer`."""
         number = self._decisions
         self._decisions = number + 1
         assert self.policy is not None
@@ -394,13 +387,11 @@ class CallPointKernel(ExploringKernel):
         self.passed = 0
 
     def point(self) -> None:
-        """See `ExploringKernel.point`."""
         self.passed += 1
         self.entered[self.current] = True
         super().point()
 
     def charge(self, duration_ns: int) -> None:
-        """See `Scheduler.charge`."""
         self.passed += 1
         self.entered[self.current] = True
         super().charge(duration_ns)

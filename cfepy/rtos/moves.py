@@ -63,11 +63,11 @@ class Move(NamedTuple):
 
     def text(self) -> str:
         """As it stands in a schedule; `Move.parse` gives it again."""
-        place = [] if not self.place else [NEXT if self.place == NEXT else escaped(self.place)]
+        place = [] if not self.place else [NEXT if self.place == NEXT else _escaped(self.place)]
         number = [str(self.number)] if self.number > 1 else []
         is_anytime = not (self.from_ms or place or number)
         when = "" if is_anytime else "/".join([f"@{self.from_ms}", *place, *number])
-        return f"{escaped(self.subject)}{when}={escaped(self.chosen)}"
+        return f"{_escaped(self.subject)}{when}={_escaped(self.chosen)}"
 
     @classmethod
     def parse(cls, text: str) -> Move:
@@ -81,10 +81,10 @@ class Move(NamedTuple):
             raise ValueError(f"{text!r} is no move")
         place = match["place"] or ""
         return cls(
-            unescaped(match["subject"]),
-            unescaped(match["chosen"]),
+            _unescaped(match["subject"]),
+            _unescaped(match["chosen"]),
             int(match["ms"] or 0),
-            unescaped(place),
+            _unescaped(place),
             int(match["number"] or 1),
         )
 
@@ -97,13 +97,11 @@ _MOVE = re.compile(
 )
 
 
-def escaped(text: str) -> str:
-    """A name as it stands in a schedule."""
+def _escaped(text: str) -> str:
     return quote(text, safe="/ ").replace("~", "%7E").replace(" ", "+")
 
 
-def unescaped(text: str) -> str:
-    """The name that `escaped` gives a text for."""
+def _unescaped(text: str) -> str:
     return unquote(text.replace("+", " "))
 
 
@@ -247,7 +245,6 @@ class MovePolicy(Policy):
         self._moves = MovesToMake(moves)
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         subject = decision.alias
         if not self._moves.concerns(subject, decision.now):
             return 0
@@ -257,12 +254,10 @@ class MovePolicy(Policy):
 
     @property
     def missed(self) -> tuple[str, ...]:
-        """See `Policy.missed`."""
         return tuple(move.text() for move in self._moves.left)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """See `Policy.notes`."""
         missed, count = self.missed, self._moves.count
         if not missed:
             return ()

@@ -144,17 +144,14 @@ class AskingPolicy(Policy):
         self._inner = inner
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         return self._inner.choose(decision)
 
     @property
     def missed(self) -> tuple[str, ...]:
-        """See `Policy.missed`."""
         return self._inner.missed
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """See `Policy.notes`."""
         return self._inner.notes
 
 
@@ -177,7 +174,6 @@ class SeededRandom(Policy):
         self._starters = StartersFirst() if self._stay and random.random() < STARTERS_ODDS else None
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         if decision.question is not None and decision.question.is_rare:
             return self._seldom.choose(decision.question)
         width = decision.width - decision.hold
@@ -264,7 +260,6 @@ class PCT(Policy):
         self._seldom = Seldom(random.random)
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         self._count += 1
         if decision.question is not None:
             if decision.question.is_rare:
@@ -315,7 +310,6 @@ class Deviations(Policy):
         self._choices = dict(choices)
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         return min(self._choices.get(decision.number, 0), decision.width - 1)
 
 
@@ -332,7 +326,7 @@ class InOrder(Policy):
         self._runs = list(runs)
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`. A task that cannot run now keeps its turns for later."""
+        """A task that cannot run now keeps its turns for later."""
         candidates = {task.path: (at, task) for at, task in enumerate(decision.tasks)}
         runs = self._runs
         for place, (path, number) in enumerate(runs):
@@ -358,7 +352,6 @@ class From(AskingPolicy):
         self._from_ns = from_ns
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         if decision.now >= self._from_ns:
             return self._inner.choose(decision)
         decision.tasks, decision.hold = decision.tasks[:1], False
@@ -382,7 +375,6 @@ class Fair(AskingPolicy):
         self._passed: dict[Task, int] = {}
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         choice = self._inner.choose(decision)
         if decision.question is not None:
             return choice
@@ -445,7 +437,6 @@ class NotingPolicy(AskingPolicy):
         self.moments: list[Moment] = []
 
     def choose(self, decision: Decision) -> int:
-        """See `Policy.choose`."""
         choice = self._inner.choose(decision)
         if choice:
             self.moments.append(Moment.of(decision, choice))

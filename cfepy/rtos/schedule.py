@@ -9,9 +9,6 @@
     moves:A@650/add.publish=B
                             fifo, but where A, from 650 ms on, calls publish in its function add, B runs
                             (`cfepy.rtos.moves`)
-    aims:7:A.1@bank.py/14=A.2@bank.py/20
-                            random by seed 7, or fifo by 0, but task A.1 in line 14 goes directly before A.2 in
-                            line 20 (`cfepy.rtos.aims`)
 
 Every kind but fifo takes options at its end: `any` (tasks of less urgent priority may run before more urgent ones),
 `fair=50` (a task that could run is passed over in at most 50 decisions), `hold=500us` (the running task may be held up
@@ -24,27 +21,26 @@ decisions).
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import Any
 
 from cfepy.rtos.abreast import Abreast
-from cfepy.rtos.aims import Aim, AimPolicy
 from cfepy.rtos.moves import Move, MovePolicy
 from cfepy.rtos.points import Points
 from cfepy.rtos.policy import PCT, Deviations, Fair, From, InOrder, Policy, SeededRandom, Settings
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS, time_word
 
-ORDER, AIMS = "order", "aims"
+ORDER = "order"
 SEEDED = ("random", "pct", "abreast")
 DEPTH = 3  # of PCT, where the text gives none
 STEPS = 1000
 _TIME = re.compile(r"(\d+)(ns|us|ms|s)")
 _FORMS = (
     "fifo, random:SEED, pct:SEED:DEPTH[:STEPS], abreast:SEED, moves:TASK@MS/FUNCTION.CALL=TASK,..., "
-    "aims:SEED:TASK@FILE/LINE=TASK@FILE/LINE,... or at:DECISION=CHOICE,..., all but fifo with :any, :fair=50, "
-    ":hold=500us, :connect=50ms, :points=attributes or :from=600ms"
+    "or at:DECISION=CHOICE,..., all but fifo with :any, :fair=50, :hold=500us, :connect=50ms, :points=attributes "
+    "or :from=600ms"
 )
 
 
@@ -53,13 +49,12 @@ class Schedule:
     """Who runs next, where there is a choice.
 
     Args:
-        kind: "fifo", "random", "pct", "abreast", "at", "moves", "aims" or "order".
-        seed: of random and pct, and of what is random in aims, where 0 is for nothing.
+        kind: "fifo", "random", "pct", "abreast", "at", "moves" or "order".
+        seed: of random, pct and abreast.
         depth: of the bugs pct looks for, at least 1.
         steps: how many decisions pct expects of the run, at least 1.
         deviations: pairs of decision and choice of at, in order.
         moves: those of moves.
-        aims: those of aims.
         runs: pairs of a task's path and a number of order, which a search of orders makes, and no text means: see
             `InOrder`. A run under it is one under an `at` as well.
         any_priority: see `Policy`.
@@ -83,7 +78,6 @@ class Schedule:
     from_ns: int = 0
     moves: tuple[Move, ...] = ()
     fair: int = 0
-    aims: tuple[Aim, ...] = ()
 
     @classmethod
     def parse(cls, text: str, seed: int = 0) -> Schedule:
@@ -110,18 +104,13 @@ class Schedule:
         if kind == "at" and len(fields) <= 1:
             return replace(found, seed=0, deviations=_deviations(text, fields[0] if fields else ""))
         if kind == "moves" and len(fields) <= 1:
-            return replace(found, seed=0, moves=_parts(text, fields[0] if fields else "", Move.parse, _MOVES))
-        if kind == "aims" and 1 <= len(fields) <= 2:
-            aims = _parts(
-                text, fields[1] if len(fields) == 2 else "", Aim.parse, "aims:0:A.1@bank.py/14=A.2@bank.py/20"
-            )
-            return replace(found, **_numbers(text, fields[:1]), aims=aims)
+            return replace(found, seed=0, moves=_moves(text, fields[0] if fields else ""))
         raise _wrong(text)
 
     def text(self) -> str:
         """The shortest text that `parse` gives this schedule for."""
         words = [self.kind]
-        if self.kind in (*SEEDED, AIMS):
+        if self.kind in SEEDED:
             words.append(str(self.seed))
         if self.kind == "pct":
             words.append(str(self.depth))
@@ -130,8 +119,6 @@ class Schedule:
             words.append(",".join(f"{decision}={choice}" for decision, choice in self.deviations))
         if self.moves:
             words.append(",".join(move.text() for move in self.moves))
-        if self.aims:
-            words.append(",".join(aim.text() for aim in self.aims))
         if self.runs:
             words.append(",".join(f"{path}={number}" for path, number in self.runs))
         words += ["any"] if self.any_priority else []
@@ -163,9 +150,6 @@ class Schedule:
             return MovePolicy(self.moves, self.settings)
         if self.kind == ORDER:
             return InOrder(self.runs, *self.settings)
-        if self.kind == AIMS:
-            inner = SeededRandom(self.seed, *self.settings) if self.seed else Policy(*self.settings)
-            return AimPolicy(self.aims, inner)
         return Deviations(dict(self.deviations), *self.settings)
 
     @property
@@ -190,21 +174,12 @@ class Schedule:
         """The schedule that makes some moves and is fifo's otherwise, with this one's options."""
         return replace(self._bare("moves"), moves=tuple(moves))
 
-    def with_aims(self, aims: Iterable[Aim], seed: int) -> Schedule:
-        """The schedule that has aims, with this one's options.
-
-        Args:
-            aims: what is to come before what.
-            seed: of all else; 0 for fifo.
-        """
-        return replace(self._bare(AIMS), aims=tuple(aims), seed=seed)
-
     def in_order(self, runs: Iterable[tuple[str, int]]) -> Schedule:
         """The schedule in which tasks run in an order, with this one's options."""
         return replace(self._bare(ORDER), runs=tuple(runs))
 
     def _bare(self, kind: str) -> Schedule:
-        return replace(self, kind=kind, seed=0, depth=DEPTH, steps=STEPS, deviations=(), moves=(), runs=(), aims=())
+        return replace(self, kind=kind, seed=0, depth=DEPTH, steps=STEPS, deviations=(), moves=(), runs=())
 
     def with_points(self, points: str) -> Schedule:
         """The same with other points, as `Points.text` has them; fifo without a change of order, if it is fifo."""
@@ -266,17 +241,12 @@ def _deviations(text: str, field: str) -> tuple[tuple[int, int], ...]:
     return tuple((decision, choice) for decision, choice in sorted(found.items()) if choice)
 
 
-T = TypeVar("T")
-_AIMS = "aims:0:A.1@bank.py/14=A.2@bank.py/20"
-_MOVES = "moves:ARM@650/add.publish=ARM.commands"
-
-
-def _parts(text: str, field: str, parse: Callable[[str], T], example: str) -> tuple[T, ...]:
-    """The moves or aims of a schedule."""
+def _moves(text: str, field: str) -> tuple[Move, ...]:
     try:
-        return tuple(parse(each) for each in field.split(",")) if field else ()
+        return tuple(Move.parse(each) for each in field.split(",")) if field else ()
     except ValueError as error:
-        raise UsageError(f"schedule {text!r}: {error}; write for instance {example}", field="--schedule") from None
+        wrong = f"{error}; write for instance moves:ARM@650/add.publish=ARM.commands"
+        raise UsageError(f"schedule {text!r}: {wrong}", field="--schedule") from None
 
 
 def _wrong(text: str) -> UsageError:

@@ -95,7 +95,6 @@ def listened(base: type[SoftwareBus], listener: PacketListener) -> type[Software
             return under_way[-1] if under_way else None
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
-            """See `SoftwareBus.transmit_msg`."""
             task = self.kernel.current
             under_way = self._transmissions.setdefault(task, [])
             under_way.append(None)
@@ -109,7 +108,6 @@ def listened(base: type[SoftwareBus], listener: PacketListener) -> type[Software
                     listener.sent(made)
 
         def receive_buffer(self, pipe_id: int, timeout_ms: int = PEND_FOREVER) -> bytes | None:
-            """See `SoftwareBus.receive_buffer`."""
             pipe = self.find_pipe(pipe_id)
             packet: bytes | None = super().receive_buffer(pipe_id, timeout_ms)
             if packet is not None and pipe is not None:
@@ -117,12 +115,10 @@ def listened(base: type[SoftwareBus], listener: PacketListener) -> type[Software
             return packet
 
         def hand_on(self, packet: bytes, destination: Destination) -> None:
-            """See `SoftwareBus.hand_on`."""
             super().hand_on(packet, destination)
             listener.taken(packet, destination.pipe)
 
         def remove_pipe(self, pipe: Pipe) -> None:
-            """See `SoftwareBus.remove_pipe`."""
             packets = [item[0] for item in pipe.items]
             super().remove_pipe(pipe)
             listener.pipe_gone(pipe, packets)
@@ -152,6 +148,5 @@ class _Telling(PutHook):
         self._told = told
 
     def put(self, destination: Destination) -> None:
-        """See `PutHook.put`."""
         super().put(destination)
         self._told(destination.pipe)

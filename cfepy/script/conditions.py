@@ -182,7 +182,6 @@ class StateCondition:
     msg_ids: frozenset[int] = frozenset()
 
     def met_by(self, scene: Scene, packet: Seen) -> bool:
-        """See `Condition.met_by`."""
         return False
 
 
@@ -199,12 +198,10 @@ class AppCondition(StateCondition):
     state: str | None = None
 
     def holds(self, scene: Scene, since: Since) -> bool:
-        """See `Condition.holds`."""
         state = self._state(scene)
         return state != GONE if self.state is None else state == self.state
 
     def instead(self, scene: Scene, since: Since) -> str:
-        """See `Condition.instead`."""
         state = self._state(scene)
         if state != GONE:
             return f"it is {state}"
@@ -222,11 +219,9 @@ class ResetCondition(StateCondition):
     times: int
 
     def holds(self, scene: Scene, since: Since) -> bool:
-        """See `Condition.holds`."""
         return len(scene.mission.record.resets) > self.times
 
     def instead(self, scene: Scene, since: Since) -> str:
-        """See `Condition.instead`."""
         return "the processor was not reset"
 
 
@@ -239,12 +234,10 @@ class FileCondition(StateCondition):
     size: int = 0
 
     def holds(self, scene: Scene, since: Since) -> bool:
-        """See `Condition.holds`."""
         node = self._node(scene)
         return node is not None and OPERATORS[self.sign](len(node.data), self.size)
 
     def instead(self, scene: Scene, since: Since) -> str:
-        """See `Condition.instead`."""
         node = self._node(scene)
         if node is not None:
             return f"it has {len(node.data)} bytes"
@@ -271,11 +264,9 @@ class ConsoleCondition(StateCondition):
     text: str
 
     def holds(self, scene: Scene, since: Since) -> bool:
-        """See `Condition.holds`."""
         return any(self.text in line for line in scene.mission.console.lines[since.lines :])
 
     def instead(self, scene: Scene, since: Since) -> str:
-        """See `Condition.instead`."""
         lines = scene.mission.console.lines[since.lines :]
         found = [line for line in lines if self.text in line]
         if found:
@@ -289,7 +280,6 @@ class PacketCondition:
     lasts = False
 
     def holds(self, scene: Scene, since: Since) -> bool:
-        """See `Condition.holds`."""
         return False
 
 
@@ -304,11 +294,9 @@ class EventCondition(PacketCondition):
 
     @property
     def msg_ids(self) -> frozenset[int]:
-        """See `Condition.msg_ids`."""
         return EVENT_IDS
 
     def met_by(self, scene: Scene, packet: Seen) -> bool:
-        """See `Condition.met_by`."""
         event = DecodedEvent.of(packet)
         return (
             self.app in (None, event.app)
@@ -318,7 +306,6 @@ class EventCondition(PacketCondition):
         )
 
     def instead(self, scene: Scene, since: Since) -> str:
-        """See `Condition.instead`."""
         events = [DecodedEvent.of(seen) for seen in scene.packets.since(since.packets) if seen.msg_id in EVENT_IDS]
         own = [event for event in events if self.app in (None, event.app)]
         if own:
@@ -363,18 +350,15 @@ class TelemetryCondition(PacketCondition):
 
     @property
     def msg_ids(self) -> frozenset[int]:
-        """See `Condition.msg_ids`."""
         return frozenset((self.msg_id,))
 
     def met_by(self, scene: Scene, packet: Seen) -> bool:
-        """See `Condition.met_by`."""
         if not self.comparisons:
             return True
         values = self._values(scene, packet)
         return all(each.path in values and each.holds(values[each.path]) for each in self.comparisons)
 
     def instead(self, scene: Scene, since: Since) -> str:
-        """See `Condition.instead`."""
         packets = [seen for seen in scene.packets.since(since.packets) if seen.msg_id == self.msg_id]
         if not packets:
             return f"there was no {self.name}"

@@ -211,7 +211,6 @@ class ScriptRun(PacketWatch):
         return cls(read_script(path, spec, dictionary_of(spec)), stop_on_failure)
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self.join(Scene(mission, self.script.dictionary, self._packets))
 
     def join(self, scene: Scene) -> None:

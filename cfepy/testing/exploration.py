@@ -268,7 +268,7 @@ class ExploredTest:
         return Tried(Verdict(schedule, () if failure is None else (failure,), deviations=deviations))
 
     def until(self, end_ns: int) -> None:
-        """See `cfepy.exploration.Shrinkable`: a test is as long as it is."""
+        """A test is as long as it is."""
 
     @property
     def _missions(self) -> Missions | None:

@@ -86,7 +86,6 @@ class WebSocket:
             self._flush()
 
     def fail(self, why: str) -> None:
-        """See `Guarded.fail`."""
         self.close(TRY_LATER, why)
 
     @property

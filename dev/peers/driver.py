@@ -55,7 +55,6 @@ class Results(unittest.TestResult):
         self.said: dict[str, str] = {}
 
     def startTest(self, test: unittest.TestCase) -> None:
-        """See unittest."""
         super().startTest(test)
         self.said[name_of(test)] = "passed"
 
@@ -66,12 +65,10 @@ class Results(unittest.TestResult):
     addFailure = addError
 
     def addSubTest(self, test: unittest.TestCase, subtest: object, err: object) -> None:
-        """See unittest."""
         if err is not None:
             self.addError(test, err)
 
     def addSkip(self, test: unittest.TestCase, reason: str) -> None:
-        """See unittest."""
         self.said[name_of(test)] = "skipped"
 
     def addExpectedFailure(self, test: unittest.TestCase, err: object) -> None:
@@ -79,7 +76,6 @@ class Results(unittest.TestResult):
         self.said[name_of(test)] = "skipped"
 
     def addUnexpectedSuccess(self, test: unittest.TestCase) -> None:
-        """See unittest."""
         self.said[name_of(test)] = "passes unexpectedly"
 
 

@@ -2,8 +2,6 @@
 
 `python -m dev.quality programs` does the same with the programs that others try (docs/benchmarks_exploration.md).
 
-`python -m dev.quality coverage` measures what guidance by coverage is worth (docs/benchmarks_coverage.md).
-
 `python -m dev.quality edits` tells how many of their shrunk schedules still fail after small edits
 (docs/exploration.md).
 
@@ -18,7 +16,6 @@ import argparse
 
 from dev.quality import program_report, report
 from dev.quality.bugs import BUGS
-from dev.quality.coverage_report import measure as measure_coverage
 from dev.quality.edits import measure as measure_edits
 from dev.quality.measure import MOST
 from dev.quality.mended import MOST as MOST_MENDED
@@ -39,14 +36,10 @@ def main() -> None:
     stories.add_argument("bugs", nargs="*", choices=[[], *(bug.name for bug in BUGS)], help="only these")
     programs = commands.add_parser("programs", help="measure what is missing of the programs, and write their page")
     programs.add_argument("programs", nargs="*", choices=[[], *(each.name for each in PROGRAMS)], help="only these")
-    coverage = commands.add_parser(
-        "coverage", help="measure what is missing of guidance by coverage, and write its page"
-    )
-    missions = [each.name for each in (*BUGS, *PROGRAMS)]
-    coverage.add_argument("missions", nargs="*", choices=[[], *missions], help="only these")
     edits = commands.add_parser("edits", help="fly the planted bugs after small edits, and print the table")
     edits.add_argument("bugs", nargs="*", choices=[[], *(bug.name for bug in BUGS)], help="only these")
     mended = commands.add_parser("mended", help="fly the mended forms on, from where it was ended")
+    missions = [each.name for each in (*BUGS, *PROGRAMS)]
     mended.add_argument("missions", nargs="*", choices=[[], *missions], help="only these")
     mended.add_argument("--jobs", type=int, default=2, help="processes (2)")
     mended.add_argument("--most", type=int, default=MOST_MENDED, help=f"schedules of each mission ({MOST_MENDED})")
@@ -57,8 +50,6 @@ def main() -> None:
         program_report.measure(given.programs)
     elif given.command == "edits":
         measure_edits(given.bugs)
-    elif given.command == "coverage":
-        measure_coverage(given.missions)
     elif given.command == "mended":
         measure_mended(given.missions, given.jobs, given.most)
         report.write(report.load())

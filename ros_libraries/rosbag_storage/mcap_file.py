@@ -34,7 +34,6 @@ class McapFile(BagFile):
         self._chunks: dict[int, mcap.ChunkRecord] = {}
 
     def read_version(self) -> None:
-        """See `BagFile.read_version`."""
         if records.read(self.file, len(mcap.MAGIC)) != mcap.MAGIC:
             raise ROSBagException("This does not appear to be an MCAP file")
         self.header_pos = self.file.tell()
@@ -137,7 +136,6 @@ class McapFile(BagFile):
         return self._cached[1]
 
     def read(self, entry: Entry | tuple[int, int]) -> Message:
-        """See `BagFile.read`."""
         chunk_pos, offset = entry[-2:]
         data = self._chunk_data(chunk_pos)
         _, size = mcap.PREFIX.unpack_from(data, offset)

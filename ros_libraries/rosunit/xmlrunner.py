@@ -35,13 +35,11 @@ class XMLTestResult(unittest.TestResult):
         self._began = 0.0
 
     def startTest(self, test: unittest.TestCase) -> None:
-        """See unittest."""
         super().startTest(test)
         self._problems = []
         self._began = time.time()
 
     def stopTest(self, test: unittest.TestCase) -> None:
-        """See unittest."""
         super().stopTest(test)
         classname, _, method = test.id().rpartition(".")
         seconds = f"{time.time() - self._began:.4f}"
@@ -54,12 +52,10 @@ class XMLTestResult(unittest.TestResult):
         self._cases.append((case, text if self._problems else f"{text} ... ok\n"))
 
     def addError(self, test: Any, err: Any) -> None:
-        """See unittest."""
         super().addError(test, err)
         self._problems.append(("error", err))
 
     def addFailure(self, test: Any, err: Any) -> None:
-        """See unittest."""
         super().addFailure(test, err)
         self._problems.append(("failure", err))
 

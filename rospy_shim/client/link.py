@@ -428,7 +428,6 @@ class TappedLink(Link):
         self._on_unsent: Callable[[Link, bytes], object] | None = on_unsent
 
     def send(self, message: Any) -> None:
-        """See `Link.send`."""
         if self.topic is not None and self._on_unsent is not None and not self.get_num_connections():
             try:
                 self._on_unsent(self, self._pack(message))

@@ -146,7 +146,7 @@ class OutsideLink(Link):
         return bytes(message)
 
     def give_latched(self, subscription: Subscription) -> None:
-        """See `Link.give_latched`; another outside node is connected with the publisher itself."""
+        """Another outside node is connected with the publisher itself."""
         if self.is_latch and self.latch is not None and not self.raw and not subscription.is_outside:
             subscription.deliver(self.latch, self.header)
             if self.topic is not None:
@@ -192,15 +192,12 @@ class OutsideSubscription(Subscription):
         """Nothing waits here."""
 
     def ignore(self, link: Link) -> None:
-        """See `Subscription.ignore`."""
         self._outlet.ignore(link.node.owner)
 
     def heed(self, link: Link) -> None:
-        """See `Subscription.heed`."""
         self._outlet.heed(link.node.owner)
 
     def deliver(self, payload: bytes, header: Header) -> None:
-        """See `Subscription.deliver`."""
         self._out(header["callerid"], payload)
 
     def close(self) -> None:

@@ -29,7 +29,6 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--dot": ("FILE|-", "for graphviz"),
     "--enable": ("HOST[:PORT]", "ask TO_LAB there to begin to send"),
     "--faults": ("FILE|seed:N", "fault"),
-    "--coverage": (None, "(tell what was covered|have the code count what is executed)"),
     "--for": ("SECONDS", "seconds"),
     "--from": ("SECONDS", "begin at this virtual time"),
     "--from-disk": (None, "take the mission's files as they are on this computer now"),

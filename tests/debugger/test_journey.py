@@ -68,7 +68,6 @@ class User(io.StringIO):
         self._say = say
 
     def readline(self, size: int = -1, /) -> str:
-        """See `io.StringIO.readline`."""
         return self._say(self.debugger) + "\n"
 
 

@@ -58,15 +58,12 @@ class Listener(Attachment):
         self.told: list[tuple[str, str]] = []
 
     def begin(self, mission: Any) -> None:
-        """See `Attachment.begin`."""
         mission.kernel.watch(self)
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
-        """See `CallObserver.called`."""
         self.told.append(("called", call))
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
-        """See `CallObserver.returned`."""
         self.told.append(("returned", call))
 
 

@@ -202,11 +202,9 @@ class Look(Attachment):
         self._mission: Mission | None = None
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
 
     def conclude(self) -> None:
-        """See `Attachment.conclude`."""
         assert self._mission is not None
         self.found = endless_waits(self._mission)
 

@@ -53,7 +53,6 @@ class LongPiece(PressedInTheBus):
         self._clocks = clocks
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         super().begin(mission)
         mission.stall_watch.spent = self._clocks
 

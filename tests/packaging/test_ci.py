@@ -12,12 +12,15 @@ from typing import Any
 import pytest
 import yaml
 
+from cfepy.exploration.results_file import keep_failure
 from cfepy.resources import import_path
+from cfepy.rtos import Schedule
 
 ROOT = Path(__file__).parents[2]
 PROBE = ROOT / "examples" / "probe"
 WORKFLOW = PROBE / ".github" / "workflows" / "cfepy.yml"
 OURS = ROOT / ".github" / "workflows" / "ci.yml"
+EARLIER = ("explore", "mission", "--for", "1", "--seeds", "1", "--quiet", "--results")
 KEPT = {"restore": "actions/cache/restore", "save": "actions/cache/save", "artifact": "actions/upload-artifact"}
 
 
@@ -64,7 +67,13 @@ def test_the_steps_work_with_and_without_what_an_earlier_run_left(tmp_path: Path
         (tools / name).chmod(0o755)
     environment = {**os.environ, **{name: str(value) for name, value in job["env"].items()}}
     environment |= {"BUDGET": "3", "PATH": f"{tools}:{os.environ['PATH']}", "PYTHONPATH": import_path()}
-    for _ in range(2):
+    environment |= {"GITHUB_RUN_ID": "77", "GITHUB_RUN_ATTEMPT": "1", "GITHUB_RUN_NUMBER": "5"}
+    results = package / "explored" / "76-1.results"
+    for is_later in (False, True):
+        if is_later:
+            assert list(results.parent.iterdir()) == []
+            subprocess.run([tools / "cfepy", *EARLIER, results], cwd=package, env=environment, check=True)
+            keep_failure(results, "gone", "a failure that was mended", Schedule("random", 3))
         for step in job["steps"]:
             if "run" in step and not step["run"].startswith("pip install"):
                 command = ["bash", "-e", "-o", "pipefail", "-c", step["run"]]
@@ -72,5 +81,6 @@ def test_the_steps_work_with_and_without_what_an_earlier_run_left(tmp_path: Path
                     command, cwd=package, env=environment, capture_output=True, text=True, check=False
                 )
                 assert done.returncode == 0, f"{step['run']}\n{done.stdout}\n{done.stderr}"
-    assert (package / "explored" / "last.results").stat().st_size
-    assert {path.name for path in (package / "found").iterdir()} >= {"tests.xml", "schedules.json", "earlier.json"}
+    assert list(results.parent.iterdir()) == [results]
+    found = {path.name for path in (package / "found").iterdir()}
+    assert found >= {"tests.xml", "schedules.json", "earlier-76-1.json"}

@@ -85,15 +85,12 @@ class RealPeer(SbnPeer):
         self._socket.bind(("127.0.0.1", here))
 
     def send_bytes(self, data: bytes) -> None:
-        """See `SbnPeer.send_bytes`."""
         self._socket.sendto(data, ("127.0.0.1", self._there))
 
     def receive(self, within_s: float) -> bytes | None:
-        """See `SbnPeer.receive`."""
         return self._socket.recv(65536) if select.select([self._socket], [], [], within_s)[0] else None
 
     def pause(self, seconds: float) -> None:
-        """See `SbnPeer.pause`."""
         end = monotonic() + seconds
         while (rest := end - monotonic()) > 0:
             select.select([], [], [], rest)
@@ -116,18 +113,15 @@ class VirtualPeer(SbnPeer):
             self._heard.append(datagram.data)
 
     def send_bytes(self, data: bytes) -> None:
-        """See `SbnPeer.send_bytes`."""
         self._mission.outside.datagram(THERE, Place("127.0.0.1", HERE), data)
 
     def receive(self, within_s: float) -> bytes | None:
-        """See `SbnPeer.receive`."""
         end_ns = self._mission.kernel.now + round(within_s * NS_PER_S)
         while not self._heard and self._mission.kernel.now < end_ns:
             self._mission.run_until(self._mission.kernel.now + NS_PER_MS)
         return self._heard.pop(0) if self._heard else None
 
     def pause(self, seconds: float) -> None:
-        """See `SbnPeer.pause`."""
         self._mission.run_for(seconds)
 
 

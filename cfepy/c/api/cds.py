@@ -17,7 +17,7 @@ BAD = CFE_ES_BAD_ARGUMENT
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`. CFE_ES_DeleteCDS is not in cfe_es.h, but of the core for the core."""
+    """CFE_ES_DeleteCDS is not in cfe_es.h, but of the core for the core."""
     es, memory = c.handle.es, c.memory
 
     def register(out: int, size: int, name: str | None) -> int:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`. Texts and arrays that they point to stay where they are."""
+    """Texts and arrays that the functions point to stay where they are."""
     config, memory, constants = c.handle.config, c.memory, c.constants
 
     def get_object(config_id: int) -> int:

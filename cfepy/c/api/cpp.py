@@ -47,7 +47,6 @@ RANDOM = ("arc4random", "getentropy", "getrandom")
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_lives(api, c)
     _declare_unwinding(api, c)
     for name, what in THROWN_WITHOUT_EXCEPTIONS.items():

@@ -25,7 +25,6 @@ TASK_INFO = struct.Struct("<II20sI20s4xQH6x")
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_lives(api, c)
     _declare_ids(api, c)
     _declare_info(api, c)

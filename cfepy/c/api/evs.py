@@ -16,7 +16,6 @@ _FILTER = struct.Struct("<HH")
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     evs, memory = c.handle.evs, c.memory
 
     def register(filters: int, count: int, scheme: int) -> None:

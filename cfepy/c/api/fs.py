@@ -30,7 +30,6 @@ HEADER = struct.Struct("<8I32s")
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_headers(api, c)
     _declare_names(api, c)
     _declare_dumps(api, c)

@@ -28,7 +28,6 @@ FAILED = -1
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_files(api, c)
     _declare_streams(api, c)
     _declare_rest(api, c)

@@ -128,7 +128,6 @@ class GuardedPools:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     guarded = None if c.guard is None else GuardedPools(c, c.guard)
     _declare_pools(api, c, guarded)
     _declare_blocks(api, c, guarded)

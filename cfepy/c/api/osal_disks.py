@@ -23,7 +23,6 @@ PHYSICAL_NAME = 64
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     os, memory = c.handle.os, c.memory
 
     def make(address: int, device: str, volume: str, block_size: int, blocks: int) -> None:

@@ -24,7 +24,6 @@ FILE_INFO = Struct(f"<{OS_MAX_PATH_LEN}sIB3x")
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_descriptors(api, c)
     _declare_transfers(api, c)
     _declare_paths(api, c)

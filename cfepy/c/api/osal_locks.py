@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_condition_variables(api, c)
     _declare_rw_locks(api, c)
 

@@ -34,7 +34,6 @@ _LATE = (OS_ERROR, OS_FS_ERR_PATH_INVALID, OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_NA
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_modules(api, c)
     _declare_symbols(api, c)
 

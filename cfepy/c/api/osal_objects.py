@@ -17,7 +17,6 @@ ERROR_NAME = 35
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_ids(api, c)
     _declare_errors(api, c)
 

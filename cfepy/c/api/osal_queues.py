@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     os, memory = c.handle.os, c.memory
 
     def create(name: str, depth: int, data_size: int, flags: int) -> int:

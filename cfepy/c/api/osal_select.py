@@ -36,7 +36,6 @@ def write_set(memory: CMemory, at: int, fd_set: FdSet | None) -> None:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_sets(api, c)
     _declare_waits(api, c)
 

@@ -20,7 +20,6 @@ SEMAPHORE_INFO = Struct("<20sIi")
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_binary(api, c)
     _declare_counting(api, c)
     _declare_mutexes(api, c)

@@ -92,7 +92,6 @@ def write_address(memory: CMemory, at: int, address: SockAddr) -> None:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_addresses(api, c)
     _declare_opening(api, c)
     _declare_connections(api, c)

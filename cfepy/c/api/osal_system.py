@@ -23,7 +23,6 @@ _SIGN = 1 << 31
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_frame(api, c)
     _declare_board(api, c)
     _declare_host(api, c)

@@ -24,7 +24,6 @@ SYSTEM_DATA = 8
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     os, memory = c.handle.os, c.memory
 
     def create(name: str, entry: int, stack: int, size: int, priority: int, flags: int) -> int:

@@ -22,7 +22,6 @@ _32_BITS = 0xFFFFFFFF
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_clock(api, c)
     _declare_time_bases(api, c)
     _declare_timers(api, c)

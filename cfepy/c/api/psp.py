@@ -21,7 +21,6 @@ SIZES = ((16, "H"), (32, "I"), (64, "Q"))
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_resets(api, c)
     _declare_watchdog(api, c)
     _declare_identity(api, c)

@@ -161,7 +161,6 @@ class SystemMonitor:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     monitor = SystemMonitor(c)
 
     def find_by_name(name: str, module_id: int) -> int:

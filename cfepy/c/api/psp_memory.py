@@ -102,7 +102,6 @@ class SharedAreas:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     psp, base = c.cfe.psp, c.arena.base
     psp.mem_range_set(CODE_RANGE, MEM_RAM, base, REGION, WORD, MEM_ATTR_READWRITE, CodeMemory(c.memory, base))
     areas = SharedAreas(c)

@@ -26,7 +26,6 @@ WAIT_MS = 1
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     memory, kernel = c.memory, c.kernel
     mutexes: dict[int, Mutex] = {}
 

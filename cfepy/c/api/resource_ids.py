@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
-
     def is_used_by(check: int, resource_id: int) -> bool:
         return bool(c.run(check, resource_id) & 0xFF)
 

@@ -30,7 +30,6 @@ TIMED_HEADER = 12
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_pipes(api, c)
     _declare_subscriptions(api, c)
     _declare_messages(api, c)

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     memory = c.memory
 
     def sort(base: int, count: int, size: int, compare: int) -> None:

@@ -126,7 +126,6 @@ class Streams:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     memory, streams = c.memory, c.streams
 
     def put_text(text: str, stream: int) -> int:

@@ -65,7 +65,6 @@ class Handles:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     handles = Handles(c.omit_deprecated)
     _declare_registration(api, c, handles)
     _declare_content(api, c, handles)

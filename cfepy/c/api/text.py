@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
-
     def write(text: str) -> int:
         return c.streams.write(STDOUT, to_bytes(text))
 

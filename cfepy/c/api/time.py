@@ -23,7 +23,6 @@ def word_of(time: Time) -> int:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     _declare_clocks(api, c)
     _declare_arithmetic(api, c)
     _declare_signals(api, c)

@@ -27,7 +27,6 @@ class PublicationWatch(Protocol):
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Add the functions; see `cfepy.c.api`."""
     watch = c.publication_watch
     if watch is None:
         return

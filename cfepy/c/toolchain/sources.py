@@ -226,7 +226,6 @@ class _Reader(CMakeScript):
         self.found = CMakeLists()
 
     def command(self, name: str, words: list[str]) -> None:
-        """See `CMakeScript.command`."""
         found = self.found
         match name, words:
             case "add_cfe_app", [app, *sources] if not found.name:
@@ -245,7 +244,7 @@ class _Reader(CMakeScript):
                 super().command(name, words)
 
     def expanded(self, words: Sequence[str]) -> list[str]:
-        """See `CMakeScript.expanded`; a folder of another application makes it one that this one depends on."""
+        """A folder of another application makes it one that this one depends on."""
         for word in words:
             for name in _MISSION_DIR.findall(word):
                 self.found.dependencies += [name] if name not in self.found.dependencies else []

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from cfepy.cli.options import add_json, add_output
 
@@ -18,18 +18,6 @@ _WORDS = (
     "a package, its folder, or a launch file with its arguments as NAME:=VALUE; behind the word check also a C++ source"
 )
 _STATUS = "exit status: 0 well, 1 a node cannot be converted, 2 bad usage, or nothing to convert"
-
-
-class _WordsAction(argparse.Action):
-    """The words: a check is asked for by the first."""
-
-    def __call__(
-        self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option_string: Any = None
-    ) -> None:
-        """See `argparse.Action`."""
-        namespace.words = values
-        if values[:1] == ["check"]:
-            namespace.module = "convert.check"
 
 
 def cpp_nodes_config(arguments: argparse.Namespace) -> CppNodesConfig:
@@ -61,7 +49,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "docs/convertor.md.",
         epilog=_STATUS,
     )
-    convert.add_argument("words", metavar="WORD", nargs="+", help=_WORDS, action=_WordsAction)
+    convert.add_argument("words", metavar="WORD", nargs="+", help=_WORDS)
     add_output(convert, "a folder of the name here")
     convert.add_argument(
         "--profile",

@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from cfepy.cli.convert import cpp_nodes_config
+from cfepy.cli.convert import check, cpp_nodes_config
 from cfepy.cli.failures import tell, writing
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
@@ -18,7 +18,7 @@ from cfepy.status import UsageError
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Convert what the command line names.
+    """Convert what the command line names, or check it, if the first word is `check`.
 
     Returns:
         The exit status.
@@ -26,6 +26,8 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: there is nothing to convert, or a file cannot be written.
     """
+    if arguments.words[0] == "check":
+        return check.run(arguments)
     if arguments.sarif is not None:
         raise UsageError("is what check finds: `cfepy convert check WORD --sarif FILE`", field="--sarif")
     check_json(arguments)

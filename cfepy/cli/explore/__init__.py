@@ -69,11 +69,11 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
     )
     explore.add_argument(
         "--policy",
-        choices=("all", "random", "pct", "abreast", "dfs", "orders", "greybox"),
+        choices=("all", "random", "pct", "abreast", "dfs", "orders"),
         default="all",
         help="where they come from: random, PCT, every one with few preemptions (dfs), every order of what depends on "
-        "each other, once (orders), from what schedules before them covered (greybox), tasks side by side "
-        "(abreast), or random, PCT of depths 1 to 3 and abreast by turns (all, the default)",
+        "each other, once (orders), tasks side by side (abreast), or random, PCT of depths 1 to 3 and abreast by turns "
+        "(all, the default)",
     )
     explore.add_argument(
         "--depth",
@@ -126,12 +126,6 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
         metavar="MEASURE",
         help="look for the schedule under which something takes longest: latency:/topic, latency:/cause->/effect, "
         "response:APP, age:/topic or wait:TASK",
-    )
-    explore.add_argument(
-        "--corpus",
-        metavar="RESULTS",
-        help="with --policy greybox: begin with the schedules of an earlier campaign, also of another version of the "
-        "mission, from its results file",
     )
     explore.add_argument("--until-failure", action="store_true", help="stop with the first failure")
 
@@ -191,11 +185,6 @@ def _add_outputs(explore: argparse.ArgumentParser) -> None:
         metavar="RESULTS",
         help="search nothing: fly each failure of a results file again, in the mission as it now is, and tell which "
         "are gone; MISSION may be left out",
-    )
-    explore.add_argument(
-        "--coverage",
-        action="store_true",
-        help="tell what was covered: orders in which two tasks used one thing, outcomes, lines of the mission",
     )
     add_json(explore, "what was found")
     explore.add_argument(

@@ -50,9 +50,6 @@ def show(report: Report, stream: TextIO) -> None:
     if report.is_steady and (not report.findings or report.breadth.seen is not None):
         for line in report.breadth.lines():
             print(f"  {line}", file=stream)
-    if report.coverage is not None and report.is_steady:
-        for line in report.coverage.lines():
-            print(f"  {line}", file=stream)
 
 
 def summary(report: Report) -> str:
@@ -188,7 +185,7 @@ def _show_leak(plan: RunPlan, schedule: Schedule) -> None:
 def _expedition(arguments: argparse.Namespace) -> Expedition:
     """What the command line asks for."""
     names = ("policy", "depth", "first_seed", "any_priority", "fair", "until_failure", "events", "jobs", "cluster")
-    more = ("worst", "coverage", "corpus", "results", "shrink", "points")
+    more = ("worst", "results", "shrink", "points")
     return Expedition(
         plan_of_mission(arguments),
         seeds=arguments.seeds or (DEFAULT_SEEDS if arguments.budget is None else None),

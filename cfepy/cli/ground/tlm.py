@@ -78,17 +78,14 @@ class Several:
         self._outputs = outputs
 
     def show(self, packet: bytes, at_ns: int) -> None:
-        """See `Output.show`."""
         for each in self._outputs:
             each.show(packet, at_ns)
 
     def refresh(self) -> None:
-        """See `Output.refresh`."""
         for each in self._outputs:
             each.refresh()
 
     def close(self) -> None:
-        """See `Output.close`."""
         for each in self._outputs:
             each.close()
 
@@ -101,24 +98,21 @@ class TextLines:
         self._stream = stream
 
     def show(self, packet: bytes, at_ns: int) -> None:
-        """See `Output.show`."""
         decoded = self._dictionary.decode(packet)
         text = f"{at_ns / NS_PER_S:.3f} {decoded.name} {content(decoded, packet)}"
         show_paragraph(visible_line(text), self._stream)
 
     def refresh(self) -> None:
-        """See `Output.refresh`."""
         self._stream.flush()
 
     def close(self) -> None:
-        """See `Output.close`."""
+        """The stream is not its own, so it stays open."""
 
 
 class JsonLines(TextLines):
     """An object with name, msg_id, sequence, time (spacecraft time, s), at (s) and values."""
 
     def show(self, packet: bytes, at_ns: int) -> None:
-        """See `Output.show`."""
         decoded = self._dictionary.decode(packet)
         record: dict[str, Any] = {
             "name": decoded.name,
@@ -147,20 +141,17 @@ class LiveTable:
         keep_output_safe()
 
     def show(self, packet: bytes, at_ns: int) -> None:
-        """See `Output.show`."""
         msg_id = packet[0] << 8 | packet[1]
         count = self._rows[msg_id][0] if msg_id in self._rows else 0
         self._rows[msg_id] = (count + 1, at_ns, packet)
         self._is_new = True
 
     def refresh(self) -> None:
-        """See `Output.refresh`."""
         if self._is_new:
             self._is_new = False
             self._live.update(self._table(), refresh=True)
 
     def close(self) -> None:
-        """See `Output.close`."""
         self.refresh()
         self._live.stop()
 

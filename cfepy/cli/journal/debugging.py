@@ -189,15 +189,12 @@ class DebugView(View):
         self._journey = journey
 
     def display(self, seconds: float) -> Display:
-        """See `View.display`."""
         return SilentDisplay() if self.quiet else _LateDisplay(sys.stdout, self._journey)
 
     def report(self, flown: Flown) -> None:
-        """See `View.report`."""
         self._view.report(flown)
 
     def end(self, flown: Flown, outputs: Outputs, longer: str) -> int:
-        """See `View.end`."""
         if self._journey is not None and self._journey.flies_again:
             return ENDED_WELL
         return self._view.end(flown, outputs, longer)
@@ -216,7 +213,6 @@ class _LateDisplay(PlainDisplay):
         self._journey = journey
 
     def line(self, text: str) -> None:
-        """See `Display.line`."""
         if self._journey is None or not self._journey.is_silent:
             super().line(text)
 
@@ -232,5 +228,4 @@ class _Typed(io.TextIOBase):
         return line.decode(errors="replace")
 
     def isatty(self) -> bool:
-        """See `io.IOBase.isatty`."""
         return os.isatty(0)

@@ -58,7 +58,6 @@ class RecordLines(Attachment):
         self._mission: Mission | None = None
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
 
     def describe(self, records: TimedRecords) -> list[str]:

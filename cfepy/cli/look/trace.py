@@ -41,7 +41,6 @@ class Lines(Attachment):
         self._text = TraceText()
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._text.watch(mission)
         mission.trace.also(self._take)
 

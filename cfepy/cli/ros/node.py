@@ -42,7 +42,7 @@ class NodeDisplay:
             print(text, file=sys.stderr, flush=True)
 
     def tell(self, text: str) -> None:
-        """See `Display.tell`; standard output is the node's."""
+        """Standard output is the node's."""
         tell([text])
 
     def update(self, mission: Mission) -> None:

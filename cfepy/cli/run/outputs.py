@@ -99,11 +99,10 @@ class SavedRunFiles(Attachment):
         self._mission: Mission | None = None
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         self._mission = mission
 
     def close(self) -> None:
-        """See `Attachment.close`: the run's own files are about to go."""
+        """The run's own files are about to go."""
         files = None if self._mission is None else self._mission.run_files
         for name, place in files.written() if files is not None else ():
             if not name.startswith(self._below):

@@ -43,12 +43,10 @@ class RunFile(io.FileIO):
         self._stamps = overlay.stamps
 
     def write(self, data: Any) -> int:
-        """See `io.FileIO.write`."""
         self._stamps.written(self._key)
         return super().write(data)
 
     def truncate(self, size: int | None = None) -> int:
-        """See `io.FileIO.truncate`."""
         self._stamps.written(self._key)
         return super().truncate(size)
 

@@ -65,7 +65,6 @@ class FoxgloveViewer(TopicWatch):
     # -- the mission -------------------------------------------------------------------------------------------------
 
     def begin(self, mission: Mission) -> None:
-        """See `Attachment.begin`."""
         super().begin(mission)
         mission.record.tables[TABLE] = self._counts.rows
         self._dictionary = dictionary_of(mission.spec)
@@ -81,7 +80,6 @@ class FoxgloveViewer(TopicWatch):
         return True
 
     def take_packet(self, seen: Seen) -> None:
-        """See `TopicWatch.take_packet`."""
         super().take_packet(seen)
         for topic in self._shown_as.get(seen.msg_id, ()):
             self._show_as(topic, seen)
@@ -179,14 +177,13 @@ class FoxgloveViewer(TopicWatch):
     # -- the way out of the nodes that viewers are ---------------------------------------------------------------------
 
     def message(self, topic: str, publisher: str, subscriber: str, payload: bytes) -> None:
-        """See `WayOut.message`: viewers watch the bus, and subscribe to nothing in the graph."""
+        """Viewers watch the bus, and subscribe to nothing in the graph."""
 
     def packet(self, topic: str, packet: bytes) -> None:
-        """See `WayOut.packet`: as above."""
+        """Viewers watch the bus, and subscribe to nothing in the graph."""
 
     def request(self, service: str, number: int, header: dict[str, str], body: bytes) -> None:
-        """See `WayOut.request`: viewers offer no services."""
+        """Viewers offer no services."""
 
     def answer(self, number: int, good: bool, body: bytes) -> None:
-        """See `WayOut.answer`."""
         self._services.answer(number, good, body)

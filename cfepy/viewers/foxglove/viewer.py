@@ -104,27 +104,24 @@ class Viewer:
 
     @property
     def is_ready(self) -> bool:
-        """See `ConnectedClient.is_ready`: what it publishes waits elsewhere for room."""
+        """What it publishes waits elsewhere for room."""
         return True
 
     @property
     def unfinished(self) -> int:
-        """See `ConnectedClient.unfinished`."""
         return 0
 
     @property
     def takes_part(self) -> bool:
-        """See `ConnectedClient.takes_part`; one that publishes is heard now and then."""
+        """One that publishes is heard now and then."""
         return bool(self._subscribed or self.watched or self.watches_graph)
 
     def begin(self, connection: WebSocket) -> None:
-        """See `ConnectedClient.begin`."""
         self._connection = connection
         self._counts.of(CONNECTIONS, PEER, OUT_OF).connections += 1
         self._welcome(self)
 
     def take(self, message: str | bytes) -> None:
-        """See `ConnectedClient.take`."""
         try:
             ops = ops_of(message)
         except FrameError as error:
@@ -148,7 +145,6 @@ class Viewer:
         self.tell(status(ERROR, what))
 
     def gone(self, why: str) -> None:
-        """See `ConnectedClient.gone`."""
         for number in list(self._subscribed):
             self._unsubscribe(number)
         row = self._counts.of(CONNECTIONS, PEER, OUT_OF)
@@ -214,11 +210,9 @@ class Viewer:
 
     @property
     def has_more(self) -> bool:
-        """See `ConnectedClient.has_more`."""
         return bool(self._waiting)
 
     def go_on(self, now_s: float) -> None:
-        """See `ConnectedClient.go_on`."""
         connection = self._connection
         if connection.unread >= MOST_UNREAD or connection.dropped:
             connection.close(TOO_MUCH, "too much is unread")

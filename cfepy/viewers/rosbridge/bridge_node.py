@@ -566,18 +566,15 @@ class BridgeNode:
     # -- what goes out, in the mission's tasks (`WayOut`) --------------------------------------------------------------
 
     def message(self, topic: str, publisher: str, subscriber: str, payload: bytes) -> None:
-        """See `WayOut.message`."""
         self._put(topic, publisher, payload)
 
     def packet(self, topic: str, packet: bytes) -> None:
-        """See `WayOut.packet`; packets of applications are watched (`show`), and not asked for."""
+        """Packets of applications are watched (`show`), and not asked for."""
 
     def request(self, service: str, number: int, header: dict[str, str], body: bytes) -> None:
-        """See `WayOut.request`."""
         self._aside.append(lambda: self._request(service, number, body))
 
     def answer(self, number: int, good: bool, body: bytes) -> None:
-        """See `WayOut.answer`."""
         self._aside.append(lambda: self._answered(number, good, body))
 
 

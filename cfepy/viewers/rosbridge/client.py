@@ -115,12 +115,10 @@ class RosbridgeClient:
 
     @property
     def unfinished(self) -> int:
-        """See `ConnectedClient.unfinished`."""
         return self._assembly.size
 
     @property
     def takes_part(self) -> bool:
-        """See `ConnectedClient.takes_part`."""
         offers = self._node.offered_by(self)
         return bool(self._published or self._hears or self._calls or self._stalled is not None or offers)
 
@@ -325,7 +323,6 @@ class RosbridgeClient:
 
     @_alone
     def heard(self, topic: str, message: Outgoing) -> None:
-        """See `Hearer.heard`."""
         now_s = time.monotonic()
         for name, pacing in self._hears.get(topic, {}).items():
             found = pacing.add(message, now_s)
@@ -406,7 +403,6 @@ class RosbridgeClient:
 
     @_alone
     def requested(self, service: str, number: str, values: Op) -> None:
-        """See `Hearer.requested`."""
         self._counts.of(service, self._peer, OUT_OF).messages += 1
         self._send({"op": "call_service", "id": number, "service": service, "args": values})
 

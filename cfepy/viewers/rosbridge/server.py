@@ -50,7 +50,6 @@ class RosbridgeServer(PacketWatch):
         self.place = self._listener.place
 
     def begin(self, mission: Any) -> None:
-        """See `Attachment.begin`."""
         uri = f"http://{self.place}/"
         packets = ShownPackets(mission.spec).packets
         self._shown = frozenset(each.msg_id for each in packets.values())
@@ -68,12 +67,12 @@ class RosbridgeServer(PacketWatch):
         self._listener.exchange()
 
     def finish(self) -> None:
-        """See `Attachment.finish`: nothing enters any more."""
+        """Nothing enters any more."""
         self._node.close()
         self._listener.finish()
 
     def close(self) -> None:
-        """See `Attachment.close`: nobody is served any more; may be called more than once."""
+        """Nobody is served any more; may be called more than once."""
         self._listener.close()
 
     def _client(self, address: str) -> RosbridgeClient:

@@ -30,7 +30,6 @@ class CraftScene(Scene):
         self._saved = saved
 
     def transmit(self, packet: bytes) -> None:
-        """See `Scene.transmit`."""
         outside = self.mission.outside
         self._saved.sent(packet, max(0, outside.until_ns))
         outside.act(PACKET, packet)
@@ -42,7 +41,6 @@ class StandingCourse(Course):
     script: StandingScript
 
     def next_stop(self) -> int:
-        """See `Course.next_stop`."""
         return min(self.until_ns, self.script.advance())
 
 
@@ -53,7 +51,6 @@ class News(SilentDisplay):
         self._news: list[Seen | str] = []
 
     def line(self, text: str) -> None:
-        """See `Display.line`."""
         self._news.append(text)
 
     tell = line
@@ -156,38 +153,30 @@ class FlownCraft:
 
     @property
     def stands_ns(self) -> int:
-        """See `Craft.stands_ns`."""
         return max(0, self._run.mission.outside.until_ns)
 
     @property
     def is_asked(self) -> bool:
-        """See `Craft.is_asked`."""
         return self._interrupts.asked
 
     @property
     def is_over(self) -> bool:
-        """See `Craft.is_over`."""
         return not self._run.course.goes_on
 
     def step(self, until_ns: int) -> bool:
-        """See `Craft.step`."""
         return self._run.step(until_ns)
 
     def stand(self) -> None:
-        """See `Craft.stand`."""
         if not self.is_over:
             self._host.stand()
 
     def next_event(self) -> int | None:
-        """See `Craft.next_event`."""
         return self._run.mission.kernel.next_event()
 
     def pace(self, factor: float | None) -> None:
-        """See `Craft.pace`."""
         self._host.pace(factor)
 
     def news(self) -> list[Seen | str]:
-        """See `Craft.news`."""
         news = self._news.take()
         if news:
             self.script.scene.learn_topics()

@@ -37,11 +37,10 @@ class RemoteScene(Scene):
         return self._watch.elapsed_ns()
 
     def here(self) -> Since:
-        """See `Scene.here`."""
         return Since(len(self.packets), 0)
 
     def send(self, packet: bytes, must_arrive: bool) -> str:
-        """See `Scene.send`; UDP has no receipts, so all that is known is whether a computer at hand listens."""
+        """UDP has no receipts, so all that is known is whether a computer at hand listens."""
         self._saved.sent(packet, self.now_ns)
         return "" if send_datagram(self._host.name, self._host.port, packet) else f"{self._host}: nobody listens there"
 
@@ -97,16 +96,14 @@ class RemoteCraft:
 
     @property
     def stands_ns(self) -> int:
-        """See `Craft.stands_ns`."""
         return self.script.scene.now_ns
 
     @property
     def is_asked(self) -> bool:
-        """See `Craft.is_asked`."""
         return self._interrupts.asked
 
     def step(self, until_ns: int) -> bool:
-        """See `Craft.step`: take what arrives."""
+        """Take what arrives."""
         begin_ns = self.stands_ns
         rest_s = min(WAIT_S, max(0, until_ns - begin_ns) / NS_PER_S)
         packet = self._listener.receive(max(rest_s, NO_WAIT_S))
@@ -122,16 +119,15 @@ class RemoteCraft:
         return True
 
     def stand(self) -> None:
-        """See `Craft.stand`: what arrives waits in the socket."""
+        """What arrives waits in the socket."""
 
     def next_event(self) -> int | None:
-        """See `Craft.next_event`."""
         return None
 
     def pace(self, factor: float | None) -> None:
-        """See `Craft.pace`: its time is its own."""
+        """Its time is its own."""
 
     def news(self) -> list[Seen | str]:
-        """See `Craft.news`; what it prints is not seen here."""
+        """What it prints is not seen here."""
         news, self._new = self._new, []
         return news

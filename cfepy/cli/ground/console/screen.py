@@ -127,7 +127,6 @@ class FirstChoice(Suggester):
         self._completer = completer
 
     async def get_suggestion(self, value: str) -> str | None:
-        """See `Suggester.get_suggestion`."""
         start, candidates = self._completer.complete(value)
         word = value[start:]
         if not word or not candidates or not candidates[0].text.startswith(word):
@@ -198,7 +197,6 @@ class ConsoleScreen(App[None]):
             raise self._error
 
     def compose(self) -> ComposeResult:
-        """See `App.compose`."""
         yield Static("", id="status")
         with Container(id="panes"):
             with VerticalScroll(id="telemetry", can_focus=False):
@@ -209,7 +207,6 @@ class ConsoleScreen(App[None]):
         yield LineInput(self.enter)
 
     def on_mount(self) -> None:
-        """See `App.on_mount`."""
         for name, title in (("telemetry", "telemetry"), ("events", "events"), ("log", "console")):
             self.query_one(f"#{name}").border_title = title
             self.query_one(f"#{name}").can_focus = False
@@ -304,7 +301,7 @@ class ConsoleScreen(App[None]):
     # -- keys ----------------------------------------------------------------------------------------------------------
 
     def on_input_changed(self, message: Input.Changed) -> None:
-        """See `Input.Changed`: say how the line may go on."""
+        """Say how the line may go on."""
         completer = self.query_one(LineInput).completer
         hint = KEYS if completer is None or not message.value else hint_of(completer.complete(message.value))
         self.query_one("#hint", Static).update(Text(hint, no_wrap=True, overflow="ellipsis"))
