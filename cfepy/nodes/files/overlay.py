@@ -465,6 +465,7 @@ class Overlay:
             self._check(source, os.W_OK)  # what ".." is in it changes
         if is_there:
             (self.remove_folder if is_folder else self.remove)(target)
+        self._own_folder_of(source)
         own = self._claim_all(source)
         self._own_folder_of(target)
         os.rename(own, self._own_of_home(target))
@@ -477,8 +478,7 @@ class Overlay:
         self._touch_folder(target)
 
     def _claim_all(self, path: str) -> str:
-        self._own_folder_of(path)
-        own = self.claim(path)
+        own = self.claim(path)  # a folder moves whole, also one in which the program must not look up or change names
         if self.is_folder(path):
             for name in self._names(path):
                 self._claim_all(f"{path}/{name}")

@@ -14,7 +14,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from cfepy.nodes import Universe
@@ -124,6 +124,8 @@ def act(system: Any, opening: Callable[..., Any], folder: str, operation: tuple[
 
 @settings(max_examples=40, deadline=None)
 @given(operations)
+@example([("chmod", "d", 0o644), ("rename", "d", "b")])
+@example([("chmod", "d", 0o555), ("rename", "d", "b")])
 def test_as_on_a_real_folder(script: list[tuple[Any, ...]]) -> None:
     with TemporaryDirectory() as host, TemporaryDirectory() as other, Kernel() as kernel:
         if hasattr(os, "geteuid") and os.geteuid() == 0:
