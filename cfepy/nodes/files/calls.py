@@ -31,12 +31,14 @@ class FolderEntry:
     Args:
         folder: the folder as it was given.
         name: of the file.
+        kind: of file, as the folder itself says (`stat.S_IFMT`), so that it needs no right to look at the file.
         look: `stat` of a path of the program.
     """
 
-    def __init__(self, folder: str, name: str, look: Callable[..., os.stat_result]) -> None:
+    def __init__(self, folder: str, name: str, kind: int, look: Callable[..., os.stat_result]) -> None:
         self.name = name
         self.path = os.path.join(folder, name)
+        self._kind = kind
         self._look = look
 
     def __fspath__(self) -> str:
@@ -51,15 +53,15 @@ class FolderEntry:
 
     def is_dir(self, *, follow_symlinks: bool = True) -> bool:
         """Whether it is a folder."""
-        return stat.S_ISDIR(self._mode(follow_symlinks))
+        return stat.S_ISDIR(self._found(follow_symlinks))
 
     def is_file(self, *, follow_symlinks: bool = True) -> bool:
         """Whether it is a file."""
-        return stat.S_ISREG(self._mode(follow_symlinks))
+        return stat.S_ISREG(self._found(follow_symlinks))
 
     def is_symlink(self) -> bool:
         """Whether it is a link."""
-        return stat.S_ISLNK(self._mode(False))
+        return stat.S_ISLNK(self._kind)
 
     def is_junction(self) -> bool:
         """Whether it is what only Windows has."""
@@ -69,18 +71,20 @@ class FolderEntry:
         """What it says of itself."""
         return self._look(self.path, follow_symlinks=follow_symlinks)
 
-    def _mode(self, follow: bool) -> int:
+    def _found(self, follow: bool) -> int:
+        if not (follow and self.is_symlink()):
+            return self._kind
         try:
-            return self.stat(follow_symlinks=follow).st_mode
-        except OSError:
+            return self.stat().st_mode
+        except FileNotFoundError:
             return 0
 
 
 class BytesFolderEntry(FolderEntry):
     """The same of a folder that is given as bytes."""
 
-    def __init__(self, folder: bytes, name: str, look: Callable[..., os.stat_result]) -> None:
-        super().__init__(os.fsdecode(folder), name, look)
+    def __init__(self, folder: bytes, name: str, kind: int, look: Callable[..., os.stat_result]) -> None:
+        super().__init__(os.fsdecode(folder), name, kind, look)
         self.name, self.path = os.fsencode(self.name), os.fsencode(self.path)  # type: ignore[assignment]
 
 
@@ -239,9 +243,11 @@ class FileCalls:
         return os.fsencode(target) if isinstance(path, bytes) else target
 
     def _listed(self, path: Any) -> list[str]:
-        where = self._folders[path] if isinstance(path, int) else self.where(path)
         with _told(path):
-            return self._overlay.names(self._overlay.real(where))
+            return self._overlay.names(self._folder(path))
+
+    def _folder(self, path: Any) -> str:
+        return self._overlay.real(self._folders[path] if isinstance(path, int) else self.where(path))
 
     def _listdir(self, path: Any = ".") -> list[Any]:
         names = self._listed("." if path is None else path)
@@ -249,8 +255,14 @@ class FileCalls:
 
     def _scandir(self, path: Any = ".") -> Entries:
         given = "." if path is None else self._folders.get(path) if isinstance(path, int) else os.fspath(path)
-        kind: Any = BytesFolderEntry if isinstance(given, bytes) else FolderEntry
-        return Entries([kind(given, name, self._stat) for name in self._listed(path if path is not None else ".")])
+        entry: Any = BytesFolderEntry if isinstance(given, bytes) else FolderEntry
+        with _told(path):
+            folder = self._folder(path if path is not None else ".")
+            kinds = [(name, self._kind(folder, name)) for name in self._overlay.names(folder)]
+        return Entries([entry(given, name, kind, self._stat) for name, kind in kinds])
+
+    def _kind(self, folder: str, name: str) -> int:
+        return stat.S_IFMT(os.lstat(self._overlay.place(f"{folder.rstrip('/')}/{name}")).st_mode)
 
     # -- changing ----------------------------------------------------------------------------------------------------
 

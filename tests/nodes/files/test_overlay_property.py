@@ -125,6 +125,7 @@ def act(system: Any, opening: Callable[..., Any], folder: str, operation: tuple[
 @settings(max_examples=40, deadline=None)
 @given(operations)
 @example([("chmod", "d", 0o644), ("rename", "d", "b")])
+@example([("chmod", "d", 0o644), ("walk", "d")])
 @example([("chmod", "d", 0o555), ("rename", "d", "b")])
 def test_as_on_a_real_folder(script: list[tuple[Any, ...]]) -> None:
     with TemporaryDirectory() as host, TemporaryDirectory() as other, Kernel() as kernel:
