@@ -27,15 +27,19 @@ _BEFORE_END: list[Callable[[], object]] = []
 
 
 def before_end(call: Callable[[], object]) -> None:
-    """Have something called by `end_process`, which knows nothing of what a process has on the computer."""
+    """Have `end_process` call something first.
+
+    Args:
+        call: removes what this process has on the computer's disks.
+    """
     _BEFORE_END.append(call)
 
 
 def end_process(status: int) -> NoReturn:
-    """End this process, a forked one, at once, as `os._exit` does, but leave no folders of its runs behind.
+    """End this forked process at once, as `os._exit` does, and remove the folders of its runs before.
 
     Args:
-        status: of the process.
+        status: the exit status.
     """
     try:
         for call in _BEFORE_END:
