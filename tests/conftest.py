@@ -11,12 +11,13 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from cfepy.host_system import ending_signals
+
 # What tests share says as much when it fails, and is not left out by python -O.
 pytest.register_assert_rewrite(
     "dev", *(f"tests.{each.stem}" for each in Path(__file__).parent.iterdir() if each.stem.isidentifier())
 )
 
-from cfepy.host_system import ending_signals  # noqa: E402
 from tests import quick  # noqa: E402
 
 pytest_plugins = ["pytester", "cfepy.testing.plugin"]  # the latter has this name when it is installed, too

@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 from cfepy.debugger.journey import BackSearch, Journey, LineMoment, RunMoment
 from cfepy.garbage import freeze
+from cfepy.host_system import end_process
 
 FIRST = 500  # things that happen between two keepers, at first
 LEAST = 50
@@ -91,7 +92,7 @@ class Keepers:
             os.close(writer)
             order = _wait_for_order(reader)
             if order is None:
-                os._exit(0)
+                end_process(0)
             os.close(reader)
             os.waitpid(child, 0)  # which has ended, as all have that stood at later moments
             journey.target, journey.search, journey.texts, journey.was_in_vain = order
@@ -140,7 +141,7 @@ class Keepers:
             order = pickle.dumps(KeeperOrder(journey.target, journey.search, journey.texts, journey.was_in_vain))
             with contextlib.suppress(BrokenPipeError):  # it has been thinned out since this process was forked
                 os.write(chosen.orders, len(order).to_bytes(LENGTH_BYTES, "little") + order)
-                os._exit(0)
+                end_process(0)
             self._all = self._all[: self._all.index(chosen)]
         raise LookupError("no process is there to go on from")
 

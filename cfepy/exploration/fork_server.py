@@ -26,6 +26,7 @@ from cfepy.exploration.shrink import NotedFlight, fly_noting
 from cfepy.exploration.trial import Trial, told_as
 from cfepy.exploration.verdict import Verdict
 from cfepy.garbage import freeze
+from cfepy.host_system import end_process
 from cfepy.mission import Mission
 from cfepy.rtos import GREENLET, Decision, From, Policy, Schedule, task_kind
 
@@ -155,7 +156,7 @@ class ForkServer:
                     self._answers.send(answer)
             status = 0
         finally:
-            os._exit(status)
+            end_process(status)
 
     def _outcome(self) -> tuple[Any, BaseException | None]:
         try:
@@ -175,7 +176,7 @@ class ForkServer:
             _, status = os.waitpid(child, 0)
             if status:
                 self._answers.send(None)
-        os._exit(0)
+        end_process(0)
 
 
 class _Channel:

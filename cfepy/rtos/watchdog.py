@@ -393,7 +393,9 @@ class StallWatch:
 
     def _has_cpu(self, task: Task) -> bool:
         kernel = self._kernel
-        return kernel.is_running and kernel.current is task and (task is not kernel.host or kernel.is_collecting)
+        if not kernel.is_running or kernel.current is not task or task.done:
+            return False  # of a task that has ended the kernel takes leave, and a blow would hit the kernel
+        return task is not kernel.host or kernel.is_collecting
 
     def _is_back(self, task: Task, seconds: float) -> bool:
         until = time.monotonic() + seconds

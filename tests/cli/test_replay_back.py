@@ -6,6 +6,7 @@ import os
 import random
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -69,3 +70,27 @@ def test_ends_that_nobody_asked_for_leave_no_process_behind(journal: str) -> Non
     status, shown, _ = replayed(journal, "b\nb\n", "--back", "--tasks", "greenlet")  # and the input ends
     assert status == 0
     assert shown
+
+
+WRITES = """
+import rospy
+rospy.init_node("counter")
+with open("starts", "a+") as file:
+    for _ in range(20):
+        rospy.sleep(0.1)
+        file.write("z")
+        file.flush()
+"""
+
+
+def test_keepers_leave_no_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "counter.py").write_text(WRITES, encoding="utf-8")
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("TMPDIR", str(temporary))
+    command = [sys.executable, "-m", "cfepy", "node", "counter.py", "--for", "2", "--quiet", "--record", "run.cfepy"]
+    subprocess.run(command, capture_output=True, check=True, timeout=300)
+    status, _, said = replayed("run.cfepy", "b\nb\ns\nb\nb\nq\n", "--tasks", "greenlet", "--back", "--until", "1.5")
+    assert status == 0, said
+    assert list(temporary.iterdir()) == []

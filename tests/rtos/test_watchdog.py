@@ -15,8 +15,8 @@ from types import FunctionType
 
 import pytest
 
-from cfepy.rtos import Kernel, watchdog
-from cfepy.rtos.context import drain
+from cfepy.rtos import Kernel, Task, watchdog
+from cfepy.rtos.context import UNWIND_S, drain
 from cfepy.rtos.watchdog import Expenses, Spent, StallWatch
 from cfepy.status import StallError
 from cfepy.units import NS_PER_S
@@ -100,6 +100,23 @@ def test_tasks_that_keep_each_other_going_stand_still_as_well(kernel: Kernel) ->
 
     kernel.spawn("other", toss)
     assert ended(kernel, toss).summary.startswith("tasks other, spinning have kept each other going")
+
+
+class SlowToLeave:
+    """A mutex that the kernel takes from a task which has ended, for longer than a watch waits between two blows."""
+
+    def abandon(self, task: Task) -> None:
+        until = time.monotonic() + 3 * UNWIND_S
+        while time.monotonic() < until:
+            pass
+
+
+def test_the_kernel_is_not_hit_while_it_takes_leave_of_a_task(kernel: Kernel) -> None:
+    def main() -> None:
+        kernel.current.held.append(SlowToLeave())  # type: ignore[arg-type]
+        spin()
+
+    assert "has not given up the CPU" in ended(kernel, main).summary
 
 
 def test_a_task_that_swallows_everything_is_ended(kernel: Kernel) -> None:

@@ -262,7 +262,10 @@ class FileCalls:
         return Entries([entry(given, name, kind, self._stat) for name, kind in kinds])
 
     def _kind(self, folder: str, name: str) -> int:
-        return stat.S_IFMT(os.lstat(self._overlay.place(f"{folder.rstrip('/')}/{name}")).st_mode)
+        try:
+            return stat.S_IFMT(os.lstat(self._overlay.place(f"{folder.rstrip('/')}/{name}")).st_mode)
+        except OSError:  # it is gone by now, as of /proc/self/fd the one by which the folder was read
+            return 0
 
     # -- changing ----------------------------------------------------------------------------------------------------
 

@@ -19,7 +19,7 @@ from contextlib import suppress
 from functools import cache
 from weakref import WeakSet, finalize
 
-from cfepy.host_system import in_forked_process
+from cfepy.host_system import before_end, in_forked_process
 from cfepy.nodes.files.paths import (
     HAS_DRIVES,
     is_in,
@@ -586,12 +586,9 @@ def _remove_tree(top: str, process: int) -> None:
 
 @cache
 def _living() -> WeakSet[Overlay]:
-    """The overlays of this process, which part from their like when it is forked."""
+    """The overlays of this process: they part from their like when it is forked, and go when a forked one ends."""
     found: WeakSet[Overlay] = WeakSet()
 
-    def part() -> None:
-        for each in tuple(found):
-            each.part()
-
-    in_forked_process(part)
+    in_forked_process(lambda: list(map(Overlay.part, tuple(found))))
+    before_end(lambda: list(map(Overlay.close, tuple(found))))
     return found

@@ -18,7 +18,7 @@ from cfepy.cli.main import main
 from cfepy.exploration.fork_server import ForkingJudge
 from cfepy.exploration.trial import Trial
 from cfepy.journal import read_journal, record
-from cfepy.nodes import PREFIX
+from cfepy.nodes import PREFIX, Overlay
 from cfepy.pilot.pilot import fly
 from cfepy.pilot.plan import NODE, RunPlan
 from cfepy.resources import import_path
@@ -203,9 +203,38 @@ assert (open("starts").read(), lines.read()) == ("xxyz", "two\\n"), os.listdir("
 """
 
 
+AT_ODDS = """
+import os, rospy, threading
+rospy.init_node("counter")
+file = open("starts", "a+")
+def write(text):
+    for _ in range(9):
+        rospy.sleep(0.1)
+        file.write(text)
+        file.flush()
+threading.Thread(target=write, args=["y"]).start()
+write("z")
+rospy.sleep(0.01)
+print(os.stat("starts").st_size)
+"""
+
+
+def test_a_process_that_waits_for_schedules_leaves_no_files(node: Path, tmp_path: Path) -> None:
+    node.write_text(AT_ODDS, encoding="utf-8")
+    judge = ForkingJudge(Trial(replace(plan_of(node, "greenlet"), schedule=Schedule.parse("random:0:from=700ms"))))
+    try:
+        verdicts = [judge.judge(Schedule.parse(f"random:{seed}:from=700ms")) for seed in (1, 2, 3)]
+    finally:
+        judge.close()
+    assert len({verdict.trace for verdict in verdicts}) > 1  # so each was flown in a process of its own
+    assert left(tmp_path) == ["home", "home/counter.py", "home/starts"]
+
+
 def test_processes_that_part_have_files_of_their_own(node: Path, tmp_path: Path) -> None:
     node.write_text(FORKED, encoding="utf-8")
     (node.parent / "lines").write_text("one\ntwo\n", encoding="utf-8")
+    another = Overlay()  # of a mission that lives on in this process while others are forked from it
+    os.close(another.open(f"{tmp_path}/home/lines", os.O_WRONLY))
     trial = Trial(replace(plan_of(node, "greenlet"), schedule=Schedule.parse("random:0:from=700ms")))
     judge = ForkingJudge(trial)
     try:
@@ -215,4 +244,5 @@ def test_processes_that_part_have_files_of_their_own(node: Path, tmp_path: Path)
     assert not any(verdict.failures for verdict in verdicts)
     alone = trial.run(Schedule.parse("random:1:from=700ms"))
     assert verdicts[0].trace == verdicts[2].trace == alone.trace
+    another.close()
     assert left(tmp_path) == ["home", "home/counter.py", "home/lines", "home/starts"]

@@ -14,6 +14,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -148,3 +149,10 @@ def test_as_on_a_real_folder(script: list[tuple[Any, ...]]) -> None:
         for folder, folders, _ in os.walk(other):
             for name in folders:
                 os.chmod(os.path.join(folder, name), 0o700)  # so that it can be removed
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self/fd"), reason="needs a system that shows open files as a folder")
+def test_a_folder_may_change_while_it_is_read() -> None:
+    with Kernel() as kernel:
+        system = Universe(kernel, name="node", overlay=Overlay()).importer.load("os")
+        assert "1" in {entry.name for entry in system.scandir("/proc/self/fd")}
