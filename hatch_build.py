@@ -29,7 +29,7 @@ FREE = "Py_TYPE(self)->tp_free((PyObject *)self);"
 
 
 class EngineHook(BuildHookInterface):
-    """Compiles them into the wheel; `cfepy.c.engine` and `cfepy.compiled` know of what."""
+    """Compiles them into the wheel; `cfepy.extra.c.engine` and `cfepy.interpreter.compiled` know of what."""
 
     def dependencies(self) -> list[str]:
         """See hatchling: what the build needs beside hatchling itself."""
@@ -48,10 +48,10 @@ class EngineHook(BuildHookInterface):
             for name, made in libraries.items():
                 shutil.copy(made, root / name)
             return
-        made = recipe(root, "cfepy/c/engine.py").built(folder)
+        made = recipe(root, "cfepy/extra/c/engine.py").built(folder)
         build_data["pure_python"] = False
         build_data["infer_tag"] = True
-        build_data["force_include"][str(made)] = f"cfepy/c/{made.name}"
+        build_data["force_include"][str(made)] = f"cfepy/extra/c/{made.name}"
         for name, made in libraries.items():
             build_data["force_include"][str(made)] = name
 
@@ -77,7 +77,7 @@ def compiled_modules(root: Path, folder: Path) -> dict[str, Path]:
     Returns:
         The files of the libraries by their places in a wheel.
     """
-    compiled = recipe(root, "cfepy/compiled.py")
+    compiled = recipe(root, "cfepy/interpreter/compiled.py")
     for package in ("cfepy", "rospy_shim", "ros_libraries"):
         shutil.copytree(root / package, folder / package, ignore=shutil.ignore_patterns("__pycache__", "*.so"))
     (folder / "mypy.ini").write_text(

@@ -8,10 +8,10 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from rospy_shim import genpy
-from rospy_shim.msgs import message_class, shipped
-from rospy_shim.msgs.reference import encode
-from rospy_shim.msgs.spec import PRIMITIVES
+from rospy_shim.types import genpy
+from rospy_shim.types.msgs import message_class, shipped
+from rospy_shim.types.msgs.reference import encode
+from rospy_shim.types.msgs.spec import PRIMITIVES
 
 _ROUNDS = 40
 _ROUND_S = 0.003

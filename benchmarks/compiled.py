@@ -11,8 +11,8 @@ from itertools import pairwise
 from pathlib import Path
 from time import perf_counter
 
-from cfepy.c import build
 from cfepy.console import Console
+from cfepy.extra.c import build
 from cfepy.mission import Mission
 
 HERE = Path(__file__).parent / "compiled_app"

@@ -15,11 +15,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from benchmarks.message_sizes import COMPILERS
-from cfepy.c import headers_folder
-from cfepy.convert.build import HEAP_SOURCE, core_flags, library_folder, library_includes, profile_flags
-from cfepy.convert.messages import Profile, write_headers
-from cfepy.convert.sources import collect, message_types
-from rospy_shim.msgs import shipped
+from cfepy.extra.c import headers_folder
+from cfepy.extra.convert.build import HEAP_SOURCE, core_flags, library_folder, library_includes, profile_flags
+from cfepy.extra.convert.messages import Profile, write_headers
+from cfepy.extra.convert.sources import collect, message_types
+from rospy_shim.types.msgs import shipped
 
 FLAGS = ("-std=c++17", "-Os", "-ffunction-sections", "-fdata-sections", "-w")
 ARENA = 65536  # bytes

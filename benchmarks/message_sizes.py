@@ -14,11 +14,11 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from cfepy.convert.capacities import Capacities
-from cfepy.convert.messages import Profile, write_headers
+from cfepy.extra.convert.capacities import Capacities
+from cfepy.extra.convert.messages import Profile, write_headers
 from cfepy.resources import shipped as shipped_files
-from rospy_shim.msgs import shipped
-from rospy_shim.msgs.spec import BUILTINS
+from rospy_shim.types.msgs import shipped
+from rospy_shim.types.msgs.spec import BUILTINS
 
 TYPES = (
     *("std_msgs/Empty", "std_msgs/Float64", "std_msgs/String", "std_msgs/Header", "std_msgs/Float64MultiArray"),

@@ -9,9 +9,9 @@ import os
 from contextlib import closing
 
 from cfepy.console import Console
-from cfepy.exploration.fork_server import ForkServer, LateSchedule
+from cfepy.extra.exploration.fork_server import ForkServer, LateSchedule
 from cfepy.mission import Mission, read_mission
-from cfepy.rtos import Schedule
+from cfepy.schedules import Schedule
 
 COUNT = 100
 SHORT_S = 0.2  # of virtual time

@@ -22,14 +22,14 @@ import os as _os
 import sys as _sys
 
 if _os.path.basename((_sys.argv or [""])[0]).startswith(("cfepy", "-m")):  # perhaps the command
-    import cfepy.early_end as _early_end
+    import cfepy.interpreter.early_end as _early_end
 
     if _early_end.is_command():
         _early_end.leave_on_interrupt()  # before any other import, in which Ctrl-C would give its traceback
 
 from typing import TYPE_CHECKING
 
-from cfepy.faces import face
+from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.app import Cfe
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from cfepy.ground import DecodedEvent, Samples, Series, SeriesSet
     from cfepy.monitors import Heard
     from cfepy.pilot import AppResult, Results, TopicResult
-    from cfepy.rtos import Schedule
+    from cfepy.schedules import Schedule
     from cfepy.status import CfeError, StallError, UsageError
 
 __version__ = "0.1.0"
@@ -134,7 +134,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".ground": ("DecodedEvent", "Samples", "Series", "SeriesSet"),
             ".monitors": ("Heard",),
             ".pilot": ("AppResult", "Results", "TopicResult"),
-            ".rtos": ("Schedule",),
+            ".schedules": ("Schedule",),
             ".status": ("CfeError", "StallError", "UsageError"),
         },
     )

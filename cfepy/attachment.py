@@ -5,11 +5,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from cfepy.rtos import Kernel
-from cfepy.sb import SoftwareBus
-from cfepy.trace import Trace
+if TYPE_CHECKING:
+    from cfepy.rtos import Kernel
+    from cfepy.sb import SoftwareBus
+    from cfepy.trace import Trace
 
 
 class Attachment:

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import TextIO
 
 from cfepy.escapes import console_line, raw
-from cfepy.texts import without_addresses
+from cfepy.reading.texts import without_addresses
 
 
 class Console:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Generic, TypeVar
 
+from cfepy.reading.texts import to_bytes
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_ES_ERR_RESOURCEID_NOT_VALID,
@@ -19,7 +20,6 @@ from cfepy.status import (
     CfeError,
     OsalError,
 )
-from cfepy.texts import to_bytes
 
 OS_TASK_BASE = 0x01
 OS_QUEUE_BASE = 0x02

@@ -6,23 +6,27 @@ Python process, this module has rospy's exceptions, times and constants, and eve
 What a node or a tool sees of ROS belongs here, in rooms: `client` is rospy itself, `graph` and `parameters` what all
 nodes of a mission share, `master` their XML-RPC side, `msgs` and `genpy` message classes, `roslaunch` launch files,
 `libraries`, `inner` and `stand_ins` code of nodes, and `runtime` what a mission starts. What a program sees of Python
-is in `cfepy.nodes`; how a mission uses nodes is in `cfepy.mission`, of which nothing here knows.
+is in `cfepy.nodes`; how a mission uses nodes is in `cfepy.mission`, of which nothing here knows. The central file is
+`rospy_shim/runtime.py`.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from rospy_shim.client.exceptions import (
-    ROSException,
-    ROSInitException,
-    ROSInternalException,
-    ROSInterruptException,
-    ROSSerializationException,
-    ROSTimeMovedBackwardsException,
-    ServiceException,
-)
-from rospy_shim.client.rostime import Duration, Time
+from cfepy.interpreter.faces import face
+
+if TYPE_CHECKING:
+    from rospy_shim.client.rostime import Duration, Time
+    from rospy_shim.types.exceptions import (
+        ROSException,
+        ROSInitException,
+        ROSInternalException,
+        ROSInterruptException,
+        ROSSerializationException,
+        ROSTimeMovedBackwardsException,
+        ServiceException,
+    )
 
 __all__ = [
     "Duration",
@@ -49,12 +53,31 @@ _NEEDS_A_NODE = frozenset({
 # fmt: on
 
 
+_load, __dir__ = face(
+    __name__,
+    {
+        ".client.rostime": ("Duration", "Time"),
+        ".types.exceptions": (
+            "ROSException",
+            "ROSInitException",
+            "ROSInternalException",
+            "ROSInterruptException",
+            "ROSSerializationException",
+            "ROSTimeMovedBackwardsException",
+            "ServiceException",
+        ),
+    },
+)
+
+
 def __getattr__(name: str) -> Any:
-    """What only a node has: calling it tells how to become one."""
+    """A name of `__all__`, or what only a node has: calling that tells how to become one."""
     if name not in _NEEDS_A_NODE:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return _load(name)
 
     def refuse(*args: Any, **options: Any) -> None:
+        from rospy_shim.types.exceptions import ROSInitException
+
         raise ROSInitException(
             f"rospy_shim.{name}() works in a node of a cfepy mission only. Run this program with `cfepy run <mission>`"
             " (see docs/run_your_ros_node.md), or import rospy instead of rospy_shim on a computer with ROS"

@@ -16,8 +16,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from rospy_shim.angles import degrees, radians
-from rospy_shim.msgs.packages import Packages, crawl, name_of
+from rospy_shim.types.angles import degrees, radians
+from rospy_shim.types.msgs.packages import Packages, crawl, name_of
 
 if TYPE_CHECKING:
     from cfepy.nodes import Factory, Universe

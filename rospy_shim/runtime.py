@@ -13,8 +13,8 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from cfepy.cached import CachedProperty
 from cfepy.es import StartParams
+from cfepy.interpreter.cached import CachedProperty
 from cfepy.nodes import NodeConfig, ProcessNumbers, RosConfig, Universe
 from cfepy.rtos import InjectedCrash
 from cfepy.units import NS_PER_S
@@ -25,9 +25,9 @@ from rospy_shim.graph.compiled import CompiledNodes
 from rospy_shim.graph.graph import Graph, TopicEntry, TopicRow
 from rospy_shim.library_parts import FOLDER, STAND_INS, ConfigModules, library_names, library_parts
 from rospy_shim.master import MASTER_PORT, Switchboard, xmlrpc_client
-from rospy_shim.msgs import make_module
-from rospy_shim.msgs.modules import MessageModule
 from rospy_shim.parameters.app import ParameterApp
+from rospy_shim.types.msgs import make_module
+from rospy_shim.types.msgs.modules import MessageModule
 
 if TYPE_CHECKING:
     from types import ModuleType

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from cfepy.host_system import ending_signals
+from cfepy.interpreter.host_system import ending_signals
 
 # What tests share says as much when it fails, and is not left out by python -O.
 pytest.register_assert_rewrite(

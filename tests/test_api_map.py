@@ -9,7 +9,7 @@ import pytest
 from cfepy.mission import Mission
 from dev.pages import api_map
 from dev.pages.api_names import snake
-from tests.c.building import needs_compiler
+from tests.extra.c.building import needs_compiler
 
 pytestmark = needs_compiler  # the engine knows what it answers itself
 

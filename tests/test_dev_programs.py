@@ -30,7 +30,7 @@ OF_TESTS = {
     "mission/eventful.py": "flies in a process of its own",
     "own_network.py": "makes the network",
     "packaging/without.py": "flies in a process without what other systems lack",
-    "viewers/rosbridge/roslibpy_client.py": "has a reactor that starts only once in a process",
+    "extra/viewers/rosbridge/roslibpy_client.py": "has a reactor that starts only once in a process",
 }
 """Modules that a test starts, and nobody else."""
 _COMMAND = re.compile(r"\bpython3? -m (dev(?:\.\w+)*)")

@@ -16,7 +16,9 @@ from tests import quick
 FILES = {
     "cfepy/__init__.py": '"""The face."""\n__version__ = "1"\n',
     "cfepy/status.py": '"""Errors. More of them."""\nclass Error(Exception):\n    pass\n',
-    "cfepy/rtos/__init__.py": "from cfepy import __version__\nfrom cfepy.rtos.kernel import Kernel\n",
+    "cfepy/rtos/__init__.py": (
+        "from cfepy import __version__\nfrom cfepy.rtos.kernel import Kernel\n__all__ = ['Kernel']\n"
+    ),
     "cfepy/rtos/kernel.py": (
         "from typing import TYPE_CHECKING\n"
         "from ..status import Error\n"
@@ -24,13 +26,13 @@ FILES = {
         "class Kernel:\n    def run(self):\n        if self and True:\n            return [x for x in self]\n"
     ),
     "cfepy/rtos/task.py": "import cfepy.rtos.kernel\nclass Task:\n    pass\n",
-    "cfepy/sb/__init__.py": "",
+    "cfepy/sb/__init__.py": "__all__ = []\n",
     "cfepy/sb/bus.py": (
         '"""The bus. Imports only the kernel."""\n'
         "def late():\n    try:\n        from cfepy.evs import log\n    except ImportError:\n        pass\n"
         "class Task:\n    pass\n"
     ),
-    "cfepy/evs/__init__.py": "",
+    "cfepy/evs/__init__.py": "__all__ = []\n",
     "cfepy/evs/log.py": (
         'import importlib\nPLACE = "cfepy.sb.bus"\nTABLE = {1: "cfepy.rtos.task"}\n'
         "def load(name):\n    importlib.import_module(PLACE)\n    importlib.import_module('.none', __package__)\n"
@@ -118,3 +120,19 @@ def test_what_the_quick_loop_leaves_out_is_there() -> None:
     tests = ROOT / "tests"
     assert {path.stem for path in tests.rglob("test_*.py")} >= quick.LONG_FILES
     assert {path.name for path in tests.iterdir()} >= quick.LONG_FOLDERS
+
+
+def test_each_package_names_its_central_file() -> None:
+    """Packages below the names that a design speaks of, and those that are an app each, say it for themselves."""
+    tree = the_tree()
+    for module in tree.modules.values():
+        top, *rest = module.name.split(".")
+        depth = 2 if rest[:1] in (["extra"], ["types"]) else 1
+        if not module.is_package or top == "apps" or module.name in ("cfepy", "cfepy.apps") or len(rest) > depth:
+            continue
+        named = re.search(r"[Tt]he\s+central\s+file\s+is\s+`([^`]*)`", module.text)
+        if module.name == "cfepy.extra":
+            continue  # it has add-ons, and no files
+        assert named is not None, f"{module.where} says which file to read first"
+        assert (ROOT / named[1]).is_file(), f"{module.where}: there is no {named[1]}"
+        assert "belongs here" in module.text or "belong here" in module.text, f"{module.where} says what belongs there"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from cfepy.app import Cfe
 from cfepy.evs import packets as evs
@@ -15,15 +15,24 @@ from cfepy.status import CfeError
 from . import events as ev
 from . import packets as pk
 from . import protocol as pr
-
-if TYPE_CHECKING:
-    from .network import Peer
+from .remap import Remap
 
 SUB_PIPE_DEPTH = 32
 MAX_ALLSUBS_ON_PIPE, MAX_ONESUB_ON_PIPE = 64, 16
 DEFAULT_MSG_LIM = 8
 OWN = (evs.LONG_EVENT_MSG_MID, pk.CMD_MID, pk.TLM_MID)
 """MsgIds that peers are never told of."""
+
+
+class Listener(Protocol):
+    """A peer that wants messages: who it is, what its messages pass, what it wants, and the pipe for that."""
+
+    processor_id: int
+    spacecraft_id: int
+    filters: list[Remap]
+    subs: dict[int, None]
+    pipe: int
+    recv_err_cnt: int
 
 
 class Subscriptions:
@@ -107,7 +116,7 @@ class Subscriptions:
 
     # -- of peers ----------------------------------------------------------------------------------------------------
 
-    def from_peer(self, peer: Peer, payload: bytes) -> None:
+    def from_peer(self, peer: Listener, payload: bytes) -> None:
         """A peer wants messages (SBN_ProcessSubsFromPeer).
 
         Raises:
@@ -117,7 +126,7 @@ class Subscriptions:
         for each in self._read(peer, payload):
             self._subscribe(peer, _wanted(peer, each.msg_id))
 
-    def _subscribe(self, peer: Peer, msg_id: int) -> None:
+    def _subscribe(self, peer: Listener, msg_id: int) -> None:
         if msg_id in peer.subs:
             return
         if len(peer.subs) >= pr.MAX_SUBS:
@@ -131,7 +140,7 @@ class Subscriptions:
             raise
         peer.subs[msg_id] = None
 
-    def unsub_from_peer(self, peer: Peer, payload: bytes) -> None:
+    def unsub_from_peer(self, peer: Listener, payload: bytes) -> None:
         """A peer wants messages no more (SBN_ProcessUnsubsFromPeer).
 
         Raises:
@@ -146,7 +155,7 @@ class Subscriptions:
                 text = f"unsubscription from ProcessorID {peer.processor_id}, msg 0x{msg_id:04X} not found"
                 self._cfe.evs.send_info(ev.SUB_EID, f"cannot process {text}")
 
-    def _read(self, peer: Peer, payload: bytes) -> list[pr.Sub]:
+    def _read(self, peer: Listener, payload: bytes) -> list[pr.Sub]:
         ident, told = pr.unpack_subscriptions(payload)
         if ident == self._ident:
             return told
@@ -161,7 +170,7 @@ def _subscription(entry: Mapping[str, Any]) -> pr.Sub:
     return pr.Sub(entry["MsgId"], entry["Qos"]["Priority"], entry["Qos"]["Reliability"])
 
 
-def _wanted(peer: Peer, msg_id: int) -> int:
+def _wanted(peer: Listener, msg_id: int) -> int:
     """The MsgId on this processor's bus that becomes one that a peer subscribes to."""
     for each in peer.filters:
         msg_id = each.wanted(msg_id, peer.processor_id, peer.spacecraft_id)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 
+from cfepy.cli import flight_add_ons
 from cfepy.cli.options import add_json, factor_of
 from cfepy.status import UsageError
 
@@ -16,7 +17,7 @@ HIGHEST_PORT = 65_535
 def add_flight(parser: argparse.ArgumentParser) -> None:
     """All of them, as `fly_and_tell` takes them."""
     add_pace(parser)
-    add_viewers(parser)
+    flight_add_ons.add_options(parser)
     add_outputs(parser)
     add_recording(parser)
     _add_check_determinism(parser)
@@ -77,57 +78,17 @@ def add_pace(parser: argparse.ArgumentParser) -> None:
         metavar="PORT=HERE",
         help="open the mission's port PORT, or send to it, as port HERE of this computer; 0 takes any free one",
     )
-    pace.add_argument(
-        "--ros-master",
-        type=ros_master_of,
-        metavar="URI",
-        help="with --realtime: be one graph with ROS on this computer. URI is that of a running roscore, such as "
-        "http://localhost:11311; serve or serve:PORT serves a ROS master for others",
-    )
 
 
 def check_pace(arguments: argparse.Namespace) -> None:
-    """Check what `add_pace` has added.
+    """Check what `add_pace` and add-ons have added.
 
     Raises:
         UsageError: something in it is for a run in real time, and this one is none.
     """
-    if arguments.realtime is not None:
-        return
-    if arguments.port:
+    if arguments.realtime is None and arguments.port:
         raise UsageError("without --realtime no port is opened on this computer", field="--port")
-    if arguments.ros_master:
-        raise UsageError("without --realtime no ROS node of this computer can keep pace; add it", field="--ros-master")
-
-
-def add_viewers(parser: argparse.ArgumentParser) -> None:
-    """Programs that look at the run while it goes on."""
-    viewers = parser.add_argument_group("programs that look at the run while it goes on")
-    viewers.add_argument(
-        "--foxglove",
-        metavar="[HOST:]PORT",
-        help="serve Foxglove: topics, telemetry, events, parameters and services, both ways; on 127.0.0.1, if no host "
-        "is given, and with --realtime at the pace of the wall clock",
-    )
-    viewers.add_argument(
-        "--rosbridge",
-        metavar="[HOST:]PORT",
-        help="serve clients of rosbridge, such as roslibjs and roslibpy: topics, services and parameters, both ways",
-    )
-    viewers.add_argument(
-        "--viewer-origin",
-        action="append",
-        default=[],
-        metavar="ORIGIN",
-        help="let pages of a web site connect from a browser without a token, such as https://example.org; those of "
-        "this computer may in any case",
-    )
-    viewers.add_argument(
-        "--viewer-token",
-        metavar="TOKEN",
-        help="what such a program must know to connect (default: that of the variable CFEPY_VIEWER_TOKEN; from "
-        "other computers always one, which is made and shown if nobody gives one)",
-    )
+    flight_add_ons.check_options(arguments)
 
 
 def _add_check_determinism(parser: argparse.ArgumentParser) -> None:
@@ -143,15 +104,6 @@ def _add_check_determinism(parser: argparse.ArgumentParser) -> None:
 
 
 # -- types of arguments ------------------------------------------------------------------------------------------------
-
-
-def ros_master_of(text: str) -> str:
-    """The URI of a ROS master, or `serve` with or without a port, for argparse."""
-    word, mark, port = text.partition(":")
-    serves = word == "serve" and (not mark or (port.isdecimal() and int(port) <= HIGHEST_PORT))
-    if serves or (word == "http" and text.count(":") > 1 and text.rstrip("/").rpartition(":")[2].isdecimal()):
-        return text
-    raise argparse.ArgumentTypeError(f"{text!r} is not like http://localhost:11311, serve or serve:11312")
 
 
 def ports_of(text: str) -> tuple[int, int]:

@@ -18,15 +18,15 @@ from cfepy.cli.main import FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import LONGEST_S
 from cfepy.console import Console
 from cfepy.escapes import visible
-from cfepy.garbage import no_collection
-from cfepy.host_system import ending_signals, leave_dead_terminal, signal_number
+from cfepy.interpreter.garbage import no_collection
+from cfepy.interpreter.host_system import ending_signals, leave_dead_terminal, signal_number
 from cfepy.mission import PieceLength
 from cfepy.pilot import Host, LiveRun
 from cfepy.rtos import Pacer, Stopwatch
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
-    from cfepy.cli.viewers import Viewers
+    from cfepy.cli.flight_add_ons import FlightAddOns
     from cfepy.io import Guest, HostNetwork
 
 PATIENCE_NS = 2 * NS_PER_S  # wall time after the second Ctrl-C in which no other has an effect
@@ -56,9 +56,7 @@ class WatchedHost(Host):
         realtime: pace it to the wall clock, so many times as fast, with the mission's ports open; None runs as fast as
             it goes.
         ports: ports of this computer by those of the mission.
-        ros_master: a paced run joins the ROS master at this URI, or serves one: "serve" or "serve:PORT"; None for
-            neither.
-        viewers: what looks at the run from outside and acts on it; None for nobody. They leave at its end.
+        add_ons: what add-ons open around the run; None for nothing. It is closed at the end of the run.
         pause: called between the pieces.
         note: gets what the user should know before anything runs.
 
@@ -78,8 +76,7 @@ class WatchedHost(Host):
         *,
         realtime: float | None = None,
         ports: Mapping[int, int] | None = None,
-        ros_master: str | None = None,
-        viewers: Viewers | None = None,
+        add_ons: FlightAddOns | None = None,
         pause: Callable[[], object] = lambda: None,
         note: Callable[[str], object] = note,
     ) -> None:
@@ -90,8 +87,7 @@ class WatchedHost(Host):
         self._display: Display = SilentDisplay()
         self._realtime = realtime
         self._ports = ports or {}
-        self._ros_master = ros_master
-        self._viewers = viewers
+        self._add_ons = add_ons
         self._pause = pause
         self._note = note
         self._piece = PieceLength()
@@ -160,8 +156,8 @@ class WatchedHost(Host):
         os._exit(INTERRUPTED if self.asked else FOUND_PROBLEMS)
 
     def end(self) -> None:
-        if self._viewers is not None:
-            self._viewers.close()
+        if self._add_ons is not None:
+            self._add_ons.close()
         self._bridge.close()
 
     def _stop_showing(self, error: OSError) -> None:
@@ -173,7 +169,7 @@ class WatchedHost(Host):
 
     @property
     def _guests(self) -> list[Guest]:
-        return [] if self._viewers is None else self._viewers.guests
+        return [] if self._add_ons is None else self._add_ons.guests
 
     def _line(self, text: str) -> None:
         self._display.line(text)
@@ -202,13 +198,9 @@ class WatchedHost(Host):
 
         self._mission.kernel.context.be_prompt()
         self._network = self._bridge.enter_context(HostNetwork(self._mission, dict(self._ports), self._tell))
-        if self._ros_master is not None:
-            from cfepy.ros_host import RosHost, world_at
-
-            ros = RosHost(self._mission, world_at(self._ros_master), tell=self._tell)
-            self._network.join(self._bridge.enter_context(ros))
-        for each in self._guests:
-            self._network.join(each)
+        if self._add_ons is not None:
+            for each in self._add_ons.connect(self._mission, self._tell):
+                self._network.join(each)
 
     def _run_until(self, until_ns: int) -> None:
         """A piece of the run; its length goes after what takes some 80 to 250 ms of wall time."""

@@ -13,7 +13,7 @@ from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import LONGEST_S, plan_of, refuse_run_options
 from cfepy.ground import SeriesRecorder, SeriesSet, bag_series, is_bag
-from cfepy.host_system import command_line
+from cfepy.interpreter.host_system import command_line
 from cfepy.pilot import DEFAULT_S, Flown, RunPlan, fly
 from cfepy.rtos import Policy
 from cfepy.status import UsageError

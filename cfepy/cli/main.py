@@ -13,7 +13,7 @@ import io
 import os
 import signal
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import TracebackType
 from typing import Any
 
@@ -22,11 +22,12 @@ from cfepy.cli.failures import NO_ROOM
 from cfepy.cli.json_output import standard_output
 from cfepy.cli.options import MISSION_HELP
 from cfepy.cli.parser import CommandParser, RootParser
-from cfepy.early_end import INTERRUPTED as INTERRUPTED
-from cfepy.early_end import leave, leave_on_interrupt
 from cfepy.escapes import keep_output_safe, raw, safe_output
-from cfepy.garbage import freeze, no_collection
-from cfepy.host_system import ending_signals, interrupt_once, leave_dead_terminal, signal_number
+from cfepy.interpreter.early_end import INTERRUPTED as INTERRUPTED
+from cfepy.interpreter.early_end import leave, leave_on_interrupt
+from cfepy.interpreter.garbage import freeze, no_collection
+from cfepy.interpreter.host_system import ending_signals, interrupt_once, leave_dead_terminal, signal_number
+from cfepy.plugins import OWN, Plugin, installed, missing, owner_of
 from cfepy.status import StallError, UsageError
 
 ENDED_WELL = 0
@@ -34,31 +35,40 @@ FOUND_PROBLEMS = 1
 BAD_USAGE = 2
 AGAIN_S = 0.001  # wall time until an interrupt that was dropped comes again
 ROOMS = {
-    "run": ("run", "check", "new", "boards", "board"),
+    "run": ("run", "check", "new"),
+    "board": ("boards", "board"),
     "ros": ("launch", "node", "rostest", "topic", "service", "param", "bag"),
     "ros_tools": ("rosbag", "rosmsg", "rossrv", "rosnode", "tf"),
-    "explore": ("explore", "faults", "sweep"),
     "journal": ("replay", "diff"),
-    "look": ("trace", "report", "plot"),
     "ground": ("cmd", "tlm", "console", "mids", "graph", "export"),
-    "convert": ("convert",),
-    "files": ("build", "tbl", "log"),
+    "files": ("tbl", "log"),
     "shell": ("completion",),
 }
 """The commands of each room of this package; only the room in question is asked, since setting up all takes 10 ms."""
 TITLES = {
     "run": "Fly a mission",
+    "board": "Fly a mission",
     "ros": "ROS",
     "ros_tools": "ROS's own tools",
-    "explore": "Find races and faults",
     "journal": "Do a run again",
-    "look": "Look at a run",
     "ground": "Ground",
-    "convert": "ROS nodes in C++",
     "files": "Files of cFE",
     "shell": "The shell",
 }
 """Under which the commands of a room stand in the help."""
+ORDER = (
+    "Fly a mission",
+    "ROS",
+    "ROS's own tools",
+    "Find races and faults",
+    "Do a run again",
+    "Look at a run",
+    "Ground",
+    "ROS nodes in C++",
+    "Files of cFE",
+    "The shell",
+)
+"""Of the titles in the help; those of add-ons of other packages come after them."""
 
 
 def process() -> int:
@@ -122,7 +132,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _obey(words: Sequence[str]) -> int:
     """Do what the words say; the exit status."""
     if "_ARGCOMPLETE" in os.environ:
-        _command("shell.completion").complete(parser_for)
+        _command(f"{__package__}.shell.completion").complete(parser_for)
     try:
         chosen = parser_for(words).parse_args(words)
         command = _command(chosen.module)
@@ -198,12 +208,11 @@ def terminable() -> Iterator[None]:
 
 def _command(module: str) -> Any:
     """The module of a command. What is imported stays, so that garbage is not looked for in it, which takes as long."""
-    name = f"cfepy.cli.{module}"
-    if name in sys.modules:
-        return sys.modules[name]
+    if module in sys.modules:
+        return sys.modules[module]
     with no_collection:
         try:
-            return importlib.import_module(name)
+            return importlib.import_module(module)
         finally:
             freeze()
 
@@ -215,25 +224,83 @@ class _Version(argparse.Action):
         super().__init__(option_strings, argparse.SUPPRESS, nargs=0, help=help)
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        from cfepy.compiled import state
+        from cfepy.interpreter.compiled import state
 
         print(f"cfepy {__version__} ({state()})")
         parser.exit()
 
 
 def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
-    """A parser for these words: with the command that they begin with, or with all when they begin with none."""
+    """Make a parser for a command line.
+
+    Args:
+        words: of it; when they begin with a command, the parser has that command and its neighbours alone.
+
+    Raises:
+        UsageError: the command belongs to an add-on that is not installed.
+    """
+    rooms = {room: names for room, names in ROOMS.items() if words[:1] and words[0] in names}
+    plugins: Sequence[Plugin] = ()
+    if not rooms:
+        usable = _with_new_commands(installed())
+        plugins = [each for each in usable if words[:1] and words[0] in each.commands]
+        owner = owner_of(words[0]) if words and not plugins else None
+        if owner is not None:
+            raise UsageError(missing(f"the command {words[0]}", owner.name))
+        if not plugins:
+            rooms, plugins = dict(ROOMS), usable
+    groups = _groups(rooms, plugins)
     parser = RootParser(
-        {TITLES[room]: names for room, names in ROOMS.items()},
+        groups,
         prog="cfepy",
         description="NASA's core Flight Executive and ROS 1 nodes on one simulated processor.",
-        epilog="`cfepy COMMAND --help` explains a command. A MISSION is " + MISSION_HELP + ".",
+        epilog="`cfepy COMMAND --help` explains a command. A MISSION is " + MISSION_HELP + "." + _add_ons(plugins),
     )
     parser.add_argument("--version", action=_Version, help="tell the version, and whether kernel and bus are compiled")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=CommandParser)
-    for part in [part for part, names in ROOMS.items() if words[:1] and words[0] in names] or ROOMS:
-        importlib.import_module(f"cfepy.cli.{part}").add(commands)
+    for room in rooms:
+        importlib.import_module(f"cfepy.cli.{room}").add(commands)
+    for plugin in plugins:
+        try:
+            if plugin.commands:
+                plugin.add_commands(commands)
+        except UsageError as error:  # of another package
+            if not rooms:
+                raise
+            print(f"cfepy: {error}", file=sys.stderr)
+            del groups[plugin.title]
     return parser
+
+
+def _with_new_commands(plugins: Iterable[Plugin]) -> list[Plugin]:
+    """Leave add-ons out whose commands others have, and say so."""
+    taken = {name for names in ROOMS.values() for name in names}
+    usable = []
+    for each in plugins:
+        twice = sorted(taken.intersection(each.commands))
+        if twice:
+            print(f"cfepy: the add-on {each.name} is left out: there is a command {twice[0]} already", file=sys.stderr)
+        else:
+            taken.update(each.commands)
+            usable.append(each)
+    return usable
+
+
+def _groups(rooms: Mapping[str, Sequence[str]], plugins: Sequence[Plugin]) -> dict[str, list[str]]:
+    """The commands by the titles above them, in the order of the help."""
+    groups: dict[str, list[str]] = {title: [] for title in ORDER}
+    for each in plugins:
+        if each.commands:
+            groups.setdefault(each.title, []).extend(each.commands)
+    for room, names in rooms.items():
+        groups[TITLES[room]].extend(names)
+    return {title: names for title, names in groups.items() if names}
+
+
+def _add_ons(plugins: Sequence[Plugin]) -> str:
+    """Name the add-ons of other packages for the help, which has the commands of cfepy's own."""
+    names = [each.name for each in plugins if each not in OWN]
+    return f" Add-ons of other packages: {', '.join(names)}." if names else ""
 
 
 def _prepare_streams() -> None:

@@ -242,7 +242,7 @@ def plan_of(arguments: argparse.Namespace, words: Sequence[str], command: str | 
     """
     from cfepy.mission import cpp_nodes_source, is_node
     from cfepy.pilot import LAUNCH, NODE, RUN, RunPlan
-    from cfepy.rtos import Points, Schedule
+    from cfepy.schedules import Points, Schedule
 
     said = {name: getattr(arguments, name) for name in RUN_OPTIONS if hasattr(arguments, name)}
     if "schedule" in said:

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from cfepy.escapes import raw
-from cfepy.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean
 
 LAUNCH_FILES = (".launch", ".test", ".xml")
 _PACKAGE = re.compile(r"\w[\w-]*")

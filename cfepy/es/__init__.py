@@ -1,35 +1,41 @@
 """Executive Services: boot, resets, applications, tasks, logs, critical data, memory pools, counters (cFE ES).
 
 What belongs here is NASA's ES: what applications ask of it, what the ground commands, and what it does by itself. The
-five services do not import each other; what ES needs of the others it finds in its `Ports`.
+five services do not import each other; what ES needs of the others it finds in its `Ports`. The central file is
+`cfepy/es/service.py`.
 """
 
 from __future__ import annotations
 
-from cfepy.es.apps import SymbolError
-from cfepy.es.boot import Boot, CoreApp, ObjectTable
-from cfepy.es.cds import DamagedData
-from cfepy.es.packets import COMMANDS, TELEMETRY
-from cfepy.es.pools import MAX_BUCKETS, ForeignMemory, MemPool, PoolBlock, min_size
-from cfepy.es.records import (
-    APP_ERROR,
-    APP_EXIT,
-    APP_RUN,
-    STATE_NAMES,
-    SYSTEM_APPS_INIT,
-    SYSTEM_CORE_STARTUP,
-    SYSTEM_EARLY_INIT,
-    SYSTEM_OPERATIONAL,
-    SYSTEM_SHUTDOWN,
-    AppHistory,
-    AppInfo,
-    AppRecord,
-    Loader,
-    StartParams,
-)
-from cfepy.es.service import ExecutiveServices
-from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, StartupEntry, entries, parse
-from cfepy.es.task import EsTask
+from typing import TYPE_CHECKING
+
+from cfepy.interpreter.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.es.apps import SymbolError
+    from cfepy.es.boot import Boot, CoreApp, ObjectTable
+    from cfepy.es.cds import DamagedData
+    from cfepy.es.packets import COMMANDS, TELEMETRY
+    from cfepy.es.pools import MAX_BUCKETS, ForeignMemory, MemPool, PoolBlock, min_size
+    from cfepy.es.records import (
+        APP_ERROR,
+        APP_EXIT,
+        APP_RUN,
+        STATE_NAMES,
+        SYSTEM_APPS_INIT,
+        SYSTEM_CORE_STARTUP,
+        SYSTEM_EARLY_INIT,
+        SYSTEM_OPERATIONAL,
+        SYSTEM_SHUTDOWN,
+        AppHistory,
+        AppInfo,
+        AppRecord,
+        Loader,
+        StartParams,
+    )
+    from cfepy.es.service import ExecutiveServices
+    from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, StartupEntry, entries, parse
+    from cfepy.es.task import EsTask
 from cfepy.ports import SYSTEM_CORE_READY
 
 __all__ = [
@@ -69,3 +75,54 @@ __all__ = [
     "min_size",
     "parse",
 ]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".apps": ("SymbolError",),
+            ".boot": (
+                "Boot",
+                "CoreApp",
+                "ObjectTable",
+            ),
+            ".cds": ("DamagedData",),
+            ".packets": (
+                "COMMANDS",
+                "TELEMETRY",
+            ),
+            ".pools": (
+                "MAX_BUCKETS",
+                "ForeignMemory",
+                "MemPool",
+                "PoolBlock",
+                "min_size",
+            ),
+            ".records": (
+                "APP_ERROR",
+                "APP_EXIT",
+                "APP_RUN",
+                "STATE_NAMES",
+                "SYSTEM_APPS_INIT",
+                "SYSTEM_CORE_STARTUP",
+                "SYSTEM_EARLY_INIT",
+                "SYSTEM_OPERATIONAL",
+                "SYSTEM_SHUTDOWN",
+                "AppHistory",
+                "AppInfo",
+                "AppRecord",
+                "Loader",
+                "StartParams",
+            ),
+            ".service": ("ExecutiveServices",),
+            ".startup_script": (
+                "CFE_APP",
+                "CFE_LIB",
+                "BadLine",
+                "StartupEntry",
+                "entries",
+                "parse",
+            ),
+            ".task": ("EsTask",),
+        },
+    )

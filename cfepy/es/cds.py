@@ -22,6 +22,7 @@ from cfepy.es.tables import EsCore
 from cfepy.fs import calculate_crc, crc16
 from cfepy.ids import ES_CDSBLOCKID_BASE, UNDEFINED, find_next, make, name_size, to_index
 from cfepy.psp import RST_TYPE_PROCESSOR, Psp
+from cfepy.reading.texts import from_bytes, to_bytes
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_ES_CDS_ALREADY_EXISTS,
@@ -37,7 +38,6 @@ from cfepy.status import (
     CFE_SUCCESS,
     CfeError,
 )
-from cfepy.texts import from_bytes, to_bytes
 
 RECORD = struct.Struct("<IIQQ40s?7x")
 FULL_NAME_SIZE = 40

@@ -8,7 +8,7 @@ from cfepy.es.packets import ER_LOG_FILE_ENTRY
 from cfepy.es.reset_data import ErLogEntry, ResetData
 from cfepy.msg import sys_time_fields
 from cfepy.ports import Ports
-from cfepy.texts import to_bytes
+from cfepy.reading.texts import to_bytes
 
 CORE, APPLICATION = 1, 2
 """Types of entries (CFE_ES_LogEntryType_*)."""

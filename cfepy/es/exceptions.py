@@ -17,9 +17,9 @@ from cfepy.es.tables import EsCore
 from cfepy.ids import UNDEFINED
 from cfepy.osal import Nobody
 from cfepy.psp import RST_SUBTYPE_EXCEPTION, RST_TYPE_POWERON, RST_TYPE_PROCESSOR, ExceptionSummary
+from cfepy.reading.texts import to_bytes
 from cfepy.rtos import Task
 from cfepy.status import CfeError
-from cfepy.texts import to_bytes
 
 
 class TaskExceptionApi(EsCore):

@@ -6,6 +6,7 @@ from cfepy.config import PlatformConfig
 from cfepy.console import Console
 from cfepy.es.reset_data import DISCARD, OVERWRITE, SysLogData
 from cfepy.ports import Ports
+from cfepy.reading.texts import to_bytes, without_addresses
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
     CFE_ES_ERR_SYS_LOG_FULL,
@@ -13,7 +14,6 @@ from cfepy.status import (
     CFE_SUCCESS,
     CfeError,
 )
-from cfepy.texts import to_bytes, without_addresses
 
 TIME_TEXT_SIZE = 24  # CFE_TIME_PRINTED_STRING_SIZE: a printed time and its NUL
 

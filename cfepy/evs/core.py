@@ -16,9 +16,9 @@ from cfepy.evs.log import EventLog
 from cfepy.msg import PRIMARY_HEADER_SIZE, TLM_HEADER_SIZE, Layout, init
 from cfepy.osal.limits import OS_MAX_API_NAME
 from cfepy.ports import Ports, application_of
+from cfepy.reading.texts import shown, to_bytes
 from cfepy.rtos import Kernel
 from cfepy.status import CFE_EVS_APP_SQUELCHED, CFE_SUCCESS
-from cfepy.texts import shown, to_bytes
 
 TRUNCATED = b"$"
 PORTS = (1, 2, 3, 4)

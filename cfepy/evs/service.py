@@ -20,6 +20,7 @@ from cfepy.evs.log import DISCARD, OVERWRITE, EventLog
 from cfepy.ids import ES_APPID_BASE, get_base
 from cfepy.osal import Osal
 from cfepy.ports import Caller, Ports, application_of
+from cfepy.reading.texts import without_addresses
 from cfepy.rtos import Kernel
 from cfepy.status import (
     CFE_ES_BAD_ARGUMENT,
@@ -30,7 +31,6 @@ from cfepy.status import (
     CFE_EVS_UNKNOWN_FILTER,
     CfeError,
 )
-from cfepy.texts import without_addresses
 
 PIPE_DEPTH = 32
 PIPE_NAME = "EVS_CMD_PIPE"

@@ -2,7 +2,7 @@
 
 What belongs here says what a plan may hold, reads and checks it, and lets its faults happen: a `FaultInjector` is an
 attachment, so the mission and its parts know nothing of it. What judges a run, with faults or without, belongs to
-`cfepy.monitors`.
+`cfepy.monitors`. The central file is `cfepy/faults/injector.py`.
 """
 
 from cfepy.faults.check import Prepared, check_plan, plan_of, prepare

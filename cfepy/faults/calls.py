@@ -10,9 +10,9 @@ from cfepy.evs import EventServices
 from cfepy.fs import FileServices
 from cfepy.osal import Osal
 from cfepy.psp import Psp
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 from cfepy.tbl import TableServices
 from cfepy.time import TimeServices
 

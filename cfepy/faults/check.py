@@ -24,9 +24,9 @@ from cfepy.faults.targets import INTENSITIES, MEDIUM, Found, look_at, random_pla
 from cfepy.ground import ROS
 from cfepy.mission import CORE_APPS, HOST, MissionSpec
 from cfepy.osal import FileSystem
-from cfepy.plain_yaml import plain_yaml
+from cfepy.reading.plain_yaml import plain_yaml
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import OsalError, UsageError
-from cfepy.suggestions import did_you_mean
 
 SEED_WORD = "seed:"
 _SEED = re.compile(r"seed:(\d+)(?::(\w+))?")

@@ -18,9 +18,9 @@ from cfepy.faults import kinds
 from cfepy.faults.calls import call_name, status_of
 from cfepy.faults.kinds import KINDS, FaultKind
 from cfepy.faults.timing import When
-from cfepy.marked_yaml import Marked, load
+from cfepy.reading.marked_yaml import Marked, load
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 from cfepy.units import NS_PER_S
 
 ALWAYS = When()

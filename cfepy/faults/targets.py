@@ -16,7 +16,7 @@ from cfepy.faults.names import MissionNames
 from cfepy.faults.plan import Fault, FaultPlan
 from cfepy.faults.timing import When
 from cfepy.ground import ROS
-from cfepy.mission import CORE_APPS, Mission, MissionSpec, PacketWatch, Seen, scripts_of
+from cfepy.mission import CORE_APPS, Mission, MissionSpec, PacketWatch, Seen
 from cfepy.units import NS_PER_MS, NS_PER_S
 
 LOW, MEDIUM, HIGH = "low", "medium", "high"
@@ -206,7 +206,7 @@ def _targets_of(version: _Version) -> Targets:
 
 def _stamps(spec: MissionSpec) -> Iterator[tuple[str, int, int]]:
     """Of the files in its folder, and of those that it is made of and that are somewhere else."""
-    named = (spec.script, spec.mission_file, *scripts_of(spec).values())
+    named = (spec.script, spec.mission_file, *spec.scripts.values())
     inside = spec.folder.iterdir() if spec.folder.is_dir() else ()
     for path in sorted({*inside, *filter(None, named)}):
         if path.is_file():

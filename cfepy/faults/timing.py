@@ -14,7 +14,8 @@ from heapq import heapify, heappop, heappush
 from random import Random
 from typing import Any
 
-from cfepy.rtos import ExploringKernel, Kernel, Question, WaitList, wrapping
+from cfepy.rtos import Kernel, Question, WaitList, wrapping
+from cfepy.schedules import ExploringKernel
 from cfepy.status import CfeError
 
 PRIORITY = 0

@@ -2,14 +2,14 @@
 
 What belongs here is what a test, a notebook or a script does with a mission: let it run, send and publish, wait for
 what should come, and read what was sent. How a run is flown is in `cfepy.pilot`; what pytest adds is in
-`cfepy.testing`.
+`cfepy.testing`. The central file is `cfepy/flight/flight.py`.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cfepy.faces import face
+from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.flight.explored import Explored, FoundFailure, explore

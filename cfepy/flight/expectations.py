@@ -13,8 +13,8 @@ from typing import Any
 from cfepy.flight.log import FlightLog, Here, Packet
 from cfepy.ground import EVENT_TYPES, DecodedEvent
 from cfepy.monitors import Heard
+from cfepy.reading.suggestions import like
 from cfepy.status import UsageError
-from cfepy.suggestions import like
 from cfepy.units import NS_PER_S
 
 Text = str | re.Pattern[str]

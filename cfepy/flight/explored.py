@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, Unpack
 
-from cfepy.exploration import DEFAULT_SEEDS, Expedition, Report, Told
 from cfepy.flight.expectations import counted
 from cfepy.flight.plans import MissionWords, RunOptions, plan_of
 from cfepy.flight.run import Run
 from cfepy.flight.start import fly_plan
 from cfepy.markup import code, folded, headline, lines_of, trouble
 from cfepy.pilot import RunPlan
-from cfepy.rtos import Schedule
-from cfepy.units import NS_PER_S
+from cfepy.plugins import Hook
+from cfepy.schedules import Schedule
+
+DEFAULT_SEEDS = 100
+EXPLORE: Hook[Callable[..., Explored]] = Hook("explore")
+"""Explores a plan; the other arguments are those of `explore`, with their units in their names."""
 
 
+@dataclass(frozen=True, repr=False, slots=True)
 class FoundFailure:
     """A failure that some schedules show.
 
@@ -34,17 +38,16 @@ class FoundFailure:
         plan: the shortest run that shows it.
     """
 
-    def __init__(self, report: Report, told: Told) -> None:
-        finding, shrunk = told.finding, told.shrunk
-        failure = finding.failure
-        self.title, self.detail = failure.title, failure.detail
-        self.at = None if failure.at_ns is None else failure.at_ns / NS_PER_S
-        self.schedules, self.under_fifo = len(finding.numbers), finding.in_reference
-        self.schedule: Schedule = report.schedule_of(told) if shrunk is None else shrunk.verdict.schedule
-        self.preemptions = None if shrunk is None else shrunk.verdict.preemptions
-        self.cause, self.timeline = told.story.cause, list(told.timeline)
-        trial = report.trial if shrunk is None else shrunk.trial
-        self.plan: RunPlan = replace(trial.plan, schedule=self.schedule)
+    title: str
+    detail: str
+    at: float | None
+    schedules: int
+    under_fifo: bool
+    schedule: Schedule
+    preemptions: int | None
+    cause: str
+    timeline: list[str]
+    plan: RunPlan
 
     @property
     def command(self) -> str:
@@ -73,6 +76,7 @@ class FoundFailure:
         return f"<div style='margin-top: 0.5em'>{''.join(parts)}</div>"
 
 
+@dataclass(frozen=True, repr=False, slots=True)
 class Explored:
     """What became of a mission under many schedules.
 
@@ -84,21 +88,21 @@ class Explored:
         worst: the longest that was measured, and the schedule that gives it; None when nothing was to be.
         troubles: errors of cfepy itself, which are to be reported.
         notes: what its user should know.
+        numbers: what `to_dict` gives.
     """
 
-    def __init__(self, mission: str, report: Report) -> None:
-        self.failures = [FoundFailure(report, told) for told in report.findings]
-        self.schedules, self.failed = report.tally.done, report.tally.failed
-        self.worst = report.worst
-        self.troubles = [each.trouble for each in report.troubles]
-        leak = () if report.unsteady is None else (f"not deterministic: two runs under {report.unsteady} differ",)
-        self.notes = (*report.notes, *leak)
-        self.mission = mission
-        self._report = report
+    mission: str
+    failures: list[FoundFailure]
+    schedules: int
+    failed: int
+    worst: Any
+    troubles: list[str]
+    notes: tuple[str, ...]
+    numbers: Mapping[str, Any]
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as `cfepy explore --json` writes it."""
-        return self._report.to_dict()
+        return dict(self.numbers)
 
     def __repr__(self) -> str:
         titles = "".join(f"\n  {failure.title}" for failure in self.failures)
@@ -177,7 +181,7 @@ def explore(
     if isinstance(options.get("faults"), Mapping):
         raise TypeError("faults are flown in other processes; give the file of a plan, or seed:N")
     plan = plan_of(mission, options, known)
-    expedition = Expedition(
+    return EXPLORE.need("cfepy.explore")(
         plan,
         seeds=seeds,
         budget_s=budget,
@@ -199,4 +203,3 @@ def explore(
         results=None if results is None else os.fspath(results),
         shrink=shrink,
     )
-    return Explored(" ".join(plan.words), expedition.run())

@@ -28,10 +28,10 @@ from cfepy.ground import DecodedEvent, Topic, library_of, table_type, topics_of
 from cfepy.mission import CALL, FILE, PACKET, PARAM, PUBLISH, HostCall, Mission, receivers
 from cfepy.msg import get_msg_id
 from cfepy.pilot import Flown, RunPlan, takeoff
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.rtos import Policy, Stopwatch
 from cfepy.script.conditions import seconds
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 from cfepy.tbl import TableImage, build
 from cfepy.units import NS_PER_MS, NS_PER_S
 

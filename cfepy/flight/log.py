@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from cfepy.attachment import Attachment
-from cfepy.cached import CachedProperty
 from cfepy.ground import (
     EVENT_IDS,
     DecodedEvent,
@@ -21,6 +20,7 @@ from cfepy.ground import (
     packet_series,
     topics_of,
 )
+from cfepy.interpreter.cached import CachedProperty
 from cfepy.mission import Mission, MissionSpec, PacketWatch, Seen, TopicWatch
 from cfepy.monitors import Heard
 from cfepy.msg import Command, MsgType, get_type

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
-    from rospy_shim.msgs import Library, MessageClass
+    from rospy_shim.types.msgs import Library, MessageClass
 
 SECONDS = {"time": (0, 2**32 - 1), "duration": (-(2**31), 2**31 - 1)}
 """The range of a ROS time's or duration's whole seconds."""
@@ -36,7 +36,7 @@ def build(library: Library, field_type: str, value: Any) -> Any:
     if not isinstance(value, Mapping):
         return value
     if field_type in SECONDS:
-        from rospy_shim.genpy import Duration, Time
+        from rospy_shim.types.genpy import Duration, Time
 
         return (Time if field_type == "time" else Duration)(value["secs"], value["nsecs"])
     kind = library.message_class(field_type)
@@ -50,7 +50,7 @@ def library_near(place: str | os.PathLike[str] | None = None) -> Library:
     Args:
         place: a file or folder of the package; None for the working directory.
     """
-    from rospy_shim.msgs import Library, OnDisk, Packages, shipped
+    from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 
     path = Path.cwd() if place is None else Path(place).absolute()
     packages = Packages(path / "any" if os.path.isdir(path) else path, os.environ)
@@ -63,7 +63,7 @@ def library_of_class(kind: MessageClass) -> Library:
     Raises:
         UsageError: it is no message class.
     """
-    from rospy_shim.msgs import library_of
+    from rospy_shim.types.msgs import library_of
 
     full_text = getattr(kind, "_full_text", None)
     if full_text is None:
@@ -82,7 +82,7 @@ def filled(library: Library, kind: str, fields: Mapping[str, Any]) -> Any:
     Raises:
         UsageError: there is no such field, or a value does not fit.
     """
-    from rospy_shim.genpy.arguments import ArgumentFiller
+    from rospy_shim.types.genpy.arguments import ArgumentFiller
 
     message = library.message_class(kind)()
     try:

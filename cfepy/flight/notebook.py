@@ -5,12 +5,13 @@ from __future__ import annotations
 import io
 import os
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from cfepy.ground import DecodedEvent, SeriesSet
 from cfepy.markup import code, folded, headline, lines_of, rows_of, trouble
+from cfepy.plugins import Hook
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
     from cfepy.pilot import Results
 
+PICTURE: Hook[Callable[[SeriesSet, Sequence[str], str, Path | None], Any]] = Hook("picture")
+"""Draws what words mean into a figure of matplotlib: the values, the words, the title, the file to write or None."""
 LAST_LINES = 30  # of the console: the rest is in `Run.console`
 SERIOUS = ("ERROR", "CRITICAL")
 
@@ -45,15 +48,13 @@ class Picture:
 
 def picture(series: SeriesSet, words: Sequence[str], title: str, file: str | os.PathLike[str] | None) -> Picture:
     """A picture of what words mean, as `cfepy plot` draws it; see `Run.plot`."""
-    from cfepy.reports import curves_of, picture_of, save
-
-    figure = picture_of([curves_of(series, word) for word in words], title=title)
-    if file is not None:
-        try:
-            save(figure, Path(file))
-        except (OSError, ValueError) as error:
-            raise UsageError(f"cannot be written: {error}", file=os.fspath(file)) from None
-    return Picture(figure)
+    draw = PICTURE.need("a picture of a run")
+    try:
+        return Picture(draw(series, words, title, None if file is None else Path(file)))
+    except (OSError, ValueError) as error:
+        if file is None:
+            raise
+        raise UsageError(f"cannot be written: {error}", file=os.fspath(file)) from None
 
 
 def page_of_run(

@@ -11,8 +11,8 @@ from cfepy.attachment import Attachment
 from cfepy.faults import FaultInjector, FaultPlan
 from cfepy.mission import cpp_nodes_source
 from cfepy.pilot import NODE, RUN, RunPlan
-from cfepy.rtos import Schedule
-from cfepy.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean
+from cfepy.schedules import Schedule
 
 MissionWords = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
 """A mission: the name of one that cfepy brings along, a folder, a startup script, a launch file, or a node's .py file;

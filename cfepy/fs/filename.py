@@ -8,8 +8,8 @@ from __future__ import annotations
 import re
 from enum import IntEnum
 
+from cfepy.reading.texts import from_bytes, to_bytes
 from cfepy.status import CFE_FS_BAD_ARGUMENT, CFE_FS_FNAME_TOO_LONG, CFE_FS_INVALID_PATH, CfeError
-from cfepy.texts import from_bytes, to_bytes
 
 MAX_PATH_LEN = 64
 """OS_MAX_PATH_LEN and CFE_MISSION_MAX_PATH_LEN, the NUL included."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import struct
 from dataclasses import dataclass, replace
 
+from cfepy.reading.texts import from_bytes, to_bytes
 from cfepy.status import (
     CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
     CFE_TBL_ERR_BAD_CONTENT_ID,
@@ -19,7 +20,6 @@ from cfepy.status import (
     CfeError,
     UsageError,
 )
-from cfepy.texts import from_bytes, to_bytes
 
 CONTENT_ID = 0x63464531
 """The bytes "cFE1" (CFE_FS_FILE_CONTENT_ID)."""

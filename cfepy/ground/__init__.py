@@ -3,15 +3,16 @@
 What belongs here works on packets, files and names as a ground system has them, with a mission that flies or without
 one. What judges a run is in `cfepy.monitors`; what decides how one is flown is in `cfepy.pilot`.
 
-The names below are loaded when they are first used: a run imports no more of this package than it needs.
+The names below are loaded when they are first used: a run imports no more of this package than it needs. The central
+file is `cfepy/ground/dictionary.py`.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cfepy.faces import face
 from cfepy.ground.names import ROS, LiveNames, kind_of, names_in, names_of
+from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.ground.bag import BagReader, header_of, is_bag

@@ -13,8 +13,8 @@ from pathlib import Path
 from types import ModuleType, TracebackType
 from typing import TYPE_CHECKING, Self
 
-from cfepy.input_files import beginning_of, open_input
 from cfepy.mission import TopicMessage, TopicWatch, described, matches
+from cfepy.reading.input_files import beginning_of, open_input
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:

@@ -38,7 +38,7 @@ class MessageDecoder:
         kind = self._classes.get(header["md5sum"])
         try:
             if kind is None:
-                library = importlib.import_module("rospy_shim.msgs").library_of(
+                library = importlib.import_module("rospy_shim.types.msgs").library_of(
                     header["type"], header.get("message_definition", "")
                 )
                 kind = self._classes[header["md5sum"]] = library.message_class(header["type"])

@@ -7,7 +7,7 @@ import binascii
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from rospy_shim.genpy import Duration, Time
+from rospy_shim.types.genpy import Duration, Time
 
 _BYTES = ("uint8", "char")
 _SECONDS, _NANOSECONDS = ("sec", "secs"), ("nsec", "nsecs", "nanosec")

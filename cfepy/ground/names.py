@@ -15,13 +15,13 @@ from typing import Any
 
 from cfepy.es import packets as es
 from cfepy.evs import packets as evs
-from cfepy.input_files import read_limited
-from cfepy.input_limits import PYTHON_BYTES
+from cfepy.interpreter.syntax_trees import parsed_input
 from cfepy.mission import NODE_SYMBOL, Mission, MissionSpec
 from cfepy.mission.python_code import find_declarations
 from cfepy.msg import is_valid_msg_id, topics
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import PYTHON_BYTES
 from cfepy.sb import packets as sb
-from cfepy.syntax_trees import parsed_input
 from cfepy.tbl import packets as tbl
 from cfepy.time import packets as time
 

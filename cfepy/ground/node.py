@@ -20,7 +20,7 @@ from cfepy.mission import Mission, MissionSpec, lines_for, mission_environment, 
 from cfepy.nodes import ROSCORE_PARAMS, NodeConfig
 from cfepy.status import UsageError
 from rospy_shim.library_parts import FOLDER
-from rospy_shim.msgs.packages import near
+from rospy_shim.types.msgs.packages import near
 
 SCRIPTS = "ground_nodes"
 """The library whose modules are the scripts."""

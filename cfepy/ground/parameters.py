@@ -10,12 +10,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from cfepy.input_files import read_limited
-from cfepy.input_limits import TABLE_BYTES
-from cfepy.marked_yaml import load
 from cfepy.mission import STARTUP_SCRIPT, Mission, MissionSpec, read_mission
 from cfepy.mission.parameter_files import read_tree
 from cfepy.psp import load_profile
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import TABLE_BYTES
+from cfepy.reading.marked_yaml import load
 from cfepy.status import UsageError
 from rospy_shim.parameters import files
 from rospy_shim.parameters.table import extent

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 from cfepy.ground.bag import CHUNK_BYTES, storage
 from cfepy.ground.json_packets import PACKETS
 from cfepy.ground.mcap_writer import COMPRESSIONS, McapWriter
-from cfepy.input_files import open_input
 from cfepy.mission import described
+from cfepy.reading.input_files import open_input
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 

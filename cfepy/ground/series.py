@@ -28,9 +28,9 @@ from cfepy.ground.values import unknown_field
 from cfepy.markup import headline, rows_of
 from cfepy.mission import Mission, PacketWatch, Seen, TopicMessage, TopicWatch, matches
 from cfepy.msg import TLM_HEADER_SIZE, Command, Telemetry, get_fcn_code, get_header_size, get_msg_time
+from cfepy.reading.suggestions import like
 from cfepy.sb import SoftwareBus
 from cfepy.status import CfeError, UsageError
-from cfepy.suggestions import like
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:

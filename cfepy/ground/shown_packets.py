@@ -20,7 +20,7 @@ from cfepy.mission import UNIX_AT_CFE_EPOCH, MissionSpec
 from cfepy.msg import TLM_HEADER_SIZE, Cell, Layout, Telemetry
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
-from rospy_shim.msgs import from_full_text, message_class
+from rospy_shim.types.msgs import from_full_text, message_class
 
 APPLICATIONS = "/cfe"  # the node's name
 RAW = "std_msgs/UInt8MultiArray"

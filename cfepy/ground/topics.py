@@ -13,7 +13,7 @@ from cfepy.msg import TLM_HEADER_SIZE, SegmentationFlag, get_segmentation_flag
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
-    from rospy_shim.msgs import Library
+    from rospy_shim.types.msgs import Library
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class Topic:
 
 def library_of(topic: Topic) -> Library:
     """The message library that knows the type of a topic."""
-    from rospy_shim import msgs
+    from rospy_shim.types import msgs
 
     return msgs.library_of(topic.type, topic.definition)
 

@@ -11,8 +11,8 @@ from functools import lru_cache
 from typing import Any
 
 from cfepy.msg import Cell, Command, Layout, ValueNames, command
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 
 _TRUTH = {"true": 1, "false": 0, "1": 1, "0": 0}
 _INDICES = re.compile(r"(\[\d+\])+")

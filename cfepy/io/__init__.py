@@ -3,18 +3,16 @@
 What belongs here opens a real socket, or waits for somebody outside: the bridge of a paced run to the loopback
 interface (`host_network`), the datagrams that a ground system sends and receives (`udp`), lines that are typed
 (`typed_lines`), and connections with programs that neither side waits for (`peer_socket`), with their counts
-(`peer_counts`) and bounds (`peer_places`), and the names by which they call this computer (`own_names`). The
-simulation does not know of this package; the command that runs a mission joins the bridge to it. When input from
-outside comes in is decided in `cfepy.mission`.
-
-The names below are loaded when they are first used.
+(`peer_counts`) and bounds (`peer_places`), and the names by which they call this computer (`own_names`). The simulation
+does not know of this package; the command that runs a mission joins the bridge to it. When input from outside comes in
+is decided in `cfepy.mission`. The central file is `cfepy/io/host_network.py`.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cfepy.faces import face
+from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.io.host_network import Guest, HostNetwork

@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
-from cfepy.input_limits import PEER_CONNECTIONS, UNFINISHED_BYTES
+from cfepy.reading.input_limits import PEER_CONNECTIONS, UNFINISHED_BYTES
 
 HEAD_S = 10.0  # wall time in which a connection has to say what it is for
 TURN_S = 0.05  # wall time for requests between two pieces of a run; the others wait for the next

@@ -2,7 +2,8 @@
 
 What belongs here defines what a journal holds and its file (`journal`), writes it while a run goes on (`recorder`), or
 does the run again and compares (`stage`, `replay`, `header_diff`). How a run is flown belongs to `cfepy.pilot`; input
-from outside belongs to `cfepy.mission`. Commands that show journals are in `cfepy.cli`.
+from outside belongs to `cfepy.mission`. Commands that show journals are in `cfepy.cli`. The central file is
+`cfepy/journal/journal.py`.
 """
 
 from __future__ import annotations

@@ -10,10 +10,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
 from typing import Any
 
-from cfepy.contained_files import is_contained
-from cfepy.input_limits import JOURNAL_FILE_BYTES, JOURNAL_VALUES
 from cfepy.journal.looks import KINDS
 from cfepy.pilot import RunPlan
+from cfepy.reading.contained_files import is_contained
+from cfepy.reading.input_limits import JOURNAL_FILE_BYTES, JOURNAL_VALUES
 
 FORMAT = 1  # of a journal
 Check = Callable[[Any], bool]

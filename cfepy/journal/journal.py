@@ -17,13 +17,13 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cfepy.input_files import open_input
-from cfepy.input_limits import JOURNAL_FRAME_BYTES
 from cfepy.journal.frame_check import FORMAT, check_values, problem_of
 from cfepy.journal.looks import PathLook
 from cfepy.journal.mission_files import MissionFile, hash_of
 from cfepy.mission import Arrival
 from cfepy.pilot import STALLED, SUDDEN, Results, RunPlan
+from cfepy.reading.input_files import open_input
+from cfepy.reading.input_limits import JOURNAL_FRAME_BYTES
 from cfepy.status import UsageError
 
 HEADER, FILE, FOLDER, LOOK, PAUSE = "header", "file", "folder", "look", "pause"

@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from cfepy.contained_files import make_folder, write_contained
+from cfepy.reading.contained_files import make_folder, write_contained
 
 ABSENT, REGULAR, FOLDER, LINK, OTHER = KINDS = ("absent", "file", "folder", "link", "other")
 MOST_LOOKS = 100_000  # that a journal keeps

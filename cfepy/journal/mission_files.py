@@ -22,11 +22,11 @@ from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import Any
 
-from cfepy.input_files import open_input, read_limited
 from cfepy.journal.facts import own_places
 from cfepy.mission import MissionSpec
 from cfepy.nodes import ASKED, LISTED, MADE, NEEDED
 from cfepy.nodes.sources import AGAIN
+from cfepy.reading.input_files import open_input, read_limited
 from cfepy.status import UsageError
 
 CARRIED = 32 << 20  # bytes of files that a journal carries, before they are compressed

@@ -18,8 +18,6 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.contained_files import link_contained, make_folder, write_contained
-from cfepy.input_limits import JOURNAL_FILES_BYTES
 from cfepy.journal.facts import host_facts, versions
 from cfepy.journal.journal import Header, Journal, JournalError
 from cfepy.journal.looks import put_in_place
@@ -27,6 +25,8 @@ from cfepy.journal.mission_files import MissionFile
 from cfepy.mission import LAUNCH_FILES, Mission, MissionSpec
 from cfepy.nodes import NodeConfig
 from cfepy.pilot import LAUNCH, NODE, RUN, RunPlan, boot_of
+from cfepy.reading.contained_files import link_contained, make_folder, write_contained
+from cfepy.reading.input_limits import JOURNAL_FILES_BYTES
 from cfepy.rtos import GREENLET, THREAD, has_greenlets
 from cfepy.status import UsageError
 

@@ -2,67 +2,73 @@
 
 What belongs here is the computer through all its resets, the loader of its applications, the one door through which
 anything comes in from outside, and the record of what happened. What the ground knows of a mission is in
-`cfepy.ground`, what must hold of a run in `cfepy.monitors`, and how a run is flown in `cfepy.pilot`.
+`cfepy.ground`, what must hold of a run in `cfepy.monitors`, and how a run is flown in `cfepy.pilot`. The central file
+is `cfepy/mission/mission.py`.
 """
 
 from __future__ import annotations
 
-from cfepy.mission.acts import CALL, FILE, PACKET, PARAM, PUBLISH, ROS, HostCall
-from cfepy.mission.compiled_code import find_compiled
-from cfepy.mission.cpp_nodes import (
-    ARENA_BYTES,
-    ARRAY,
-    MOST_ITEMS,
-    PROFILES,
-    TEXT,
-    CppNodesConfig,
-    CppNodesError,
-)
-from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, endless_waits
-from cfepy.mission.failed_code import FailedCode, RaisedError, TracebackReader
-from cfepy.mission.finding import (
-    LOCK_FILE,
-    STARTUP_SCRIPT,
-    cpp_nodes_of,
-    cpp_nodes_source,
-    find_script,
-    is_node,
-    mission_file_of,
-    read_lock,
-    read_mission,
-    read_sections,
-    shipped_missions,
-)
-from cfepy.mission.launch import (
-    COMPILED_STACK_BYTES,
-    KEPT_ENVIRONMENT,
-    LAUNCH_FILES,
-    NodeBuilder,
-    built_programs,
-    launch_file,
-    lines_for,
-    mission_environment,
-    node_script,
-    read_launch,
-    scripts_of,
-    spec_of,
-    spec_of_node,
-    spec_of_script,
-)
-from cfepy.mission.loader import NODE_SYMBOL
-from cfepy.mission.mission import Mission
-from cfepy.mission.mission_file import MissionSections, read_mission_file
-from cfepy.mission.outside import Arrival, OutsideStream
-from cfepy.mission.packet_watch import HOST, PacketWatch, Seen, hearing, receivers
-from cfepy.mission.pieces import FIRST_PIECE_NS, PieceLength
-from cfepy.mission.processor import CORE_APPS, UNIX_AT_CFE_EPOCH, Processor
-from cfepy.mission.python_code import find_code, find_node
-from cfepy.mission.record import DataRace, Reset, StackUse, Traffic
-from cfepy.mission.settings import with_settings
-from cfepy.mission.spec import BuiltProgram, MissionSpec
-from cfepy.mission.sweep_section import SweepConfig
-from cfepy.mission.topic_watch import TopicMessage, TopicWatch, matches
-from cfepy.mission.tracebacks import app_traceback, described, reason
+from typing import TYPE_CHECKING
+
+from cfepy.interpreter.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.mission.acts import CALL, FILE, PACKET, PARAM, PUBLISH, ROS, HostCall
+    from cfepy.mission.compiled_code import find_compiled
+    from cfepy.mission.cpp_nodes import (
+        ARENA_BYTES,
+        ARRAY,
+        MOST_ITEMS,
+        PROFILES,
+        TEXT,
+        CppNodesConfig,
+        CppNodesError,
+    )
+    from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, endless_waits
+    from cfepy.mission.failed_code import FailedCode, RaisedError, TracebackReader
+    from cfepy.mission.finding import (
+        LOCK_FILE,
+        STARTUP_SCRIPT,
+        cpp_nodes_of,
+        cpp_nodes_source,
+        find_script,
+        is_node,
+        mission_file_of,
+        read_lock,
+        read_mission,
+        read_sections,
+        shipped_missions,
+    )
+    from cfepy.mission.launch import (
+        COMPILED_STACK_BYTES,
+        KEPT_ENVIRONMENT,
+        TEST_RESULTS,
+        NodeBuilder,
+        built_programs,
+        launch_file,
+        lines_for,
+        mission_environment,
+        node_script,
+        read_launch,
+        spec_of,
+        spec_of_node,
+        spec_of_script,
+    )
+    from cfepy.mission.launch_names import LAUNCH_FILES
+    from cfepy.mission.loader import NODE_SYMBOL
+    from cfepy.mission.mission import Mission
+    from cfepy.mission.mission_file import MissionSections, read_mission_file
+    from cfepy.mission.outside import Arrival, OutsideStream
+    from cfepy.mission.packet_watch import HOST, PacketWatch, Seen, hearing, receivers
+    from cfepy.mission.pieces import FIRST_PIECE_NS, PieceLength
+    from cfepy.mission.processor import CORE_APPS, UNIX_AT_CFE_EPOCH, Processor
+    from cfepy.mission.python_code import find_code, find_node
+    from cfepy.mission.record import DataRace, Overwrite, Reset, StackUse, Traffic
+    from cfepy.mission.settings import with_settings
+    from cfepy.mission.spec import BuiltProgram, MissionSpec
+    from cfepy.mission.sweep_section import SweepConfig
+    from cfepy.mission.topic_watch import TopicMessage, TopicWatch, matches
+    from cfepy.mission.tracebacks import app_traceback, described, reason
 
 __all__ = [
     "ARENA_BYTES",
@@ -84,6 +90,7 @@ __all__ = [
     "PUBLISH",
     "ROS",
     "STARTUP_SCRIPT",
+    "TEST_RESULTS",
     "TEXT",
     "UNIX_AT_CFE_EPOCH",
     "Arrival",
@@ -100,6 +107,7 @@ __all__ = [
     "MissionSpec",
     "NodeBuilder",
     "OutsideStream",
+    "Overwrite",
     "PacketWatch",
     "PieceLength",
     "Processor",
@@ -137,10 +145,127 @@ __all__ = [
     "read_sections",
     "reason",
     "receivers",
-    "scripts_of",
     "shipped_missions",
     "spec_of",
     "spec_of_node",
     "spec_of_script",
     "with_settings",
 ]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".acts": (
+                "CALL",
+                "FILE",
+                "PACKET",
+                "PARAM",
+                "PUBLISH",
+                "ROS",
+                "HostCall",
+            ),
+            ".compiled_code": ("find_compiled",),
+            ".cpp_nodes": (
+                "ARENA_BYTES",
+                "ARRAY",
+                "MOST_ITEMS",
+                "PROFILES",
+                "TEXT",
+                "CppNodesConfig",
+                "CppNodesError",
+            ),
+            ".endless_wait": (
+                "EndlessWait",
+                "EndlessWaits",
+                "endless_waits",
+            ),
+            ".failed_code": (
+                "FailedCode",
+                "RaisedError",
+                "TracebackReader",
+            ),
+            ".finding": (
+                "LOCK_FILE",
+                "STARTUP_SCRIPT",
+                "cpp_nodes_of",
+                "cpp_nodes_source",
+                "find_script",
+                "is_node",
+                "mission_file_of",
+                "read_lock",
+                "read_mission",
+                "read_sections",
+                "shipped_missions",
+            ),
+            ".launch": (
+                "COMPILED_STACK_BYTES",
+                "KEPT_ENVIRONMENT",
+                "TEST_RESULTS",
+                "NodeBuilder",
+                "built_programs",
+                "launch_file",
+                "lines_for",
+                "mission_environment",
+                "node_script",
+                "read_launch",
+                "spec_of",
+                "spec_of_node",
+                "spec_of_script",
+            ),
+            ".launch_names": ("LAUNCH_FILES",),
+            ".loader": ("NODE_SYMBOL",),
+            ".mission": ("Mission",),
+            ".mission_file": (
+                "MissionSections",
+                "read_mission_file",
+            ),
+            ".outside": (
+                "Arrival",
+                "OutsideStream",
+            ),
+            ".packet_watch": (
+                "HOST",
+                "PacketWatch",
+                "Seen",
+                "hearing",
+                "receivers",
+            ),
+            ".pieces": (
+                "FIRST_PIECE_NS",
+                "PieceLength",
+            ),
+            ".processor": (
+                "CORE_APPS",
+                "UNIX_AT_CFE_EPOCH",
+                "Processor",
+            ),
+            ".python_code": (
+                "find_code",
+                "find_node",
+            ),
+            ".record": (
+                "DataRace",
+                "Overwrite",
+                "Reset",
+                "StackUse",
+                "Traffic",
+            ),
+            ".settings": ("with_settings",),
+            ".spec": (
+                "BuiltProgram",
+                "MissionSpec",
+            ),
+            ".sweep_section": ("SweepConfig",),
+            ".topic_watch": (
+                "TopicMessage",
+                "TopicWatch",
+                "matches",
+            ),
+            ".tracebacks": (
+                "app_traceback",
+                "described",
+                "reason",
+            ),
+        },
+    )

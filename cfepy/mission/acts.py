@@ -116,7 +116,7 @@ class HostActs:
 
     def _publish(self, name: str, data: bytes) -> None:
         """Long messages go out in segments, as a node sends them."""
-        from rospy_shim.client.transport import HEADER_BYTES, segments, whole_header
+        from rospy_shim.types.transport import HEADER_BYTES, segments, whole_header
 
         topic, bus = self._ros.graph.topics[name], self._mission.cfe.sb
         room = bus.config.sb_max_msg_size - HEADER_BYTES

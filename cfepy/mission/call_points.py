@@ -15,8 +15,9 @@ from inspect import isroutine
 from typing import Any
 
 from cfepy.app import Cfe
-from cfepy.own_code import called_as
-from cfepy.rtos import ExploringKernel, Kernel
+from cfepy.interpreter.own_code import called_as
+from cfepy.rtos import Kernel
+from cfepy.schedules import ExploringKernel
 
 GIVING = frozenset(
     {
@@ -91,10 +92,9 @@ def _giving(service: Any, name: str, kernel: ExploringKernel) -> Callable[..., A
     return called_as(give, name)
 
 
-def handle_for_apps(cfe: Cfe, kernel: Kernel) -> Cfe:
-    """The services as apps call them: themselves, unless the kernel explores."""
-    if not isinstance(kernel, ExploringKernel):
-        return cfe
+def with_call_points(cfe: Cfe, kernel: Kernel) -> Cfe:
+    """The services as apps call them under a kernel with a policy."""
+    assert isinstance(kernel, ExploringKernel)
     services: dict[str, Any] = {
         field.name: _Pointed(getattr(cfe, field.name), kernel) for field in fields(cfe) if field.name != "msg"
     }

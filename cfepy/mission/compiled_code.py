@@ -1,28 +1,21 @@
 """Compiled code of applications and libraries: ELF files where a startup script names them.
 
 An ELF file is never taken for anything else: when it cannot be loaded, the application fails, and no Python file of the
-same name stands in for it. What loads it, `cfepy.c`, is imported when there is one.
+same name stands in for it. What loads it comes from an add-on, and is imported when there is one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from cfepy.es import StartupEntry
-from cfepy.input_files import beginning_of, read_limited
-from cfepy.input_limits import OBJECT_BYTES
 from cfepy.mission.loader import NODE_SYMBOL, Code, Finder
 from cfepy.osal import FileSystem
-from cfepy.sb import SoftwareBus
+from cfepy.reading.input_files import beginning_of, read_limited
+from cfepy.reading.input_limits import OBJECT_BYTES
 from cfepy.status import OsalError
-from cfepy.trace import UNSENT
-
-if TYPE_CHECKING:
-    from cfepy.c import CompiledLoader, CRuntime
-    from rospy_shim.graph.compiled import CompiledSender
-    from rospy_shim.runtime import RosRuntime
 
 ELF = b"\x7fELF"
 FILES = "/cf/"
@@ -41,37 +34,33 @@ def find_compiled(file: str, folder: Path) -> Path | None:
     return found if beginning_of(found, len(ELF)) == ELF else None
 
 
-class CompiledWatch:
-    """Takes the messages of compiled nodes that reach no subscriber, as a rospy publisher does with its own.
+class CompiledRuntime(Protocol):
+    """The C side of a processor, as missions and debuggers use it."""
 
-    They go into the trace (`SoftwareBus.unsent`), and to the watches of the bus (`SoftwareBus.on_unsent`).
+    def images(self) -> Iterable[Any]:
+        """What is loaded: each has its `base` address, and its `source` with `name` and `data`."""
 
-    Args:
-        bus: the Software Bus.
-        ros: the ROS side of the processor, once there is one.
-    """
+    def unload(self, app_name: str) -> object:
+        """Let go of the code of an application that has ended."""
 
-    def __init__(self, bus: SoftwareBus, ros: Callable[[], RosRuntime | None]) -> None:
-        self._bus = bus
-        show: Any = bus.on_unsent  # a static method, which binds no bus
-        self._show: Callable[[Any, bytes], object] | None = show
-        self._ros = ros
+    def close(self) -> object:
+        """Let go of everything: the processor is over."""
 
-    def unsent(self, app: str, msg_id: int, message: bytes) -> None:
-        sender = self._sender(app, msg_id)
-        name = f"0x{msg_id:04X}" if sender is None else sender.name
-        self._bus.unsent(UNSENT + name.encode() + b"\0" + message)
-        if sender is not None and self._show is not None:
-            self._show(sender, message)
 
-    def latches(self, app: str, msg_id: int) -> None:
-        sender = self._sender(app, msg_id)
-        if sender is not None:
-            sender.latch()
+class CodeLoader(Protocol):
+    """Loads compiled code for a processor."""
 
-    def _sender(self, app: str, msg_id: int) -> CompiledSender | None:
-        ros = self._ros()
-        return None if ros is None else ros.compiled_sender(app, msg_id)
+    @property
+    def runtime(self) -> CompiledRuntime:
+        """The C side of the processor."""
+
+    def code(self, file: str, data: bytes) -> Code:
+        """The code in a shared object, not loaded yet.
+
+        Args:
+            file: its virtual path.
+            data: its bytes.
+        """
 
 
 class CompiledFiles(Finder):
@@ -84,12 +73,12 @@ class CompiledFiles(Finder):
     """
 
     def __init__(
-        self, files: FileSystem, make_loader: Callable[[], CompiledLoader], built: Mapping[str, Path] | None = None
+        self, files: FileSystem, make_loader: Callable[[], CodeLoader], built: Mapping[str, Path] | None = None
     ) -> None:
         self._files = files
         self._built = built or {}
         self._make_loader = make_loader
-        self._loader: CompiledLoader | None = None
+        self._loader: CodeLoader | None = None
 
     def prepare(self, entries: Iterable[StartupEntry]) -> None:
         """Make what loads them before a boot whose startup script names one: the core's memory is then in its reach."""
@@ -100,13 +89,13 @@ class CompiledFiles(Finder):
         data = self._data(file)
         return None if data is None else self._loader_made().code(file, data)
 
-    def _loader_made(self) -> CompiledLoader:
+    def _loader_made(self) -> CodeLoader:
         if self._loader is None:
             self._loader = self._make_loader()
         return self._loader
 
     @property
-    def runtime(self) -> CRuntime | None:
+    def runtime(self) -> CompiledRuntime | None:
         """The C side of the processor; None when nothing compiled was loaded."""
         return None if self._loader is None else self._loader.runtime
 

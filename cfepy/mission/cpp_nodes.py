@@ -1,7 +1,7 @@
 """The section `cpp_nodes:` of a mission file: how ROS nodes in C++ are built, and how much their messages can hold.
 
-Types and fields are held against their definitions when a node is built or checked (`cfepy.convert.capacities`): where
-the definitions are is known by then.
+Types and fields are held against their definitions when a node is built or checked (`cfepy.extra.convert.capacities`):
+where the definitions are is known by then.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from cfepy.marked_yaml import Marked, Mistakes
+from cfepy.reading.marked_yaml import Marked, Mistakes
 from cfepy.status import UsageError
 
 PROFILES = ("host", "pool", "strict")

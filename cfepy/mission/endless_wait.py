@@ -14,8 +14,8 @@ from pathlib import PurePath
 from types import FrameType, FunctionType
 from typing import TYPE_CHECKING, NamedTuple
 
+from cfepy.interpreter.own_code import is_own_code
 from cfepy.osal import OsObject
-from cfepy.own_code import is_own_code
 from cfepy.rtos import Kernel, Task, Wait, circles, endless
 from cfepy.units import NS_PER_S
 

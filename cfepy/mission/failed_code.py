@@ -11,8 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import NamedTuple
 
-from cfepy.mission.tracebacks import app_traceback, reason
-from cfepy.own_code import is_own_code
+from cfepy.interpreter.own_code import is_own_code
 from cfepy.rtos import DeadlockError, InjectedCrash, Task
 
 _LINE = re.compile(r"\[(?P<node>[^\]\s]+)\] ?(?P<text>.*)")
@@ -49,6 +48,8 @@ class RaisedError(NamedTuple):
 
 def raised_in(task: Task, error: BaseException, at_ns: int) -> RaisedError:
     """An exception that came out of a task of an application."""
+    from cfepy.mission.tracebacks import app_traceback, reason
+
     detail, text = app_traceback(error), reason(error)
     if isinstance(error, DeadlockError) and error.circle:
         where = detail.partition(f"\n{type(error).__module__}")[0]

@@ -10,26 +10,23 @@ import os
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from cfepy.input_files import beginning_of, read_limited
-from cfepy.input_limits import LINE_FILE_BYTES, XML_BYTES
-from cfepy.marked_yaml import Mistakes, load
 from cfepy.mission.cpp_nodes import PROFILES, CppNodesConfig
-from cfepy.mission.launch import (
-    LAUNCH_FILES,
-    NodeBuilder,
-    files_near,
-    launch_file_of_package,
-    read_launch,
-    with_launch_files,
-)
-from cfepy.mission.mission_file import MissionSections, read_mission_file
+from cfepy.mission.launch_names import LAUNCH_FILES, files_near, launch_file_of_package
 from cfepy.mission.spec import MissionSpec
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import ROSCORE_PARAMS, RosConfig
+from cfepy.reading.input_files import beginning_of, read_limited
+from cfepy.reading.input_limits import LINE_FILE_BYTES, XML_BYTES
+from cfepy.reading.marked_yaml import Mistakes, load
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.resources import shipped
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
+
+if TYPE_CHECKING:
+    from cfepy.mission.launch import NodeBuilder
+    from cfepy.mission.mission_file import MissionSections
 
 STARTUP_SCRIPT = "startup.scr"
 MISSION_FILE = "mission.yaml"
@@ -124,18 +121,32 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None, build: Nod
     """
     script = find_script(mission)
     if script.suffix in LAUNCH_FILES:
+        from cfepy.mission.launch import read_launch
+
         return read_launch(script, args, build)
     if args:
         raise UsageError("only a launch file takes arguments", file=mission, field="--arg")
+    name = script.parent.name if script.name == STARTUP_SCRIPT else script.stem
+    spec = MissionSpec(name=name, folder=script.parent, script=script)
     path = mission_file_of(script)
-    said = MissionSections() if path is None else read_mission_file(path, Mistakes())
-    usual_name = script.parent.name if script.name == STARTUP_SCRIPT else script.stem
-    spec = MissionSpec(
-        name=usual_name if said.name is None else said.name,
-        folder=script.parent,
-        script=script,
+    if path is not None:
+        spec = _with_mission_file(spec, path, build)
+    if spec.has_nodes:
+        spec = replace(spec, ros=replace(spec.ros, params={**ROSCORE_PARAMS, **spec.ros.params}))
+    lock = spec.folder / LOCK_FILE
+    return replace(spec, ros=read_lock(lock, spec.ros)) if os.path.isfile(lock) else spec
+
+
+def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None) -> MissionSpec:
+    """A mission as its mission file says; one without such a file imports nothing that reads it."""
+    from cfepy.mission.mission_file import read_mission_file
+
+    said = read_mission_file(path, Mistakes())
+    spec = replace(
+        spec,
+        name=spec.name if said.name is None else said.name,
         mission_file=path,
-        board=said.board_in(script.parent),
+        board=said.board_in(spec.folder),
         ros=said.ros,
         limits=said.limits,
         cfe_version=said.cfe_version,
@@ -144,12 +155,11 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None, build: Nod
         demands=said.demands,
         sweep=said.sweep,
     )
-    if said.launch:
-        spec = with_launch_files(spec, said.launch, build)
-    if spec.has_nodes:
-        spec = replace(spec, ros=replace(spec.ros, params={**ROSCORE_PARAMS, **spec.ros.params}))
-    lock = spec.folder / LOCK_FILE
-    return replace(spec, ros=read_lock(lock, spec.ros)) if os.path.isfile(lock) else spec
+    if not said.launch:
+        return spec
+    from cfepy.mission.launch import with_launch_files
+
+    return with_launch_files(spec, said.launch, build)
 
 
 def read_sections(mission: str) -> MissionSections:
@@ -161,6 +171,8 @@ def read_sections(mission: str) -> MissionSections:
     Raises:
         UsageError: there is neither, or the file is wrong.
     """
+    from cfepy.mission.mission_file import MissionSections, read_mission_file
+
     named = Path(mission)
     path = (
         named if named.suffix in (".yaml", ".yml") and os.path.isfile(named) else mission_file_of(find_script(mission))
@@ -197,6 +209,8 @@ def cpp_nodes_of(said: str) -> CppNodesConfig:
     source = cpp_nodes_source(said)
     if source in PROFILES:
         return CppNodesConfig(profile=source)
+    from cfepy.mission.mission_file import read_mission_file
+
     sections = read_mission_file(Path(source), Mistakes())
     if "cpp_nodes" not in sections.places:
         raise UsageError("has no section cpp_nodes", file=source, field="--cpp-nodes")

@@ -13,12 +13,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from cfepy.mission.cpp_nodes import CppNodesConfig, CppNodesError
+from cfepy.mission.launch_names import LAUNCH_FILES, files_near, launch_file_of_package
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.parameter_files import merged
 from cfepy.mission.spec import BuiltProgram, MissionSpec
 from cfepy.nodes import ROSCORE_PARAMS, CppNode, NodeConfig, RosConfig
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from rospy_shim.roslaunch.plan import LaunchPlan
@@ -26,8 +27,11 @@ if TYPE_CHECKING:
 PRIORITY, STACK_BYTES, RESTART_NOTHING = 100, 16384, 0
 COMPILED_STACK_BYTES = 65536  # the streams of C++ need more than C does
 ROOM = 64  # more nodes than there are that limits allow for, since a workstation does not limit threads
-LAUNCH_FILES = (".launch", ".test", ".xml")
 KEPT_ENVIRONMENT = ("HOME", "PATH", "ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH")
+
+
+TEST_RESULTS = "/ram/gtest.xml"
+"""Where a test in C++ leaves its results, in a file of the mission."""
 
 
 class NodeBuilder(Protocol):
@@ -167,34 +171,6 @@ def launch_file(words: Sequence[str]) -> tuple[Path, dict[str, str]]:
     return found, args
 
 
-def launch_file_of_package(text: str) -> Path | None:
-    """The launch file that a package and its name in the package mean, with a blank between them, as roslaunch has it.
-
-    Args:
-        text: such as "demo robot.launch".
-
-    Returns:
-        None when the text looks like something else.
-
-    Raises:
-        UsageError: there is no such package, or no such file in it.
-    """
-    package, blank, name = text.partition(" ")
-    if not blank or "/" in package or not name.endswith(LAUNCH_FILES):
-        return None
-    from rospy_shim.roslaunch.plan import launch_file
-
-    return launch_file(package, name, Path.cwd() / name, os.environ)
-
-
-def files_near(path: Path, suffixes: tuple[str, ...]) -> list[str]:
-    """The files of some kind in the folder of a path, as they would be written in its place."""
-    try:
-        return [str(each) for each in sorted(path.parent.iterdir()) if each.suffix in suffixes]
-    except OSError:
-        return []
-
-
 def with_launch_files(
     spec: MissionSpec, launches: Sequence[tuple[Path, Mapping[str, str]]], build: NodeBuilder | None = None
 ) -> MissionSpec:
@@ -238,11 +214,6 @@ def mission_environment() -> dict[str, str]:
     return {name: os.environ[name] for name in KEPT_ENVIRONMENT if name in os.environ}
 
 
-def scripts_of(spec: MissionSpec) -> dict[str, Path]:
-    """Scripts of nodes that are not in the mission's folder, by the virtual paths that the startup script has."""
-    return {f"/cf/{app}.so": node.script for app, node in spec.ros.nodes.items() if node.script is not None}
-
-
 def lines_for(nodes: Mapping[str, NodeConfig]) -> bytes:
     """Lines of a startup script; the name is also the file's, which is never opened."""
     numbers = f"{PRIORITY}, {STACK_BYTES}, 0x0, {RESTART_NOTHING}"
@@ -253,11 +224,6 @@ def compiled_lines(built: Mapping[str, BuiltProgram]) -> bytes:
     """Lines of a startup script for nodes in C++, by cFE name."""
     numbers = f"{PRIORITY}, {COMPILED_STACK_BYTES}, 0x0, {RESTART_NOTHING}"
     return "".join(f"CFE_APP, {app}, {each.entry}, {app}, {numbers};\n" for app, each in built.items()).encode()
-
-
-def files_of_built(spec: MissionSpec) -> dict[str, Path]:
-    """The shared objects of a mission's nodes in C++ by the virtual paths that their lines name."""
-    return {f"/cf/{app}.so": each.file for app, each in spec.built.items()}
 
 
 def node_script(words: Sequence[str]) -> tuple[Path, list[str]]:

@@ -13,9 +13,9 @@ from functools import partial
 
 from cfepy.config import IDENTITIES, PlatformConfig
 from cfepy.ids import SERIAL_MAX
-from cfepy.marked_yaml import Marked, Mistakes
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.psp import LIMIT_NAMES, BoardProfile, Limit, read_limit
+from cfepy.reading.marked_yaml import Marked, Mistakes
 from cfepy.status import UsageError
 
 NODES = "nodes"

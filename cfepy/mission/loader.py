@@ -11,7 +11,6 @@ from pathlib import PurePosixPath
 from typing import Protocol
 
 from cfepy.console import Console
-from cfepy.mission.tracebacks import app_traceback
 from cfepy.rtos import TaskExit
 from cfepy.status import OS_ERROR, OsalError
 
@@ -139,6 +138,8 @@ class ModuleLoader:
         except (TaskExit, KeyboardInterrupt):
             raise
         except BaseException as error:
+            from cfepy.mission.tracebacks import app_traceback
+
             self._console.write(app_traceback(error))
             return OS_ERROR
         if not isinstance(result, int) or result == 0:  # as ES judges it

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, ParamSpec, TypeVar
 from cfepy.app import Cfe
 from cfepy.attachment import Attachment
 from cfepy.console import Console
+from cfepy.interpreter.own_code import is_own_code
 from cfepy.mission.acts import HostActs
 from cfepy.mission.failed_code import FailedCode
 from cfepy.mission.finding import read_mission
@@ -29,13 +30,12 @@ from cfepy.mission.processor import Machine, Processor, RunFiles
 from cfepy.mission.python_code import find_code
 from cfepy.mission.record import Reset, RunRecord
 from cfepy.mission.spec import MissionSpec
-from cfepy.mission.tracebacks import app_traceback, reason
 from cfepy.nodes import Accesses
 from cfepy.osal import FileSystem, Network
-from cfepy.own_code import is_own_code
 from cfepy.psp import EEPROM_BYTES, BoardProfile, MemoryBudget, PanicError, Retained, load_profile
-from cfepy.rtos import AUTO, Kernel, Policy, StallWatch, Stopwatch, Task, make_kernel, task_kind
+from cfepy.rtos import AUTO, Kernel, Policy, StallWatch, Stopwatch, Task, task_kind
 from cfepy.sb import SoftwareBus
+from cfepy.schedules import make_kernel
 from cfepy.status import StallError
 from cfepy.trace import Trace
 from cfepy.units import NS_PER_MS, NS_PER_S
@@ -373,6 +373,8 @@ class Mission:
         self.record.part(FailedCode).take(task, error, self.kernel.now)
         if task.owner is None or isinstance(error, PanicError):
             return False
+        from cfepy.mission.tracebacks import app_traceback, reason
+
         self.console.write(f"{task.owner.name}: task {task.name} died of an exception")
         self.console.write(app_traceback(error))
         return self.cfe.es.take_fault(task, error, reason(error))

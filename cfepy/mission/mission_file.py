@@ -14,7 +14,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from cfepy.marked_yaml import Marked, Mistakes, load
 from cfepy.mission.cpp_nodes import CppNodesConfig, read_cpp_nodes
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.parameter_files import merged, read_files, read_tree
@@ -22,6 +21,7 @@ from cfepy.mission.spec import CompiledConfig
 from cfepy.mission.sweep_section import SweepConfig, read_sweep
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import BridgedPacket, NodeConfig, RosBridge, RosConfig, TopicConfig
+from cfepy.reading.marked_yaml import Marked, Mistakes, load
 from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
 DEMANDS = ("invariants", "results", "deadlines", "inversions")

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from cfepy.marked_yaml import Marked, load
+from cfepy.reading.marked_yaml import Marked, load
 from cfepy.status import UsageError
 
 _INT_MIN, _INT_MAX = -(1 << 31), (1 << 31) - 1

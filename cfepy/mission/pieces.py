@@ -14,7 +14,7 @@ from collections.abc import Callable
 from types import FrameType, TracebackType
 from typing import Any
 
-from cfepy.host_system import interrupt_once, signal_number
+from cfepy.interpreter.host_system import interrupt_once, signal_number
 
 FIRST_PIECE_NS = 10_000_000  # virtual time
 LEAST_PIECE_NS = 1_000_000

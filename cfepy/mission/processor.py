@@ -18,12 +18,10 @@ from cfepy.console import Console
 from cfepy.es import Boot, CoreApp, EsTask, ExecutiveServices, ObjectTable
 from cfepy.evs import EventServices
 from cfepy.fs import FileServices
-from cfepy.mission.call_points import handle_for_apps
-from cfepy.mission.compiled_code import CompiledFiles, CompiledWatch
-from cfepy.mission.launch import files_of_built, scripts_of
+from cfepy.mission.compiled_code import CodeLoader, CompiledFiles, CompiledRuntime
 from cfepy.mission.loader import BuiltInApps, Finder, ModuleLoader
 from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
-from cfepy.mission.record import DataRace, Overwrite, RunRecord
+from cfepy.mission.record import RunRecord
 from cfepy.mission.spec import MissionSpec
 from cfepy.nodes import Accesses, AppModules, make_app_universe
 from cfepy.osal import (
@@ -35,6 +33,7 @@ from cfepy.osal import (
     Network,
     Osal,
 )
+from cfepy.plugins import Hook
 from cfepy.ports import Ports
 from cfepy.psp import BoardProfile, MemoryBudget, Psp, Retained, object_sizes
 from cfepy.rtos import Kernel, StallWatch
@@ -44,7 +43,6 @@ from cfepy.time import TimeServices
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
-    from cfepy.c import CompiledLoader, CRuntime
     from cfepy.nodes import Overlay, Universe
     from rospy_shim.graph.graph import TopicRow
     from rospy_shim.runtime import RosRuntime
@@ -136,7 +134,7 @@ class Processor:
         self.ros: RosRuntime | None = None
         self.booted: int | None = None
         self._start_ns = start_ns
-        self._scripts = scripts_of(machine.spec)
+        self._scripts = machine.spec.scripts
         self._costs = machine.board.cpu_costs()
         self._build()
         machine.kernel.spawn("CFE_ES_Main", self._boot, BOOT_PRIORITY)
@@ -158,7 +156,7 @@ class Processor:
         self.loader = ModuleLoader(machine.console, self._finders())
         self.osal.modules = self.loader
         self.cfe = self._make_services()
-        self.handle = handle_for_apps(self.cfe, machine.kernel)
+        self.handle = self._handle_for_apps()
         self.sb_task = SbTask(self.cfe.sb)
         checksum = zlib.crc32(machine.config.release.source.encode()) & 0xFFFF
         self.es_task = EsTask(self.cfe.es, machine.spec.name, self._build_text(), checksum)
@@ -166,7 +164,7 @@ class Processor:
     def _finders(self) -> list[Finder]:
         """What is asked for the code of applications, in this order."""
         machine, folder = self.machine, self.machine.spec.folder
-        self._compiled = CompiledFiles(machine.files, self._make_compiled_loader, files_of_built(machine.spec))
+        self._compiled = CompiledFiles(machine.files, self._make_compiled_loader, machine.spec.built_files)
         python = PythonLoader(machine.console, lambda: self.handle, AppModules(self._app_universe, machine.accesses))
         return [
             BuiltInApps({ROS_FILE: self._ros_main}),
@@ -217,6 +215,15 @@ class Processor:
         es.history, evs.counts, evs.errors_by_app = record.history, record.event_counts, record.errors_by_app
         evs.first_errors = record.first_errors
         return Cfe(es, sb, evs, time, tbl, self.osal, self.psp, fs, ConfigServices(config, machine.spec.name))
+
+    def _handle_for_apps(self) -> Cfe:
+        """The services themselves, unless a policy decides which task runs; only such a run imports call points."""
+        kernel = self.machine.kernel
+        if kernel.policy is None:
+            return self.cfe
+        from cfepy.mission.call_points import with_call_points
+
+        return with_call_points(self.cfe, kernel)
 
     def _build_text(self) -> str:
         machine = self.machine
@@ -309,38 +316,13 @@ class Processor:
         )
 
     @property
-    def compiled(self) -> CRuntime | None:
+    def compiled(self) -> CompiledRuntime | None:
         """The C side of the processor; None when nothing compiled was loaded."""
         return self._compiled.runtime
 
-    def _make_compiled_loader(self) -> CompiledLoader:
+    def _make_compiled_loader(self) -> CodeLoader:
         """What loads compiled code; a mission without any does not import it."""
-        from cfepy.c import CompiledLoader, CRuntime
-
-        machine = self.machine
-        watch = machine.stall_watch
-        with watch.paused():  # the engine may have to be compiled first
-            runtime = CRuntime(
-                self.cfe,
-                self.handle,
-                machine.kernel,
-                self._costs.polling_ns,
-                machine.console,
-                lambda: watch.limit_s,
-                omit_deprecated=machine.spec.compiled.omit_deprecated,
-                guard=machine.spec.compiled.guard,
-                on_race=lambda race: machine.record.data_races.append(DataRace(*race.told())),
-                on_overwrite=lambda app, text: machine.record.overwrites.append(
-                    Overwrite(machine.kernel.now, app, text)
-                ),
-                on_stack=machine.record.note_stack,
-                nodes={app: each.name for app, each in machine.spec.built.items()},
-                publication_watch=CompiledWatch(self.cfe.sb, lambda: self.ros),
-            )
-        self.cfe.es.core_memory = runtime.core_memory
-        if runtime.tables is not None:
-            self.cfe.tbl.place_buffers(runtime.tables)
-        return CompiledLoader(runtime, machine.console, self._start_ros)
+        return COMPILED_CODE.need("compiled code")(self, self._costs.polling_ns, self._start_ros)
 
     def _script_of(self, file: str) -> Path | None:
         """The script of a node that came with a launch file, or that another node has started."""
@@ -404,3 +386,8 @@ class _TableFiles:
     def exists(self, path: str) -> bool:
         """Whether there is such a file."""
         return self._osal.files.exists(path)
+
+
+COMPILED_CODE: Hook[Callable[[Processor, int, Callable[[], RosRuntime]], CodeLoader]] = Hook("compiled_code")
+"""Makes what loads compiled code: for a processor, with the time in ns that a call takes which only looks, and what
+starts ROS before the first node."""

@@ -22,13 +22,12 @@ from typing import Any
 
 from cfepy.console import Console
 from cfepy.es import SymbolError
-from cfepy.input_files import read_limited
-from cfepy.input_limits import PYTHON_BYTES
 from cfepy.mission.compiled_code import find_compiled
 from cfepy.mission.loader import NO_SYMBOL, NODE_SYMBOL, Code, Finder, MainCode, RemovedCodeError
-from cfepy.mission.tracebacks import app_traceback, described
 from cfepy.nodes import AppModules
 from cfepy.osal import FileSystem
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import PYTHON_BYTES
 from cfepy.resources import shipped
 from cfepy.rtos import TaskExit
 from cfepy.status import OS_ERROR, OsalError
@@ -119,6 +118,8 @@ class PythonLoader:
         except (TaskExit, KeyboardInterrupt):
             raise
         except BaseException as error:  # also sys.exit(): it is the module that ends, not the process
+            from cfepy.mission.tracebacks import app_traceback, described
+
             self._console.write(app_traceback(error))
             raise OsalError(OS_ERROR, f"{file}: {described(error)}") from error
 

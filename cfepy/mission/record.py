@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from cfepy.es import AppHistory
 from cfepy.evs import SentError
-from cfepy.mission.tracebacks import described
 from cfepy.sb import SoftwareBus
 
 if TYPE_CHECKING:
@@ -136,6 +135,8 @@ class RunRecord:
         found = {}
         for app in self.history.values():
             if app.last_error is not None:
+                from cfepy.mission.tracebacks import described
+
                 times = "" if app.deaths == 1 else f" {app.deaths} times"
                 found[app.name] = f"{app.name} died{times}: {described(app.last_error)}"
         return found

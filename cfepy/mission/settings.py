@@ -13,9 +13,9 @@ from typing import Any
 from cfepy.mission.parameter_files import checked, merged
 from cfepy.mission.spec import MissionSpec
 from cfepy.nodes import NodeConfig
-from cfepy.plain_yaml import YamlError, plain_yaml
+from cfepy.reading.plain_yaml import YamlError, plain_yaml
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 
 OPTION = "--set"
 

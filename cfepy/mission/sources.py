@@ -11,10 +11,10 @@ import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from cfepy.input_files import read_limited
-from cfepy.input_limits import PYTHON_BYTES
+from cfepy.interpreter.syntax_trees import parsed_input
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import PYTHON_BYTES
 from cfepy.status import UsageError
-from cfepy.syntax_trees import parsed_input
 
 _MOST_MODULES = 100  # that are followed, one from the other
 PACKAGE_FILE = "__init__.py"

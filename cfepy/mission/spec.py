@@ -7,17 +7,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.cached import CachedProperty
 from cfepy.es import StartupEntry
 from cfepy.es import entries as read_entries
-from cfepy.input_files import read_limited
-from cfepy.input_limits import STARTUP_BYTES
-from cfepy.marked_yaml import Marked
+from cfepy.interpreter.cached import CachedProperty
 from cfepy.mission.cpp_nodes import CppNodesConfig
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.sweep_section import SweepConfig
 from cfepy.nodes import CppNode, NodeConfig, RosConfig
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import STARTUP_BYTES
+from cfepy.reading.marked_yaml import Marked
 from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
 
@@ -89,9 +89,9 @@ class MissionSpec:
     name: str
     folder: Path
     script: Path
-    mission_file: Path | None
-    board: str
-    ros: RosConfig
+    mission_file: Path | None = None
+    board: str = "linux"
+    ros: RosConfig = field(default_factory=RosConfig)
     limits: MissionLimits = field(default_factory=MissionLimits)
     cfe_version: str = DEFAULT_RELEASE
     compiled: CompiledConfig = field(default_factory=CompiledConfig)
@@ -113,6 +113,16 @@ class MissionSpec:
     def entries(self) -> tuple[StartupEntry, ...]:
         """What the startup script starts, in order; read once."""
         return tuple(read_entries(self.startup_script, RELEASES[self.cfe_version].longest_entry))
+
+    @property
+    def scripts(self) -> dict[str, Path]:
+        """Scripts of nodes that are not in its folder, by the virtual paths that the startup script has."""
+        return {f"/cf/{app}.so": node.script for app, node in self.ros.nodes.items() if node.script is not None}
+
+    @property
+    def built_files(self) -> dict[str, Path]:
+        """The shared objects of its nodes in C++, by the virtual paths that their lines name."""
+        return {f"/cf/{app}.so": each.file for app, each in self.built.items()}
 
     @property
     def has_nodes(self) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cfepy.marked_yaml import Marked, Mistakes
+from cfepy.reading.marked_yaml import Marked, Mistakes
 
 
 @dataclass(frozen=True, slots=True)

@@ -157,7 +157,7 @@ def _header_of(topic: TopicEntry, sender: str) -> dict[str, str]:
 
 def _header_of_bytes(header: dict[str, str]) -> dict[str, str]:
     """The connection header of a raw topic, whose messages have a whole packet as their data."""
-    from rospy_shim.msgs import message_class
+    from rospy_shim.types.msgs import message_class
 
     kind = message_class(RAW_TYPE)
     return {**header, "type": RAW_TYPE, "md5sum": kind._md5sum, "message_definition": kind._full_text}
@@ -165,6 +165,6 @@ def _header_of_bytes(header: dict[str, str]) -> dict[str, str]:
 
 def _as_bytes_message(header: dict[str, str], packet: bytes) -> tuple[dict[str, str], bytes]:
     """A raw topic: nodes get the whole packet as the data of a message; so does the bag."""
-    from rospy_shim.msgs import message_class
+    from rospy_shim.types.msgs import message_class
 
     return _header_of_bytes(header), message_class(RAW_TYPE)(data=packet)._pack()

@@ -6,9 +6,9 @@ import re
 import traceback
 from pathlib import Path
 
+from cfepy.interpreter.own_code import PACKAGE, source_file
 from cfepy.nodes.report import strip
-from cfepy.own_code import PACKAGE, source_file
-from cfepy.texts import without_addresses
+from cfepy.reading.texts import without_addresses
 
 SHARED = str(Path(PACKAGE) / "share")
 _PLACE = re.compile(r"\([^\s():]+:\d+\)")

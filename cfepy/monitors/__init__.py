@@ -3,14 +3,15 @@
 What belongs here is an attachment that watches a run and changes nothing in it, or reads the section of the mission
 file that says what to check. Faults are in `cfepy.faults`, commands and the answers expected in `cfepy.script`.
 
-The names below are loaded when they are first used: a run imports no more of this package than it needs.
+The names below are loaded when they are first used: a run imports no more of this package than it needs. The central
+file is `cfepy/monitors/observer.py`.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cfepy.faces import face
+from cfepy.interpreter.faces import face
 from cfepy.monitors.deadlines import Check, DeadlineResult, Overrun, time_text
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
-from cfepy.marked_yaml import Marked, Mistakes
 from cfepy.msg import is_valid_msg_id
+from cfepy.reading.marked_yaml import Marked, Mistakes
 from cfepy.units import NS_PER_S, TIME_UNITS
 
 APP_FIELDS = ("response", "period", "jitter", "task")

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from cfepy.attachment import Attachment
-from cfepy.marked_yaml import Marked, Mistakes
 from cfepy.mission import MissionSpec
 from cfepy.monitors.deadlines import Deadlines, read_deadlines
+from cfepy.reading.marked_yaml import Marked, Mistakes
 
 if TYPE_CHECKING:
     from cfepy.monitors.invariants import Invariant

@@ -13,14 +13,14 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from cfepy.input_files import read_limited
-from cfepy.input_limits import PYTHON_BYTES
-from cfepy.marked_yaml import Marked, Mistakes
+from cfepy.interpreter.syntax_trees import compiled
 from cfepy.mission import sources
 from cfepy.monitors.predicate import LATEST, Predicate
 from cfepy.msg import HIGHEST_VALID_MSG_ID
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import PYTHON_BYTES
+from cfepy.reading.marked_yaml import Marked, Mistakes
 from cfepy.status import UsageError
-from cfepy.syntax_trees import compiled
 
 NAMES = ("msg", "last", LATEST, "topic", "sender", "t", "count")
 CAUSE = "cause"

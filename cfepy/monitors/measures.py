@@ -20,9 +20,9 @@ from cfepy.mission import Mission, Processor
 from cfepy.monitors.deadline_monitor import DeadlineMonitor
 from cfepy.monitors.deadlines import LONGEST_NS, AppDeadline, Check, Deadlines, TopicDeadline
 from cfepy.monitors.record import DeadlineRecord
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.rtos import Task
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 
 LATENCY, RESPONSE, AGE, WAIT = KINDS = ("latency", "response", "age", "wait")
 FORMS = "latency:/topic, latency:/cause->/effect, response:APP, age:/topic or wait:TASK"

@@ -14,10 +14,10 @@ from dataclasses import dataclass, field
 from types import CodeType
 from typing import Any
 
-from cfepy.input_limits import EXPRESSION_CHARACTERS, EXPRESSION_DEPTH
-from cfepy.marked_yaml import Marked
-from cfepy.suggestions import did_you_mean
-from cfepy.syntax_trees import parsed_input
+from cfepy.interpreter.syntax_trees import parsed_input
+from cfepy.reading.input_limits import EXPRESSION_CHARACTERS, EXPRESSION_DEPTH
+from cfepy.reading.marked_yaml import Marked
+from cfepy.reading.suggestions import did_you_mean
 
 LATEST = "latest"
 MOST_SHOWN = 120  # characters of a value in a text

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from cfepy.marked_yaml import Marked, Mistakes
+from cfepy.reading.marked_yaml import Marked, Mistakes
 from cfepy.status import UsageError
 
 LAST, SEQUENCE, ANY_ORDER, COUNT = "last", "sequence", "any order", "count"

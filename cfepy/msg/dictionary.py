@@ -13,7 +13,7 @@ from typing import Any
 from cfepy.msg.header import CMD_HEADER_SIZE, TLM_HEADER_SIZE
 from cfepy.msg.layout import Layout, message_string_get
 from cfepy.msg.secondary import command, telemetry
-from cfepy.texts import to_bytes
+from cfepy.reading.texts import to_bytes
 
 NO_PAYLOAD = Layout("no payload", [])
 

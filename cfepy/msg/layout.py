@@ -20,9 +20,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cfepy.msg.header import Packet
+from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.texts import from_bytes, to_bytes
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_STATUS_WRONG_MSG_LENGTH, CfeError, UsageError
-from cfepy.suggestions import did_you_mean
-from cfepy.texts import from_bytes, to_bytes
 
 _SCALARS = {
     "u8": ("B", 1),

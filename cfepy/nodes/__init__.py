@@ -6,7 +6,8 @@ here: the universe, how modules are found and executed, which modules are refuse
 program sees of the standard library is in `cfepy.nodes.stdlib`. Nothing here knows of ROS: rospy and the message
 packages come in as factories of synthetic modules.
 
-The names below are loaded when they are first used: a mission without nodes pays nothing for them.
+The names below are loaded when they are first used: a mission without nodes pays nothing for them. The central file is
+`cfepy/nodes/universe.py`.
 """
 
 from __future__ import annotations
@@ -14,8 +15,16 @@ from __future__ import annotations
 import threading  # noqa: F401  # first imported by a task, the host's would take that task for its main thread
 from typing import TYPE_CHECKING
 
-from cfepy.faces import face
-from cfepy.nodes.config import ROSCORE_PARAMS, BridgedPacket, CppNode, NodeConfig, RosBridge, RosConfig, TopicConfig
+from cfepy.interpreter.faces import face
+from rospy_shim.types.config import (
+    ROSCORE_PARAMS,
+    BridgedPacket,
+    CppNode,
+    NodeConfig,
+    RosBridge,
+    RosConfig,
+    TopicConfig,
+)
 
 if TYPE_CHECKING:
     from cfepy.nodes.accesses import WHOLE, Accesses, Observer, Touch

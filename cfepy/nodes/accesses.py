@@ -13,15 +13,16 @@ from collections.abc import Callable, Iterator, MutableMapping, MutableSequence,
 from contextlib import contextmanager
 from pathlib import PurePath
 from types import CodeType, FrameType, FunctionType, MemberDescriptorType, ModuleType
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 from weakref import ref
 
-from cfepy.rtos import CallPointKernel, ExploringKernel, Points, Task
-from cfepy.rtos.points import ATTRIBUTES, CALLS, LINES
+from cfepy.rtos import Task
+from cfepy.schedules import ATTRIBUTES, CALLS, LINES, Points
 
 if TYPE_CHECKING:
     from cfepy.nodes.instrument import Kinds
     from cfepy.rtos import Kernel
+    from cfepy.schedules import CallPointKernel
 
 WHOLE = "*"
 """The key of an access to all of a container: its length, its order, what it has."""
@@ -122,7 +123,7 @@ class Accesses:
         self.files: set[str] = set()
         self._kernel = kernel
         self._points = Points.parse("" if kernel.policy is None else kernel.policy.points)
-        self._point = kernel.point if isinstance(kernel, ExploringKernel) else None
+        self._point = None if kernel.policy is None else _point_of(kernel)
         self._has_points = self._points.kind == ATTRIBUTES
         self._loading: dict[Task, int] = {}  # tasks that execute the body of a module
         self._covered: dict[str, bool] = {}
@@ -221,8 +222,7 @@ class Accesses:
 
     def called(self, value: T) -> T:
         """A call came back: others may run, if it has been in cfepy, so that what it found out may be old by now."""
-        kernel = self._kernel
-        assert isinstance(kernel, CallPointKernel)
+        kernel = cast("CallPointKernel", self._kernel)
         task = kernel.current
         if kernel.entered.pop(task, False) and task not in self._loading:
             kernel.point()
@@ -475,6 +475,14 @@ class Accesses:
             number = self._numbers.of(user.__closure__[0])
             owner = user.__qualname__.partition(".<locals>")[0]
         self._tell(frame, number, name, is_write, f"{owner}.{name}")
+
+
+def _point_of(kernel: Kernel) -> Callable[[], object]:
+    """What lets others in, of a kernel with a policy; a run without one does not import the other kernel."""
+    from cfepy.schedules import ExploringKernel
+
+    assert isinstance(kernel, ExploringKernel)
+    return kernel.point
 
 
 _HOOKS = (

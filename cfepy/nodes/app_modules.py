@@ -19,7 +19,7 @@ from importlib.machinery import PathFinder, SourceFileLoader
 from types import ModuleType
 from typing import IO, TYPE_CHECKING, Any
 
-from cfepy.host_system import check_own_builtins
+from cfepy.interpreter.host_system import check_own_builtins
 from cfepy.nodes.sources import code_of_source
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ from collections.abc import Iterable, Sequence
 from types import CodeType
 from typing import NamedTuple, TypeVar
 
+from cfepy.interpreter.syntax_trees import FUNCTION, MODULE, NameScopes, compiled, parsed
 from cfepy.nodes.ordered_sets import with_ordered_sets
-from cfepy.syntax_trees import FUNCTION, MODULE, NameScopes, compiled, parsed
 
 READING_METHODS = frozenset(
     {

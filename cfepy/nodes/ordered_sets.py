@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from types import CodeType
 from typing import Any
 
-from cfepy.syntax_trees import compiled, parsed
+from cfepy.interpreter.syntax_trees import compiled, parsed
 
 SET_NAME = "__ordered_set__"
 

@@ -7,18 +7,22 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from cfepy.own_code import source_file
+from cfepy.interpreter.own_code import source_file
 
 if TYPE_CHECKING:
     from traceback import TracebackException
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-_MESSAGES = os.path.join(os.path.dirname(_PACKAGE), "rospy_shim", "msgs", "")  # at work while a node imports
+_MESSAGES = os.path.join(os.path.dirname(_PACKAGE), "rospy_shim", "types", "msgs", "")  # at work while a node imports
 _CFEPY = os.path.join(_PACKAGE, "")
 _ROSPY = tuple(
     os.path.join(os.path.dirname(_PACKAGE), "rospy_shim", each) for each in ("runtime.py", "client", "graph")
 )
-_HIDDEN = (os.path.join(_PACKAGE, "nodes", ""), os.path.join(_PACKAGE, "rtos", ""), _MESSAGES, "<frozen importlib")
+_HIDDEN = (
+    *(os.path.join(_PACKAGE, each, "") for each in ("nodes", "rtos", "schedules")),
+    _MESSAGES,
+    "<frozen importlib",
+)
 
 
 def is_hidden(file: str) -> bool:

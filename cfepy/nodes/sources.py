@@ -15,9 +15,9 @@ import warnings
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
-from cfepy.input_files import read_limited
-from cfepy.input_limits import PYTHON_BYTES
-from cfepy.syntax_trees import compiled
+from cfepy.interpreter.syntax_trees import compiled
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import PYTHON_BYTES
 
 if TYPE_CHECKING:
     from cfepy.nodes.instrument import Kinds

@@ -20,7 +20,7 @@ from importlib.machinery import SourceFileLoader
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from cfepy.host_system import check_own_builtins
+from cfepy.interpreter.host_system import check_own_builtins
 from cfepy.nodes.files import OpenFiles
 from cfepy.nodes.importer import Factory, Importer
 from cfepy.nodes.report import traceback_text

@@ -2,7 +2,7 @@
 
 What belongs here is NASA's OSAL interface, a module for each of its headers, and what it stands on: the virtual file
 system (`filesystem`, `volumes`) and the virtual network (`network`). What only cFE knows, such as applications and
-tables, does not. All packages above use it through `Osal`.
+tables, does not. All packages above use it through `Osal`. The central file is `cfepy/osal/osal.py`.
 """
 
 from __future__ import annotations

@@ -20,6 +20,7 @@ from cfepy.osal.limits import (
     OS_MAX_PATH_LEN,
 )
 from cfepy.osal.volumes import Volume
+from cfepy.reading.texts import to_bytes
 from cfepy.status import (
     OS_ERR_NAME_NOT_FOUND,
     OS_ERR_NO_FREE_IDS,
@@ -28,7 +29,6 @@ from cfepy.status import (
     OS_FS_ERR_PATH_TOO_LONG,
     OsalError,
 )
-from cfepy.texts import to_bytes
 
 RAM_DEVICE = "/ramdev0"
 UNLIMITED_BLOCKS = 0xFFFFFFFF

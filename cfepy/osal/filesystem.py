@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from cfepy.osal.limits import OS_MAX_FILE_NAME, OS_MAX_PATH_LEN
 from cfepy.osal.volumes import FileNode, Volume
+from cfepy.reading.texts import to_bytes
 from cfepy.status import (
     OS_ERR_NAME_NOT_FOUND,
     OS_ERROR,
@@ -19,7 +20,6 @@ from cfepy.status import (
     OS_FS_ERR_PATH_TOO_LONG,
     OsalError,
 )
-from cfepy.texts import to_bytes
 
 RAM_BLOCK_BYTES = 512  # CFE_PLATFORM_ES_RAM_DISK_SECTOR_SIZE
 RAM_BLOCKS = 4096  # CFE_PLATFORM_ES_RAM_DISK_NUM_SECTORS

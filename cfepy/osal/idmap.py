@@ -12,8 +12,8 @@ from cfepy.osal.limits import (
     OS_ERROR_NAME_LENGTH,
     OS_OBJECT_CREATOR_ANY,
 )
+from cfepy.reading.texts import to_bytes
 from cfepy.status import OS_ERR_INVALID_ID, OsalError, name_of, status_to_decimal, to_signed
-from cfepy.texts import to_bytes
 from cfepy.versions import OSAL_VERSION, VersionFunctions
 
 

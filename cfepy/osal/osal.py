@@ -46,9 +46,9 @@ from cfepy.osal.shell import ShellApi
 from cfepy.osal.sockets import SelectApi
 from cfepy.osal.tasks import OsTask, TaskApi
 from cfepy.osal.timers import TimerApi
+from cfepy.reading.texts import to_bytes
 from cfepy.rtos import CpuCosts, Kernel, WaitList
 from cfepy.status import OS_ERR_NOT_IMPLEMENTED, OS_ERROR, OS_INVALID_POINTER, OS_SUCCESS, OsalError
-from cfepy.texts import to_bytes
 
 EXIT_SUCCESS, EXIT_FAILURE = 0, 1
 

@@ -10,8 +10,8 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.input_files import read_limited
 from cfepy.osal.limits import OS_FILESTAT_MODE_READ, OS_FILESTAT_MODE_WRITE
+from cfepy.reading.input_files import read_limited
 
 
 @dataclass(slots=True)

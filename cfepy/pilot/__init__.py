@@ -1,19 +1,26 @@
 """The one way to fly a mission: a plan of the run, its course from stop to stop, its results, and its determinism.
 
 What belongs here decides how a mission is flown, or measures and compares runs. `cfepy.mission` has the simulated
-computer alone; this package adds the monitors, scripts and faults that the mission file or the user asks for.
+computer alone; this package adds the monitors, scripts and faults that the mission file or the user asks for. The
+central file is `cfepy/pilot/pilot.py`.
 """
 
 from __future__ import annotations
 
-from cfepy.pilot.company import boot_of
-from cfepy.pilot.course import BOOT_S, DEFAULT_S, STALLED, SUDDEN, Course
-from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
-from cfepy.pilot.never_judged import SentNames, no_such_app
-from cfepy.pilot.pilot import BootError, Flown, Host, LiveRun, booting, fly, takeoff
-from cfepy.pilot.plan import LAUNCH, NODE, RUN, RunPlan, builder, built_node
-from cfepy.pilot.problems import RunProblem, failures_of, is_reported, problems_of, problems_so_far
-from cfepy.pilot.results import ENDED, NOT_STARTED, AppResult, Results, TopicResult, mark, never_happened
+from typing import TYPE_CHECKING
+
+from cfepy.interpreter.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.pilot.check import MissionProblem, check_mission, problem_of
+    from cfepy.pilot.company import boot_of
+    from cfepy.pilot.course import BOOT_S, DEFAULT_S, STALLED, SUDDEN, Course
+    from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
+    from cfepy.pilot.never_judged import SentNames, no_such_app
+    from cfepy.pilot.pilot import BootError, Flown, Host, LiveRun, booting, fly, takeoff
+    from cfepy.pilot.plan import LAUNCH, NODE, RUN, RunPlan, builder, built_node
+    from cfepy.pilot.problems import RunProblem, failures_of, is_reported, problems_of, problems_so_far
+    from cfepy.pilot.results import ENDED, NOT_STARTED, AppResult, Results, TopicResult, mark, never_happened
 
 __all__ = [
     "BOOT_S",
@@ -34,6 +41,7 @@ __all__ = [
     "Flown",
     "Host",
     "LiveRun",
+    "MissionProblem",
     "Results",
     "RunPlan",
     "RunProblem",
@@ -43,13 +51,73 @@ __all__ = [
     "booting",
     "builder",
     "built_node",
+    "check_mission",
     "failures_of",
     "fly",
     "is_reported",
     "mark",
     "never_happened",
     "no_such_app",
+    "problem_of",
     "problems_of",
     "problems_so_far",
     "takeoff",
 ]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".check": ("MissionProblem", "check_mission", "problem_of"),
+            ".company": ("boot_of",),
+            ".course": (
+                "BOOT_S",
+                "DEFAULT_S",
+                "STALLED",
+                "SUDDEN",
+                "Course",
+            ),
+            ".failure": (
+                "LEAVES_OTHERS_WAITING",
+                "Failure",
+                "FailureKind",
+            ),
+            ".never_judged": (
+                "SentNames",
+                "no_such_app",
+            ),
+            ".pilot": (
+                "BootError",
+                "Flown",
+                "Host",
+                "LiveRun",
+                "booting",
+                "fly",
+                "takeoff",
+            ),
+            ".plan": (
+                "LAUNCH",
+                "NODE",
+                "RUN",
+                "RunPlan",
+                "builder",
+                "built_node",
+            ),
+            ".problems": (
+                "RunProblem",
+                "failures_of",
+                "is_reported",
+                "problems_of",
+                "problems_so_far",
+            ),
+            ".results": (
+                "ENDED",
+                "NOT_STARTED",
+                "AppResult",
+                "Results",
+                "TopicResult",
+                "mark",
+                "never_happened",
+            ),
+        },
+    )

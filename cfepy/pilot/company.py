@@ -16,13 +16,13 @@ from typing import Any
 
 from cfepy.mission import Mission
 from cfepy.osal import Datagram, Place
+from cfepy.pilot.problems import BESIDE
 from cfepy.units import NS_PER_MS, NS_PER_S
 
 LOOPBACK = "127.0.0.1"
 LINK_NS = NS_PER_MS
 """How long a datagram is under way at most, virtual ns; it comes in at a multiple of this time."""
 
-TABLE = "beside"
 _LATER = re.compile(r"(?P<mission>.+)@(?P<seconds>\d+(\.\d+)?)")
 
 
@@ -83,7 +83,7 @@ class Company:
         self._due_ns = 0
         for each in members:
             each.mission.network.outlets.append(self._outlet(each))
-        members[0].mission.record.tables[TABLE] = lambda: [each.row() for each in members[1:]]
+        members[0].mission.record.tables[BESIDE] = lambda: [each.row() for each in members[1:]]
 
     def advance(self) -> int:
         """Bring all members to where the first one stands; the virtual time in ns until which it may go on now."""

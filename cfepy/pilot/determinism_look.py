@@ -17,11 +17,11 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, NamedTuple
 
-from cfepy.input_files import text_limited
-from cfepy.input_limits import PYTHON_BYTES
+from cfepy.interpreter.own_code import is_library, is_shown, is_standard
+from cfepy.interpreter.syntax_trees import parsed_input
 from cfepy.nodes.sources import own_files
-from cfepy.own_code import is_library, is_shown, is_standard
-from cfepy.syntax_trees import parsed_input
+from cfepy.reading.input_files import text_limited
+from cfepy.reading.input_limits import PYTHON_BYTES
 from cfepy.trace import TimedRecords, Trace
 
 _SET_MAKERS = frozenset({"set", "frozenset"})

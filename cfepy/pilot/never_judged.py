@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from cfepy.ground import names_in
 from cfepy.mission import Mission
 from cfepy.monitors import DeadlineRecord, InvariantRecords
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import OsalError
-from cfepy.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from cfepy.monitors import SelectedResult
@@ -58,7 +58,7 @@ class SentNames:
 
 def never_judged(mission: Mission) -> list[str]:
     """A line for each demand of the mission file that a run had nothing of; none before the mission is OPERATIONAL."""
-    if mission.booted is None or not mission.spec.demands:
+    if mission.booted is None:
         return []
     from cfepy.monitors import demands_of
 

@@ -13,8 +13,8 @@ from functools import cache
 from types import FrameType
 from typing import Any
 
+from cfepy.interpreter.own_code import is_own_code
 from cfepy.nodes import MADE, PREFIX
-from cfepy.own_code import is_own_code
 from cfepy.pilot.determinism_look import place_text
 
 _WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT

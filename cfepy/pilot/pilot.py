@@ -18,10 +18,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict, Unpack
 
 from cfepy.attachment import Attachment
-from cfepy.cached import CachedProperty
 from cfepy.console import Console
+from cfepy.interpreter.cached import CachedProperty
 from cfepy.mission import Mission, MissionSpec, endless_waits
-from cfepy.pilot.company import Companion, Company
 from cfepy.pilot.course import BROKEN_OFF, INTERRUPTED, OVER, STALLED, Course
 from cfepy.pilot.plan import RunPlan
 from cfepy.pilot.problems import RunProblem, problems_of
@@ -350,6 +349,8 @@ def _company(plan: RunPlan, spec: MissionSpec, mission: Mission, course: Course)
     if not plan.beside or not course.takes_company:
         yield runs
         return
+    from cfepy.pilot.company import Companion, Company
+
     members = [Companion("", mission, 0, mission.run_until, list)]
     with ExitStack() as flights:
         for (text, other, begins_ns), other_spec in zip(plan.companions(), spec.beside, strict=True):

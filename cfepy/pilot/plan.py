@@ -10,38 +10,37 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cfepy.attachment import Attachment
 from cfepy.config import IDENTITIES, MOST_ID
-from cfepy.host_system import command_line
-from cfepy.mission import (
-    CppNodesConfig,
-    MissionSpec,
-    NodeBuilder,
-    cpp_nodes_of,
-    launch_file,
-    read_launch,
-    read_mission,
-    spec_of_node,
-    with_settings,
-)
+from cfepy.interpreter.host_system import command_line
+from cfepy.mission import CppNodesConfig, MissionSpec, cpp_nodes_of, read_mission
 from cfepy.nodes import CppNode
-from cfepy.pilot.company import boot_of
 from cfepy.pilot.course import BOOT_S, DEFAULT_S, LONGEST_S, NODE_S
-from cfepy.rtos import AUTO, STALL_S, Schedule
+from cfepy.plugins import Hook
+from cfepy.rtos import AUTO, STALL_S
+from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 
+if TYPE_CHECKING:
+    from cfepy.mission import NodeBuilder
+
 RUN, LAUNCH, NODE = "run", "launch", "node"
+
+
+BUILD_NODE: Hook[NodeBuilder] = Hook("build_node")
 
 
 def built_node(
     node: CppNode, params: Mapping[str, Any], others: Sequence[str], config: CppNodesConfig
 ) -> tuple[Path, str]:
-    """Build a node in C++ for a mission; see `cfepy.mission.NodeBuilder`. What builds is loaded for the first one."""
-    from cfepy.convert import build_for_flight
+    """Build a node in C++ for a mission; see `cfepy.mission.NodeBuilder`. What builds is loaded for the first one.
 
-    return build_for_flight(node, params, others, config)
+    Raises:
+        UsageError: it cannot be built, or nothing is installed that builds nodes.
+    """
+    return BUILD_NODE.need(f"the node {node.full_name} in C++")(node, params, others, config)
 
 
 def builder(cpp_nodes: str | None = None) -> NodeBuilder:
@@ -128,6 +127,8 @@ class RunPlan:
         if self.guard:
             spec = replace(spec, compiled=replace(spec.compiled, guard=True))
         if self.settings:
+            from cfepy.mission import with_settings
+
             spec = with_settings(spec, self.settings)
         beside = tuple(other.spec() for _, other, _ in self.companions())
         return self.with_played_bag(replace(spec, ids=self._ids(), beside=beside))
@@ -148,8 +149,12 @@ class RunPlan:
     def _spec(self) -> MissionSpec:
         build = builder(self.cpp_nodes)
         if self.command == LAUNCH:
+            from cfepy.mission import launch_file, read_launch
+
             return read_launch(*launch_file(self.words), build=build)
         if self.command == NODE:
+            from cfepy.mission import spec_of_node
+
             return spec_of_node(self.words, build)
         return read_mission(self.words[0], dict(self.launch_args), build)
 
@@ -177,6 +182,8 @@ class RunPlan:
         """
         found = []
         for text in self.beside:
+            from cfepy.pilot.company import boot_of
+
             mission, begins_ns = boot_of(text)
             if mission in self.words:
                 what = "give the other one a startup script of its own, and a mission file with another processor_id"

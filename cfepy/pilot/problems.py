@@ -14,13 +14,15 @@ from cfepy.es import APP_ERROR, CFE_APP, CFE_LIB, BadLine, StartupEntry, parse
 from cfepy.evs import CRITICAL
 from cfepy.mission import CORE_APPS, EndlessWait, EndlessWaits, FailedCode, Mission, RaisedError
 from cfepy.monitors import DeadlineRecord, InvariantRecords
-from cfepy.pilot.company import TABLE
 from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
 from cfepy.rtos import InjectedCrash
 from cfepy.units import NS_PER_S
 
 if TYPE_CHECKING:
     from cfepy.script import Outcome
+
+BESIDE = "beside"
+"""The table of the record that has a row for each mission that flew beside it."""
 
 
 class RunProblem(NamedTuple):
@@ -281,6 +283,6 @@ def _missed_steps(outcome: Outcome | None) -> Iterator[RunProblem]:
 
 def _beside(mission: Mission) -> Iterator[RunProblem]:
     """What went wrong in the missions that flew beside it."""
-    for row in mission.record.rows(TABLE):
+    for row in mission.record.rows(BESIDE):
         for text in row["problems"]:
             yield RunProblem(f"{row['mission']}: {text}", None, (Failure(FailureKind.PROBLEM, row["mission"], text),))

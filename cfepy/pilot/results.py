@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any
 from cfepy.es import STATE_NAMES
 from cfepy.evs import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.ground import kind_of, names_in
-from cfepy.mission import CORE_APPS, EndlessWaits, Mission, Reset, Traffic, described, endless_waits
+from cfepy.mission import CORE_APPS, EndlessWaits, Mission, Reset, Traffic, endless_waits
 from cfepy.monitors.record import DeadlineRecord, InvariantRecord, InvariantRecords, InversionRecord
-from cfepy.pilot.never_judged import never_judged
-from cfepy.pilot.problems import RunProblem, not_started, own_errors, problems_of, startup_problems
+from cfepy.pilot.problems import BESIDE, RunProblem, not_started, own_errors, problems_of, startup_problems
 from cfepy.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.rtos import TaskKind
 from cfepy.units import NS_PER_S
@@ -263,11 +262,11 @@ class Results:
             faults=record.rows("faults"),
             ros_peers=record.rows("ros_peers"),
             viewer_peers=record.rows("viewer_peers"),
-            beside=record.rows("beside"),
+            beside=record.rows(BESIDE),
             script_problems=startup_problems(mission),
             endless_waits=[wait.text for wait in at.endless.alone],
             missed_moves=_missed_moves(mission),
-            never_judged=never_judged(mission),
+            never_judged=_never_judged(mission),
             missed_steps=[each.text for each in problems if each.is_step],
             invariants=[_invariant(each) for each in record.part(InvariantRecords).values()],
             problems=[each.text for each in problems],
@@ -290,7 +289,16 @@ class Results:
 
 def never_happened(mission: Mission) -> list[str]:
     """See `Results.never_happened`; of a mission that may still fly."""
-    return [*_never_happened(mission.record.rows("faults"), _missed_moves(mission)), *never_judged(mission)]
+    return [*_never_happened(mission.record.rows("faults"), _missed_moves(mission)), *_never_judged(mission)]
+
+
+def _never_judged(mission: Mission) -> list[str]:
+    """What judges had nothing of; only a mission that demands something imports what finds that out."""
+    if not mission.spec.demands:
+        return []
+    from cfepy.pilot.never_judged import never_judged
+
+    return never_judged(mission)
 
 
 def _never_happened(rows: list[dict[str, Any]], missed_moves: list[str]) -> list[str]:
@@ -363,8 +371,15 @@ def _apps(mission: Mission, at: Mark) -> list[AppResult]:
                 cpu_share=history.cpu_ns / end_ns if end_ns else 0.0,
                 restarts=history.restarts,
                 deaths=history.deaths,
-                error=None if error is None else described(error),
+                error=None if error is None else _described(error),
                 core=history.name in CORE_APPS,
             )
         )
     return [*found, *(AppResult(each.name, NOT_STARTED, 0.0, 0, 0, None, False) for each in not_started(mission))]
+
+
+def _described(error: BaseException) -> str:
+    """What an application died of; a run in which none did imports nothing about tracebacks."""
+    from cfepy.mission import described
+
+    return described(error)

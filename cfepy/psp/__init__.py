@@ -2,28 +2,34 @@
 
 What belongs here is what a board has or lacks: the numbers of its profile, its memory and how much of it is in use,
 what outlives a reset, the watchdog, stored exceptions. How cFE answers a reset or an exception belongs to `cfepy.es`.
+The central file is `cfepy/psp/psp.py`.
 """
 
 from __future__ import annotations
 
-from cfepy.psp.exceptions import ExceptionSummary
-from cfepy.psp.measured import Measured
-from cfepy.psp.memory import MemoryBudget, OverBudget, object_sizes
-from cfepy.psp.profile import LIMIT_NAMES, BoardProfile, Limit, available_boards, load_profile, read_limit
-from cfepy.psp.psp import (
-    RST_SUBTYPE_EXCEPTION,
-    RST_SUBTYPE_HW_SPECIAL_COMMAND,
-    RST_SUBTYPE_HW_WATCHDOG,
-    RST_SUBTYPE_POWER_CYCLE,
-    RST_SUBTYPE_RESET_COMMAND,
-    RST_TYPE_POWERON,
-    RST_TYPE_PROCESSOR,
-    PanicError,
-    Psp,
-    RestartType,
-)
-from cfepy.psp.retained import EEPROM_BYTES, Retained
-from cfepy.psp.watchdog import Watchdog
+from typing import TYPE_CHECKING
+
+from cfepy.interpreter.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.psp.exceptions import ExceptionSummary
+    from cfepy.psp.measured import Measured
+    from cfepy.psp.memory import MemoryBudget, OverBudget, object_sizes
+    from cfepy.psp.profile import LIMIT_NAMES, BoardProfile, Limit, available_boards, load_profile, read_limit
+    from cfepy.psp.psp import (
+        RST_SUBTYPE_EXCEPTION,
+        RST_SUBTYPE_HW_SPECIAL_COMMAND,
+        RST_SUBTYPE_HW_WATCHDOG,
+        RST_SUBTYPE_POWER_CYCLE,
+        RST_SUBTYPE_RESET_COMMAND,
+        RST_TYPE_POWERON,
+        RST_TYPE_PROCESSOR,
+        PanicError,
+        Psp,
+        RestartType,
+    )
+    from cfepy.psp.retained import EEPROM_BYTES, Retained
+    from cfepy.psp.watchdog import Watchdog
 
 __all__ = [
     "EEPROM_BYTES",
@@ -51,3 +57,42 @@ __all__ = [
     "object_sizes",
     "read_limit",
 ]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".exceptions": ("ExceptionSummary",),
+            ".measured": ("Measured",),
+            ".memory": (
+                "MemoryBudget",
+                "OverBudget",
+                "object_sizes",
+            ),
+            ".profile": (
+                "LIMIT_NAMES",
+                "BoardProfile",
+                "Limit",
+                "available_boards",
+                "load_profile",
+                "read_limit",
+            ),
+            ".psp": (
+                "RST_SUBTYPE_EXCEPTION",
+                "RST_SUBTYPE_HW_SPECIAL_COMMAND",
+                "RST_SUBTYPE_HW_WATCHDOG",
+                "RST_SUBTYPE_POWER_CYCLE",
+                "RST_SUBTYPE_RESET_COMMAND",
+                "RST_TYPE_POWERON",
+                "RST_TYPE_PROCESSOR",
+                "PanicError",
+                "Psp",
+                "RestartType",
+            ),
+            ".retained": (
+                "EEPROM_BYTES",
+                "Retained",
+            ),
+            ".watchdog": ("Watchdog",),
+        },
+    )

@@ -2,73 +2,75 @@
 
 What belongs here makes tasks run or wait, decides which task runs next, or charges virtual time for it. OSAL's tasks,
 queues and mutexes do not: OSAL builds them on the names below. The host's threads, CPUs and clock are touched in
-`context`, `cpus`, `realtime` and `watchdog`, and in no package above.
+`context`, `cpus`, `realtime` and `watchdog`, and in no package above. The central file is `cfepy/rtos/scheduler.py`.
 """
 
 from __future__ import annotations
 
-from cfepy.rtos.abreast import Abreast
-from cfepy.rtos.context_choice import AUTO, GREENLET, THREAD, TaskKind, has_greenlets, task_kind
-from cfepy.rtos.costs import CpuCosts
-from cfepy.rtos.cpus import allowed_cpus
-from cfepy.rtos.errors import DeadlockError, InjectedCrash
-from cfepy.rtos.exploring import CallObserver, CallPointKernel, ExploringKernel, make_kernel
-from cfepy.rtos.kernel import ENDLESS, Kernel
-from cfepy.rtos.moves import Move, MoveNumbers, MovePolicy, MovesToMake, plain_name
-from cfepy.rtos.mutex import Mutex
-from cfepy.rtos.points import CALLS, Points
-from cfepy.rtos.policy import (
-    HOLD,
-    PCT,
-    AskingPolicy,
-    Decision,
-    Deviations,
-    Fair,
-    From,
-    InOrder,
-    Moment,
-    NotingPolicy,
-    Policy,
-    Question,
-    SeededRandom,
-)
-from cfepy.rtos.queue import EMPTY, Queue
-from cfepy.rtos.races import Race, RaceSide, VectorClocks
-from cfepy.rtos.realtime import Pacer, Stopwatch
-from cfepy.rtos.schedule import DEPTH, ORDER, STEPS, Schedule
-from cfepy.rtos.semaphore import Semaphore
-from cfepy.rtos.stall_signals import LastResort
-from cfepy.rtos.task import FOREVER, PLACE, TIMEOUT, Task, TaskExit
-from cfepy.rtos.wait_graph import Wait, circles, endless
-from cfepy.rtos.wait_list import WaitList
-from cfepy.rtos.watchdog import STALL_S, StallWatch
-from cfepy.rtos.wrapped_calls import wrapping
+from typing import TYPE_CHECKING
+
+from cfepy.interpreter.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.rtos.context_choice import AUTO, GREENLET, THREAD, TaskKind, has_greenlets, task_kind
+    from cfepy.rtos.costs import CpuCosts
+    from cfepy.rtos.cpus import allowed_cpus
+    from cfepy.rtos.errors import DeadlockError, InjectedCrash
+    from cfepy.rtos.kernel import ENDLESS, Kernel
+    from cfepy.rtos.mutex import Mutex
+    from cfepy.rtos.policies import (
+        HOLD_ODDS,
+        PCT,
+        STARTERS_ODDS,
+        Deviations,
+        Fair,
+        From,
+        InOrder,
+        SeededRandom,
+        Seldom,
+    )
+    from cfepy.rtos.policy import (
+        HOLD,
+        AskingPolicy,
+        Decision,
+        Moment,
+        NotingPolicy,
+        Policy,
+        Question,
+        Settings,
+    )
+    from cfepy.rtos.queue import EMPTY, Queue
+    from cfepy.rtos.realtime import Pacer, Stopwatch
+    from cfepy.rtos.scheduler import SLICE_NS
+    from cfepy.rtos.semaphore import Semaphore
+    from cfepy.rtos.stall_signals import LastResort
+    from cfepy.rtos.starters import StartersFirst
+    from cfepy.rtos.task import FOREVER, PLACE, TIMEOUT, Task, TaskExit
+    from cfepy.rtos.wait_graph import Wait, circles, endless
+    from cfepy.rtos.wait_list import WaitList
+    from cfepy.rtos.watchdog import STALL_S, StallWatch
+    from cfepy.rtos.wrapped_calls import wrapping
 
 __all__ = [
     "AUTO",
-    "CALLS",
-    "DEPTH",
     "EMPTY",
     "ENDLESS",
     "FOREVER",
     "GREENLET",
     "HOLD",
-    "ORDER",
+    "HOLD_ODDS",
     "PCT",
     "PLACE",
+    "SLICE_NS",
     "STALL_S",
-    "STEPS",
+    "STARTERS_ODDS",
     "THREAD",
     "TIMEOUT",
-    "Abreast",
     "AskingPolicy",
-    "CallObserver",
-    "CallPointKernel",
     "CpuCosts",
     "DeadlockError",
     "Decision",
     "Deviations",
-    "ExploringKernel",
     "Fair",
     "From",
     "InOrder",
@@ -76,36 +78,105 @@ __all__ = [
     "Kernel",
     "LastResort",
     "Moment",
-    "Move",
-    "MoveNumbers",
-    "MovePolicy",
-    "MovesToMake",
     "Mutex",
     "NotingPolicy",
     "Pacer",
-    "Points",
     "Policy",
     "Question",
     "Queue",
-    "Race",
-    "RaceSide",
-    "Schedule",
     "SeededRandom",
+    "Seldom",
     "Semaphore",
+    "Settings",
     "StallWatch",
+    "StartersFirst",
     "Stopwatch",
     "Task",
     "TaskExit",
     "TaskKind",
-    "VectorClocks",
     "Wait",
     "WaitList",
     "allowed_cpus",
     "circles",
     "endless",
     "has_greenlets",
-    "make_kernel",
-    "plain_name",
     "task_kind",
     "wrapping",
 ]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".context_choice": (
+                "AUTO",
+                "GREENLET",
+                "THREAD",
+                "TaskKind",
+                "has_greenlets",
+                "task_kind",
+            ),
+            ".costs": ("CpuCosts",),
+            ".cpus": ("allowed_cpus",),
+            ".errors": (
+                "DeadlockError",
+                "InjectedCrash",
+            ),
+            ".kernel": (
+                "ENDLESS",
+                "Kernel",
+            ),
+            ".mutex": ("Mutex",),
+            ".policies": (
+                "HOLD_ODDS",
+                "PCT",
+                "STARTERS_ODDS",
+                "Deviations",
+                "Fair",
+                "From",
+                "InOrder",
+                "SeededRandom",
+                "Seldom",
+            ),
+            ".policy": (
+                "HOLD",
+                "AskingPolicy",
+                "Decision",
+                "Moment",
+                "NotingPolicy",
+                "Policy",
+                "Question",
+                "Settings",
+            ),
+            ".queue": (
+                "EMPTY",
+                "Queue",
+            ),
+            ".realtime": (
+                "Pacer",
+                "Stopwatch",
+            ),
+            ".scheduler": ("SLICE_NS",),
+            ".semaphore": ("Semaphore",),
+            ".stall_signals": ("LastResort",),
+            ".starters": ("StartersFirst",),
+            ".task": (
+                "FOREVER",
+                "PLACE",
+                "TIMEOUT",
+                "Task",
+                "TaskExit",
+            ),
+            ".wait_graph": (
+                "Wait",
+                "circles",
+                "endless",
+            ),
+            ".wait_list": ("WaitList",),
+            ".watchdog": (
+                "STALL_S",
+                "StallWatch",
+            ),
+            ".wrapped_calls": ("wrapping",),
+        },
+    )

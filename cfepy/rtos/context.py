@@ -20,7 +20,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any, Protocol
 
-from cfepy.host_system import in_forked_process
+from cfepy.interpreter.host_system import in_forked_process
 from cfepy.rtos.cpus import Seat, current_cpu, pin, process_seat
 from cfepy.rtos.task import Task, TaskExit
 from cfepy.status import UsageError

@@ -20,7 +20,7 @@ import sys
 import threading
 import weakref
 
-from cfepy.host_system import in_forked_process
+from cfepy.interpreter.host_system import in_forked_process
 from cfepy.status import UsageError
 
 VARIABLE = "CFEPY_PIN"

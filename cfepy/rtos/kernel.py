@@ -15,8 +15,8 @@ from types import TracebackType
 from typing import Any
 
 from cfepy import trace as tr
-from cfepy.compiled import mypyc_attr
-from cfepy.garbage import collect_leftovers, freeze_many, no_collection
+from cfepy.interpreter.compiled import mypyc_attr
+from cfepy.interpreter.garbage import collect_leftovers, freeze_many, no_collection
 from cfepy.rtos.context import make_context, take_back
 from cfepy.rtos.errors import DeadlockError
 from cfepy.rtos.scheduler import Scheduler

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from typing import Any, SupportsIndex
 
-from cfepy.compiled import mypyc_attr
+from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.rtos.kernel import Kernel
 from cfepy.rtos.task import FOREVER, TIMEOUT
 from cfepy.rtos.wait_list import WaitList

@@ -17,7 +17,7 @@ from operator import index
 from typing import Any, SupportsIndex
 
 from cfepy import trace as tr
-from cfepy.compiled import mypyc_attr
+from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.rtos.policy import Policy, Question
 from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit
 from cfepy.rtos.wait_list import WaitList

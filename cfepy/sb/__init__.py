@@ -2,22 +2,28 @@
 
 What belongs here moves packets: pipes, subscriptions, routes, buffers, and the application CFE_SB. What a packet means
 belongs to `cfepy.msg`. Code that watches or disturbs the bus is in packages above, as a class derived from
-`SoftwareBus`. The five services do not import each other; what SB needs of the others it finds in its `Ports`.
+`SoftwareBus`. The five services do not import each other; what SB needs of the others it finds in its `Ports`. The
+central file is `cfepy/sb/bus.py`.
 """
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+from cfepy.interpreter.faces import face
 from cfepy.ports import PEND_FOREVER
-from cfepy.sb.buffers import BUFFER_BYTES
-from cfepy.sb.bus import POLL, SoftwareBus
-from cfepy.sb.message_buffer import MessageBuffer
-from cfepy.sb.outlet import Outlet
-from cfepy.sb.packet_listener import listened
-from cfepy.sb.packets import COMMANDS, ONESUB_TLM, SUBSCRIPTION, TELEMETRY, UNSUBSCRIPTION
-from cfepy.sb.pipe import NOBODY_HEARD, Pipe
-from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE
-from cfepy.sb.routing import Destination, PutHook, Route
-from cfepy.sb.task import SbTask
+
+if TYPE_CHECKING:
+    from cfepy.sb.buffers import BUFFER_BYTES
+    from cfepy.sb.bus import POLL, SoftwareBus
+    from cfepy.sb.message_buffer import MessageBuffer
+    from cfepy.sb.outlet import Outlet
+    from cfepy.sb.packet_listener import listened
+    from cfepy.sb.packets import COMMANDS, ONESUB_TLM, SUBSCRIPTION, TELEMETRY, UNSUBSCRIPTION
+    from cfepy.sb.pipe import NOBODY_HEARD, Pipe
+    from cfepy.sb.pipes import PIPEOPTS_IGNOREMINE
+    from cfepy.sb.routing import Destination, PutHook, Route
+    from cfepy.sb.task import SbTask
 
 __all__ = [
     "BUFFER_BYTES",
@@ -40,3 +46,36 @@ __all__ = [
     "SoftwareBus",
     "listened",
 ]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".buffers": ("BUFFER_BYTES",),
+            ".bus": (
+                "POLL",
+                "SoftwareBus",
+            ),
+            ".message_buffer": ("MessageBuffer",),
+            ".outlet": ("Outlet",),
+            ".packet_listener": ("listened",),
+            ".packets": (
+                "COMMANDS",
+                "ONESUB_TLM",
+                "SUBSCRIPTION",
+                "TELEMETRY",
+                "UNSUBSCRIPTION",
+            ),
+            ".pipe": (
+                "NOBODY_HEARD",
+                "Pipe",
+            ),
+            ".pipes": ("PIPEOPTS_IGNOREMINE",),
+            ".routing": (
+                "Destination",
+                "PutHook",
+                "Route",
+            ),
+            ".task": ("SbTask",),
+        },
+    )

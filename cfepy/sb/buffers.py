@@ -6,8 +6,8 @@ Python: what they would take is counted, a message in several pipes once, and ad
 
 from __future__ import annotations
 
-from cfepy.compiled import mypyc_attr
 from cfepy.config import SB_LARGEST_BLOCK_MORE, SB_MEM_BLOCK_SIZES, PlatformConfig
+from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.msg import PRIMARY_HEADER_SIZE, Packet, get_size, set_msg_time
 from cfepy.osal import ObjectSizes
 from cfepy.ports import Block, Ports

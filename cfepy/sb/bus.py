@@ -14,8 +14,8 @@ import struct
 from collections.abc import Callable
 from typing import Any, ClassVar
 
-from cfepy.compiled import mypyc_attr
 from cfepy.config import PlatformConfig
+from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.msg import CMD_HEADER_SIZE, compute_checksum
 from cfepy.osal import ObjectSizes
 from cfepy.ports import PEND_FOREVER, Ports

@@ -9,9 +9,9 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass, field, fields
 
-from cfepy.compiled import mypyc_attr
 from cfepy.config import PlatformConfig
 from cfepy.ids import SB_PIPEID_BASE, IdTable
+from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.msg import Packet
 from cfepy.osal import ObjectSizes
 from cfepy.ports import Ports, application_of

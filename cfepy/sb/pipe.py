@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cfepy import trace
-from cfepy.compiled import mypyc_attr
+from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.rtos import TIMEOUT, Kernel, Queue
 
 NOBODY_HEARD = object()

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cfepy.compiled import mypyc_attr
 from cfepy.ids import SB_PIPEID_BASE, name_size, to_index
+from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.osal import OS_MAX_API_NAME
 from cfepy.sb import events as ev
 from cfepy.sb.buffers import BufferServices

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from cfepy.compiled import mypyc_attr
+from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.msg import MAX_SEQUENCE_COUNT
 from cfepy.ports import Block
 from cfepy.sb.pipe import Pipe

@@ -14,10 +14,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.ground import EVENT_TYPES, Dictionary, Topic, int_of, number_of, packet_of, topic_id, unknown_field
-from cfepy.input_files import text_limited
-from cfepy.input_limits import LINE_FILE_BYTES
 from cfepy.mission import MissionSpec
 from cfepy.msg import Telemetry
+from cfepy.reading.input_files import text_limited
+from cfepy.reading.input_limits import LINE_FILE_BYTES
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.script.conditions import (
     APP_STATES,
     OPERATORS,
@@ -30,7 +31,6 @@ from cfepy.script.conditions import (
     TelemetryCondition,
 )
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 from cfepy.units import NS_PER_S
 
 LONGEST_S = 1e9

@@ -2,40 +2,45 @@
 
 What belongs here registers, loads and keeps tables, and reads and writes table files as bytes. The YAML form of table
 files is in `cfepy.ground.files`. The five services do not import each other; what TBL needs of the others it finds in
-its `Ports`.
+its `Ports`. The central file is `cfepy/tbl/services.py`.
 """
 
 from __future__ import annotations
 
-from cfepy.tbl.access import BAD_TABLE_HANDLE, TableInfo
-from cfepy.tbl.definition import TableType
-from cfepy.tbl.image import (
-    PROCESSOR_ID,
-    SPACECRAFT_ID,
-    TableImage,
-    build,
-    is_intact,
-    mark_for,
-    mark_in,
-    pack_rows,
-    read,
-    unpack_rows,
-    with_mark,
-    write_beside,
-)
-from cfepy.tbl.packets import COMMANDS, TELEMETRY
-from cfepy.tbl.registry import (
-    OPT_CRITICAL,
-    OPT_DBL_BUFFER,
-    OPT_DEFAULT,
-    OPT_DUMP_ONLY,
-    OPT_LOAD_DUMP,
-    OPT_SNGL_BUFFER,
-    OPT_USR_DEF_ADDR,
-    TableHandle,
-    Validator,
-)
-from cfepy.tbl.services import TableServices
+from typing import TYPE_CHECKING
+
+from cfepy.interpreter.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.tbl.access import BAD_TABLE_HANDLE, TableInfo
+    from cfepy.tbl.definition import TableType
+    from cfepy.tbl.image import (
+        PROCESSOR_ID,
+        SPACECRAFT_ID,
+        TableImage,
+        build,
+        is_intact,
+        mark_for,
+        mark_in,
+        pack_rows,
+        read,
+        unpack_rows,
+        with_mark,
+        write_beside,
+    )
+    from cfepy.tbl.packets import COMMANDS, TELEMETRY
+    from cfepy.tbl.registry import (
+        OPT_CRITICAL,
+        OPT_DBL_BUFFER,
+        OPT_DEFAULT,
+        OPT_DUMP_ONLY,
+        OPT_LOAD_DUMP,
+        OPT_SNGL_BUFFER,
+        OPT_USR_DEF_ADDR,
+        TableHandle,
+        Validator,
+    )
+    from cfepy.tbl.services import TableServices
 
 __all__ = [
     "BAD_TABLE_HANDLE",
@@ -66,3 +71,45 @@ __all__ = [
     "with_mark",
     "write_beside",
 ]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".access": (
+                "BAD_TABLE_HANDLE",
+                "TableInfo",
+            ),
+            ".definition": ("TableType",),
+            ".image": (
+                "PROCESSOR_ID",
+                "SPACECRAFT_ID",
+                "TableImage",
+                "build",
+                "is_intact",
+                "mark_for",
+                "mark_in",
+                "pack_rows",
+                "read",
+                "unpack_rows",
+                "with_mark",
+                "write_beside",
+            ),
+            ".packets": (
+                "COMMANDS",
+                "TELEMETRY",
+            ),
+            ".registry": (
+                "OPT_CRITICAL",
+                "OPT_DBL_BUFFER",
+                "OPT_DEFAULT",
+                "OPT_DUMP_ONLY",
+                "OPT_LOAD_DUMP",
+                "OPT_SNGL_BUFFER",
+                "OPT_USR_DEF_ADDR",
+                "TableHandle",
+                "Validator",
+            ),
+            ".services": ("TableServices",),
+        },
+    )

@@ -17,10 +17,11 @@ import pytest
 from cfepy.attachment import Attachment
 from cfepy.escapes import visible
 from cfepy.flight import SEED, ExpectationError, Faults, Flight, fault_attachments, fault_text, schedule_of
-from cfepy.host_system import command_line
-from cfepy.own_code import source_file
+from cfepy.interpreter.host_system import command_line
+from cfepy.interpreter.own_code import source_file
 from cfepy.pilot import RunPlan
-from cfepy.rtos import AUTO, NotingPolicy, Policy, Schedule
+from cfepy.rtos import AUTO, NotingPolicy, Policy
+from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 from cfepy.testing.hypothesis_tests import ExampleTests
 
@@ -33,7 +34,7 @@ SECTION = "cfepy"
 _BELOW_TESTS = (Path(__file__).parents[1], Path(os.__file__).parent)  # cfepy, and the library that it calls
 FIFO = Schedule().text()
 BETWEEN = ";"  # schedules of several missions in one test
-EXPLORE_MARK = "cfepy_explore"  # as in `cfepy.testing.exploration`, which is loaded for tests that have it
+EXPLORE_MARK = "cfepy_explore"  # as in `cfepy.extra.exploration.in_tests`, which is loaded for tests that have it
 UNDER_TEST = pytest.StashKey["Conditions"]()
 """In the stash of the configuration: what the missions of an explored test are flown under."""
 BELOW = 'the command in the section "cfepy" below'

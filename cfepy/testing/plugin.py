@@ -50,9 +50,10 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Load what tests with @explore need, if there are any."""
     if any(item.get_closest_marker(EXPLORE_MARK) for item in items):
-        from cfepy.testing.exploration import ExploredTests
+        from cfepy.plugins import Hook
 
-        _add(config, "cfepy-explore", ExploredTests)
+        runner: Hook[type] = Hook("explored_tests")
+        _add(config, "cfepy-explore", runner.need("@explore"))
 
 
 @pytest.hookimpl(tryfirst=True)

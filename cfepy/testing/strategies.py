@@ -21,11 +21,11 @@ from cfepy.flight import SECONDS, array_of, build, library_near, library_of_clas
 from cfepy.ground import Dictionary, Topic, dictionary_of, table_type
 from cfepy.mission import read_mission
 from cfepy.msg import CMD_HEADER_SIZE, HIGHEST_VALID_MSG_ID, Cell, Command, Layout, Telemetry, command, telemetry
-from cfepy.rtos import Schedule
+from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
-    from rospy_shim.msgs import Library
+    from rospy_shim.types.msgs import Library
 
 __all__ = ["fault_plans", "messages", "packets", "schedules", "tables"]
 

@@ -2,27 +2,32 @@
 
 What belongs here makes, keeps or converts spacecraft time. The virtual time of the simulation does not; it belongs to
 the kernel (`cfepy.rtos`). The five services do not import each other; what TIME needs of the others it finds in its
-`Ports`.
+`Ports`. The central file is `cfepy/time/service.py`.
 """
 
 from __future__ import annotations
 
-from cfepy.time.clock import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID
-from cfepy.time.packets import COMMANDS, TELEMETRY
-from cfepy.time.service import TimeServices
-from cfepy.time.systime import (
-    A_GT_B,
-    A_LT_B,
-    EQUAL,
-    SysTime,
-    add,
-    compare,
-    copy,
-    micro2sub_secs,
-    print_,
-    sub2micro_secs,
-    subtract,
-)
+from typing import TYPE_CHECKING
+
+from cfepy.interpreter.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.time.clock import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID
+    from cfepy.time.packets import COMMANDS, TELEMETRY
+    from cfepy.time.service import TimeServices
+    from cfepy.time.systime import (
+        A_GT_B,
+        A_LT_B,
+        EQUAL,
+        SysTime,
+        add,
+        compare,
+        copy,
+        micro2sub_secs,
+        print_,
+        sub2micro_secs,
+        subtract,
+    )
 
 __all__ = [
     "A_GT_B",
@@ -43,3 +48,33 @@ __all__ = [
     "sub2micro_secs",
     "subtract",
 ]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".clock": (
+                "CLOCK_FLYWHEEL",
+                "CLOCK_INVALID",
+                "CLOCK_VALID",
+            ),
+            ".packets": (
+                "COMMANDS",
+                "TELEMETRY",
+            ),
+            ".service": ("TimeServices",),
+            ".systime": (
+                "A_GT_B",
+                "A_LT_B",
+                "EQUAL",
+                "SysTime",
+                "add",
+                "compare",
+                "copy",
+                "micro2sub_secs",
+                "print_",
+                "sub2micro_secs",
+                "subtract",
+            ),
+        },
+    )

@@ -21,13 +21,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.convert import Profile
-from cfepy.convert.build import LANGUAGE, library_includes, profile_flags
-from cfepy.convert.check import check_program
-from cfepy.convert.messages import write_headers
-from cfepy.convert.packages import CppPackage, Program
+from cfepy.extra.convert import Profile
+from cfepy.extra.convert.build import LANGUAGE, library_includes, profile_flags
+from cfepy.extra.convert.check import check_program
+from cfepy.extra.convert.messages import write_headers
+from cfepy.extra.convert.packages import CppPackage, Program
 from cfepy.status import UsageError
-from rospy_shim.msgs import shipped
+from rospy_shim.types.msgs import shipped
 
 STUB = {
     "ros/ros.h": """#ifndef STUB_ROS_H
@@ -125,7 +125,7 @@ _TOKEN = re.compile(rb'"(?:[^"\\\n]|\\.)*"|\w+|\s+|.', re.DOTALL)
 _LONGEST = 60_000  # bytes of a node that is taken from a folder
 _OF_FOLDER = 0.02  # of all files: those take seconds each
 _HEADER = re.compile(rb"#include\s*[<\"](\w+/\w+)\.h[>\"]")
-OWN = Path(__file__).parents[2] / "tests/convert"
+OWN = Path(__file__).parents[2] / "tests/extra/convert"
 
 
 class Outcome(NamedTuple):

@@ -7,12 +7,12 @@ from pathlib import Path
 from unittest.mock import patch
 
 from cfepy.console import Console
-from cfepy.convert import build_for_flight
+from cfepy.extra.convert import build_for_flight
 from cfepy.mission import Mission
 from cfepy.mission.launch import read_launch
 from dev.convert.twin_flights import TWINS
 
-NODES = Path(__file__).parents[2] / "tests/convert/nodes"
+NODES = Path(__file__).parents[2] / "tests/extra/convert/nodes"
 
 
 def mission_of(package: str, launch: str = "all", **args: str) -> Mission:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from cfepy.convert import Profile
-from cfepy.convert.check import RULES
+from cfepy.extra.convert import Profile
+from cfepy.extra.convert.check import RULES
 from dev.convert.survey import DOCUMENT, between
 
 BEGIN, END = "<!-- rules: made by python -m dev.convert.rules -->", "<!-- end of rules -->"

@@ -8,7 +8,7 @@ from pathlib import Path
 from unittest.mock import patch
 
 from cfepy.console import Console
-from cfepy.convert import build_for_flight
+from cfepy.extra.convert import build_for_flight
 from cfepy.mission import Mission, read_mission
 
 PACKAGE = "small"

@@ -22,14 +22,14 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.convert import Profile
-from cfepy.convert.check import ABOUT_HEADERS, Level, RuleFinding, check_program, programs_of
+from cfepy.extra.convert import Profile
+from cfepy.extra.convert.check import ABOUT_HEADERS, Level, RuleFinding, check_program, programs_of
 from cfepy.status import UsageError
 
 LIST = Path(__file__).parent / "survey.tsv"
 DOCUMENT = Path(__file__).parents[2] / "docs" / "convertor.md"
 BEGIN, END = "<!-- survey: made by python -m dev.convert.survey --report -->", "<!-- end of survey -->"
-CODE = ("cfepy/convert", "roscfe", "rospy_shim/msgs")
+CODE = ("cfepy/extra/convert", "roscfe", "rospy_shim/types/msgs")
 """Folders of what checks, and of what nodes are compiled with."""
 UNREAD = "cmake"
 """Stands for a rule where a node's CMakeLists.txt does not say what it is made of."""

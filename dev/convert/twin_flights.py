@@ -12,12 +12,12 @@ from typing import NamedTuple
 from unittest.mock import patch
 
 from cfepy.console import Console
-from cfepy.convert import build_for_flight
+from cfepy.extra.convert import build_for_flight
 from cfepy.mission import Mission
 from cfepy.mission.launch import read_launch
-from rospy_shim.msgs import shipped
+from rospy_shim.types.msgs import shipped
 
-TWINS = Path(__file__).parents[2] / "tests/convert/twins"
+TWINS = Path(__file__).parents[2] / "tests/extra/convert/twins"
 PACKAGES = sorted(each.parent.parent.name for each in TWINS.glob("*/launch/twin.launch"))
 SECONDS = 12.0
 

@@ -13,11 +13,11 @@ from typing import Any
 from cfepy.cli.run.outputs import SavedRunFiles
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
-from cfepy.nodes.config import NodeConfig, RosConfig
 from dev.corpus.scenarios import Program, Scenario
 from dev.corpus.sources import Sources
 from dev.corpus.verdict import Outcome
 from rospy_shim.runtime import RosRuntime
+from rospy_shim.types.config import NodeConfig, RosConfig
 
 NODE, OBSERVER = "NODE", "OBSERVER"
 STEP_S = 0.25

@@ -13,19 +13,19 @@ from shutil import which
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
-from cfepy.c.engine import compiler
-from cfepy.c.toolchain.sources import read_cmake_lists
 from cfepy.cli.ros.rostest import read_results as read_test_results
-from cfepy.convert.check.source import read_source
-from cfepy.convert.names import SourceNames, names_of
-from cfepy.convert.output import write_files
-from cfepy.convert.packages import program_of, read_package
-from cfepy.convert.project import cmake_word
-from cfepy.convert.sources import collect, main_form
-from cfepy.debugger.breakpoints import breakpoints
 from cfepy.es.startup_script import check, entries
-from cfepy.exploration.results_file import read_failures, read_results
-from cfepy.exploration.verdict import Failure, Verdict
+from cfepy.extra.c.engine import compiler
+from cfepy.extra.c.toolchain.sources import read_cmake_lists
+from cfepy.extra.convert.check.source import read_source
+from cfepy.extra.convert.names import SourceNames, names_of
+from cfepy.extra.convert.output import write_files
+from cfepy.extra.convert.packages import program_of, read_package
+from cfepy.extra.convert.project import cmake_word
+from cfepy.extra.convert.sources import collect, main_form
+from cfepy.extra.debugger.breakpoints import breakpoints
+from cfepy.extra.exploration.results_file import read_failures, read_results
+from cfepy.extra.exploration.verdict import Failure, Verdict
 from cfepy.faults.plan import read_plan
 from cfepy.ground.bag import BagReader
 from cfepy.ground.dictionary import Dictionary, dictionary_of, table_types
@@ -39,7 +39,6 @@ from cfepy.ground.recording import summary_of
 from cfepy.ground.values import packet_of
 from cfepy.ground.xtce import xtce_of
 from cfepy.journal import read_journal
-from cfepy.marked_yaml import Mistakes, load
 from cfepy.mission import MissionSpec, read_mission, sources
 from cfepy.mission.finding import read_lock
 from cfepy.mission.mission_file import read_mission_file
@@ -48,20 +47,21 @@ from cfepy.msg import Layout, Telemetry
 from cfepy.pilot.check import check_mission
 from cfepy.pilot.check.cfe_names import wrong_names
 from cfepy.pilot.determinism_look import suspects
-from cfepy.plain_xml import XmlError, plain_xml
-from cfepy.plain_yaml import YamlError
 from cfepy.psp.profile import load_profile
-from cfepy.rtos import Schedule
+from cfepy.reading.marked_yaml import Mistakes, load
+from cfepy.reading.plain_xml import XmlError, plain_xml
+from cfepy.reading.plain_yaml import YamlError
+from cfepy.schedules import Schedule
 from cfepy.script.text import parse_script, read_script
 from cfepy.status import CfeError, UsageError
 from dev.fuzz import servers
 from dev.fuzz.cds_board import Board
-from rospy_shim.expression import ExpressionError, plain_text, value_of
-from rospy_shim.msgs import Packages, check_definitions
-from rospy_shim.msgs.library import Library, from_full_text, shipped
-from rospy_shim.msgs.sources import Definition, Texts
 from rospy_shim.roslaunch.reader import read
 from rospy_shim.roslaunch.values import from_yaml
+from rospy_shim.types.expression import ExpressionError, plain_text, value_of
+from rospy_shim.types.msgs import Packages, check_definitions
+from rospy_shim.types.msgs.library import Library, from_full_text, shipped
+from rospy_shim.types.msgs.sources import Definition, Texts
 
 ROOT = Path(__file__).parents[2]
 DATA = ROOT / "tests/data"
@@ -204,7 +204,7 @@ TYPES = ("std_msgs/String", "sensor_msgs/JointState", "tf2_msgs/TFMessage", "dia
 
 def message(data: bytes, path: Path) -> None:
     """Bytes of a message; the first one says of which type."""
-    from rospy_shim.genpy import DeserializationError
+    from rospy_shim.types.genpy import DeserializationError
 
     made = shipped().message_class(TYPES[data[0] % len(TYPES)] if data else TYPES[0])()
     with suppress(DeserializationError):
@@ -661,7 +661,12 @@ KINDS = {
             "cmake-lists", lambda: [*texts(CMAKE)(), *files("tests/**/CMakeLists.txt")()], cmake_lists, "CMakeLists.txt"
         ),
         Kind("package-manifest", texts(PACKAGE), package_manifest, "package.xml"),
-        Kind("cpp-source", lambda: [*texts(CPP)(), *files("tests/convert/nodes/**/*.cpp")()], cpp_source, "input.cpp"),
+        Kind(
+            "cpp-source",
+            lambda: [*texts(CPP)(), *files("tests/extra/convert/nodes/**/*.cpp")()],
+            cpp_source,
+            "input.cpp",
+        ),
         Kind("python-source", lambda: [*texts(PYTHON)(), *files("apps/*/app.py")()], python_source, "input.py"),
         Kind("output-list", texts(WRITTEN), output_list, ".cfepy-convert.json"),
         Kind("manifest", texts("<package><name>arm</name></package>", "setup(package_dir={'': 'src'})"), manifest),

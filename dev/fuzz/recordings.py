@@ -14,7 +14,7 @@ from rosbags.rosbag1 import Reader
 
 from cfepy.ground.bag import BagReader, storage
 from cfepy.ground.recording import KINDS, rewrite
-from rospy_shim.msgs import message_class
+from rospy_shim.types.msgs import message_class
 
 SECOND = 1_000_000_000
 COUNT = 200

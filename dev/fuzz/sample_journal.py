@@ -10,7 +10,7 @@ from textwrap import dedent
 from cfepy.journal import record
 from cfepy.journal.journal import FrameWriter, read_frames
 from cfepy.pilot.plan import RunPlan
-from cfepy.rtos import Schedule
+from cfepy.schedules import Schedule
 
 PATHS = """
     import os, sys

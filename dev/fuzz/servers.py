@@ -18,13 +18,13 @@ from typing import Any
 from xmlrpc.client import dumps
 
 from cfepy.console import Console
+from cfepy.extra.ros_host import RosHost, ServedMaster
+from cfepy.extra.ros_host.tcpros import frame, pack_header
+from cfepy.extra.viewers.foxglove import FoxgloveViewer
+from cfepy.extra.viewers.listen import Admission, ListenPlace
+from cfepy.extra.viewers.rosbridge import RosbridgeServer
 from cfepy.io import HostNetwork, PeerCounts
 from cfepy.mission import Mission
-from cfepy.ros_host import RosHost, ServedMaster
-from cfepy.ros_host.tcpros import frame, pack_header
-from cfepy.viewers.foxglove import FoxgloveViewer
-from cfepy.viewers.listen import Admission, ListenPlace
-from cfepy.viewers.rosbridge import RosbridgeServer
 
 LOOPBACK = "127.0.0.1"
 PIECE_NS = 2_000_000

@@ -43,9 +43,8 @@ def rooms(tree: Tree) -> list[Room]:
     """Packages by name; the modules beside them are one room."""
     found: dict[str, list[Module]] = {}
     for module in tree.modules.values():
-        top, _, rest = module.name.partition(".")
-        inside = top == "cfepy" and ((tree.root / top / module.part).is_dir() and bool(rest))
-        name = f"cfepy/{module.part}" if inside else "cfepy/*.py" if top == "cfepy" else top
+        is_inside = module.room in tree.modules and tree.modules[module.room].is_package and module.room != "cfepy"
+        name = module.room.replace(".", "/") if is_inside or module.room == "apps" else "cfepy/*.py"
         found.setdefault(name, []).append(module)
     return [
         Room(name, len(those), sum(each.lines for each in those), sum(each.head for each in those))
@@ -61,10 +60,10 @@ def faces(tree: Tree) -> Face:
             target = tree.modules[name]
             if target.name.partition(".")[0] != "cfepy" or target.part == module.part:
                 continue
-            if (tree.root / "cfepy" / target.part).is_dir():
-                face = f"cfepy.{target.part}"
-                past += name != face
-                through += name == face
+            face = tree.modules.get(target.room)
+            if face is not None and face.offers:
+                past += name != face.name
+                through += name == face.name
     return Face(past, through)
 
 
@@ -72,9 +71,10 @@ def past_faces(tree: Tree) -> Counter[str]:
     """Modules that are imported past the face of their package, with the number of those that do."""
     found: Counter[str] = Counter()
     for module in of_cfepy(tree):
-        for name in tree.arrows(module):
+        for name in (each for each in tree.arrows(module) if each.startswith("cfepy.")):
             target = tree.modules[name]
-            if name.count(".") > 1 and name.startswith("cfepy.") and target.part != module.part:
+            face = tree.modules.get(target.room)
+            if face is not None and face.offers and name != face.name and target.part != module.part:
                 found[name] += 1
     return found
 
@@ -89,11 +89,14 @@ def users(tree: Tree) -> dict[str, set[str]]:
 
 
 def with_one_user(tree: Tree) -> list[Module]:
-    """Modules of cfepy that exactly one other imports, one of their own package; packages do not count as modules."""
+    """Modules of cfepy that exactly one other imports, one of their own package.
+
+    Packages do not count as modules, and a module that is run as a program belongs to nobody else.
+    """
     imported = users(tree)
     found = []
     for module in of_cfepy(tree):
-        if len(imported[module.name]) == 1 and not module.is_package:
+        if len(imported[module.name]) == 1 and not module.is_package and "__main__" not in module.text:
             user = tree.modules[next(iter(imported[module.name]))]
             if user.part == module.part and not user.is_package:
                 found.append(module)

@@ -107,7 +107,7 @@ def house(tree: Tree) -> str:
     y = MARGIN
     crossing = _crossings(tree)
     for level in range(len(FLOORS) - 1, 0, -1):
-        parts = [part for part in FLOORS[level] if part not in ("__main__", "__init__")]
+        parts = [part for part in FLOORS[level] if part not in ("__main__", "__init__", "extra")]
         if not parts:
             continue
         height = _row(rows, tree, parts, y)
@@ -175,7 +175,7 @@ def _row(rows: list[str], tree: Tree, parts: list[str], y: float) -> int:
 def _purpose(tree: Tree, part: str) -> str:
     if part == "apps":
         return "The applications that cfepy brings along."
-    text = tree.modules[part if part == "rospy_shim" else f"cfepy.{part}"].purpose
+    text = next(tree.modules[each.room].purpose for each in tree.modules.values() if each.part == part)
     return text.removeprefix("rospy_shim: ").replace("`", "")
 
 

@@ -58,9 +58,32 @@ class Module:
 
     @property
     def part(self) -> str:
-        """The package of cfepy that it belongs to, or its own name: sb, status, rospy_shim, apps, __init__."""
+        """The package of cfepy that it belongs to, or its own name: sb, status, rospy_shim, apps, __init__.
+
+        An add-on is a part of its own, as if it stood beside the others; so are the types of `rospy_shim`.
+        """
         top, *rest = self.name.split(".")
-        return top if top != "cfepy" else rest[0] if rest else "__init__"
+        if top == "rospy_shim" and rest[:1] == ["types"]:
+            return "types"
+        if top != "cfepy":
+            return top
+        if rest[:1] == ["extra"] and len(rest) > 1:
+            return rest[1]
+        return rest[0] if rest else "__init__"
+
+    @property
+    def room(self) -> str:
+        """The package of its part, by the name that it is imported by."""
+        if self.part == "types":
+            return "rospy_shim.types"
+        top, *rest = self.name.split(".")
+        depth = 2 if rest[:1] == ["extra"] and len(rest) > 1 else 1
+        return ".".join((top, *rest[:depth])) if top == "cfepy" else top
+
+    @property
+    def offers(self) -> bool:
+        """Whether it is a package that says what it offers."""
+        return self.is_package and "__all__" in self.text
 
     @property
     def package(self) -> str:

@@ -5,7 +5,7 @@
 NASA's names are in tests/data/api, one file for each module; api_names.py knows what they are called here. What differs
 and what is absent is read from the tables of docs/differences.md: a name that a row mentions differs as that row says,
 or is absent for its reason. So nothing is said twice, and a name that is nowhere is missing. What compiled applications
-can call is read from the declarations of `cfepy.c.api`, for which the engine is built.
+can call is read from the declarations of `cfepy.extra.c.api`, for which the engine is built.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
-from cfepy.c.api import function_names
 from cfepy.console import Console
+from cfepy.extra.c.api import function_names
 from cfepy.mission import Mission
 from dev.pages.api_names import python_name
 

@@ -14,10 +14,10 @@ from typing import Any
 
 import yaml
 
-from cfepy.exploration import verdict
-from cfepy.exploration.trial import Trial
+from cfepy.extra.exploration import verdict
+from cfepy.extra.exploration.trial import Trial
 from cfepy.pilot.plan import RunPlan
-from cfepy.rtos import Schedule
+from cfepy.schedules import Schedule
 
 MISSIONS = Path(__file__).parents[2] / "tests/quality/missions"
 SECONDS = 1.3  # virtual; all of them have done their work by then

@@ -14,8 +14,8 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.exploration.trial import Trial
-from cfepy.rtos import Schedule
+from cfepy.extra.exploration.trial import Trial
+from cfepy.schedules import Schedule
 from dev.quality.bugs import BUGS, Bug, reference_trial
 from dev.quality.report import SHRUNK, load
 

@@ -10,11 +10,11 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from cfepy.exploration.campaign import Search
-from cfepy.exploration.search import make_search
-from cfepy.exploration.trial import Trial
-from cfepy.exploration.verdict import Findings, Verdict
-from cfepy.rtos.schedule import Schedule
+from cfepy.extra.exploration.campaign import Search
+from cfepy.extra.exploration.search import make_search
+from cfepy.extra.exploration.trial import Trial
+from cfepy.extra.exploration.verdict import Findings, Verdict
+from cfepy.schedules.schedule import Schedule
 
 TRIALS = 25
 LONGEST = 2000  # schedules of one trial

@@ -14,12 +14,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from cfepy.exploration.fork_server import ForkingJudge
-from cfepy.exploration.search import make_search
-from cfepy.exploration.stuck import waits_of
-from cfepy.exploration.trial import Trial
-from cfepy.exploration.verdict import Verdict
-from cfepy.rtos import Schedule
+from cfepy.extra.exploration.fork_server import ForkingJudge
+from cfepy.extra.exploration.search import make_search
+from cfepy.extra.exploration.stuck import waits_of
+from cfepy.extra.exploration.trial import Trial
+from cfepy.extra.exploration.verdict import Verdict
+from cfepy.schedules import Schedule
 from cfepy.units import NS_PER_S
 from dev.quality.bugs import BUGS, SECONDS, Bug, reference_trial
 from dev.quality.programs import PROGRAMS, Program, program_trial

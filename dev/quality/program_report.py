@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from cfepy.exploration import verdict
-from cfepy.rtos import Schedule
+from cfepy.extra.exploration import verdict
+from cfepy.schedules import Schedule
 from dev.quality import mended
 from dev.quality.measure import Median, hunts, median
 from dev.quality.programs import PROGRAMS, Program, program_trial

@@ -9,11 +9,11 @@ import functools
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from cfepy.exploration import verdict
-from cfepy.exploration.stuck import waits_of
-from cfepy.exploration.trial import Trial
+from cfepy.extra.exploration import verdict
+from cfepy.extra.exploration.stuck import waits_of
+from cfepy.extra.exploration.trial import Trial
 from cfepy.pilot.plan import RunPlan
-from cfepy.rtos import Schedule
+from cfepy.schedules import Schedule
 from cfepy.units import NS_PER_S
 from dev.quality.bugs import CFE, ROS, SECONDS, Bug
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from cfepy.exploration.expedition import DEFAULT_SEEDS
-from cfepy.exploration.shrink import Shrinker, budget_of
-from cfepy.exploration.verdict import Verdict
+from cfepy.extra.exploration.expedition import DEFAULT_SEEDS
+from cfepy.extra.exploration.shrink import Shrinker, budget_of
+from cfepy.extra.exploration.verdict import Verdict
 from dev.quality.bugs import Bug, reference_trial
 
 

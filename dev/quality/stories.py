@@ -8,10 +8,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.exploration.moves import MoveNotingPolicy
-from cfepy.exploration.timeline import Story as Told
-from cfepy.exploration.timeline import story_of
-from cfepy.rtos import Policy, Schedule
+from cfepy.extra.exploration.moves import MoveNotingPolicy
+from cfepy.extra.exploration.timeline import Story as Told
+from cfepy.extra.exploration.timeline import story_of
+from cfepy.rtos import Policy
+from cfepy.schedules import Schedule
 from dev.quality.bugs import BUGS, Bug, by_name, reference_trial
 from dev.quality.measure import simplest
 from dev.quality.report import load, shown_by

@@ -21,7 +21,7 @@ from pathlib import Path
 from unittest.mock import patch
 
 from cfepy.console import Console
-from cfepy.convert import build_for_flight
+from cfepy.extra.convert import build_for_flight
 from cfepy.mission import Mission
 from cfepy.mission.launch import read_launch
 from dev.host_ports import free_port

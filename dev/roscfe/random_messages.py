@@ -6,10 +6,10 @@ import random
 import struct
 from typing import Any
 
-from cfepy.convert.capacities import Capacities
-from rospy_shim.genpy import Duration, Time
-from rospy_shim.msgs import Library, shipped
-from rospy_shim.msgs.spec import BUILTINS, PRIMITIVES, Field
+from cfepy.extra.convert.capacities import Capacities
+from rospy_shim.types.genpy import Duration, Time
+from rospy_shim.types.msgs import Library, shipped
+from rospy_shim.types.msgs.spec import BUILTINS, PRIMITIVES, Field
 
 LIBRARY = shipped()
 LETTERS = 'abcXYZ 0189_/-\u00e4\u20ac\0\n"\\'

@@ -14,7 +14,7 @@ BZ2 = "bz2"
 LZ4 = "lz4"
 ZSTD = "zstd"  # of MCAP files only
 ALL = (NONE, BZ2, LZ4)
-LARGEST = 256 << 20  # bytes of a chunk: BAG_CHUNK_BYTES of `cfepy.input_limits`, which nodes cannot see
+LARGEST = 256 << 20  # bytes of a chunk: BAG_CHUNK_BYTES of `cfepy.reading.input_limits`, which nodes cannot see
 
 
 def compress(kind: str, data: bytes) -> bytes:

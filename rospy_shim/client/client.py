@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from cfepy.plain_yaml import plain_yaml
+from cfepy.reading.plain_yaml import plain_yaml
 from cfepy.rtos import FOREVER, WaitList
-from rospy_shim.client.exceptions import ROSException, ROSInitException, ROSInterruptException
 from rospy_shim.client.logs import LoggerServices
-from rospy_shim.client.names import SEP, command_line_params, program_arguments
 from rospy_shim.client.rostime import nanoseconds
+from rospy_shim.types.exceptions import ROSException, ROSInitException, ROSInterruptException
+from rospy_shim.types.names import SEP, command_line_params, program_arguments
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 from cfepy.status import CfeError
 from cfepy.trace import UNSENT
 from rospy_shim.client import connecting
-from rospy_shim.client.exceptions import ROSException, ROSSerializationException
 from rospy_shim.client.leftovers import Leftovers, half_of
 from rospy_shim.client.message import packer, serialized
 from rospy_shim.client.topic_side import OUTBOUND, TopicConnection, TopicSide, bus_of
-from rospy_shim.client.transport import HEADER_BYTES, segments, whole_header
-from rospy_shim.genpy import SerializationError
+from rospy_shim.types.exceptions import ROSException, ROSSerializationException
+from rospy_shim.types.genpy import SerializationError
+from rospy_shim.types.transport import HEADER_BYTES, segments, whole_header
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rospy_shim.client.subscription import Subscription
     from rospy_shim.graph.compiled import CompiledNode
     from rospy_shim.graph.graph import Header
-    from rospy_shim.msgs import MessageClass
+    from rospy_shim.types.msgs import MessageClass
 
 PACE_NS = 100_000  # between two looks whether a subscriber has room for the next segment
 PATIENCE = 100  # looks, before a segment is sent to a full queue and lost there

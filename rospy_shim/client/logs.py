@@ -15,13 +15,13 @@ import sys
 from types import FrameType
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from cfepy.texts import without_addresses
+from cfepy.reading.texts import without_addresses
 from cfepy.units import NS_PER_S
-from rospy_shim.client.exceptions import ROSException
 from rospy_shim.client.rostime import nanoseconds
 from rospy_shim.client.service import make_quiet_service
-from rospy_shim.genpy import Time as MessageTime
 from rospy_shim.graph.msg_ids import ROSOUT
+from rospy_shim.types.exceptions import ROSException
+from rospy_shim.types.genpy import Time as MessageTime
 
 if TYPE_CHECKING:
     from collections.abc import Callable

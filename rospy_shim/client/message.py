@@ -8,11 +8,11 @@ import struct
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, BinaryIO, ClassVar
 
-from rospy_shim.client.exceptions import ROSException
-from rospy_shim.genpy import DeserializationError, Message
+from rospy_shim.types.exceptions import ROSException
+from rospy_shim.types.genpy import DeserializationError, Message
 
 if TYPE_CHECKING:
-    from rospy_shim.msgs import MessageClass
+    from rospy_shim.types.msgs import MessageClass
 
 
 class AnyMsg(Message):

@@ -12,21 +12,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from rospy_shim import genpy
-from rospy_shim.client import (
-    exceptions,
-    link,
-    logs,
-    message,
-    names,
-    params,
-    service,
-    subscription,
-    timer,
-    topic_side,
-    topics,
-)
+from rospy_shim.client import link, logs, message, params, service, subscription, timer, topic_side, topics
 from rospy_shim.master import make_get_master, make_master_proxy
+from rospy_shim.types import exceptions, genpy, names
 
 if TYPE_CHECKING:
     from cfepy.nodes import Factory

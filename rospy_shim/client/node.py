@@ -14,11 +14,9 @@ from typing import TYPE_CHECKING, Any
 from cfepy.rtos import Mutex, Task
 from cfepy.status import CfeError
 from rospy_shim.client.client import Client
-from rospy_shim.client.exceptions import ROSInitException
 from rospy_shim.client.life import Life
 from rospy_shim.client.link import Link, link_class
 from rospy_shim.client.logs import Logs
-from rospy_shim.client.names import Names, is_legal_name, refusal
 from rospy_shim.client.params import Params
 from rospy_shim.client.rostime import RosClock
 from rospy_shim.client.service import Service, make_service
@@ -26,14 +24,16 @@ from rospy_shim.client.service_proxy import AnswerPipes, make_service_proxy, wai
 from rospy_shim.client.subscription import Subscription
 from rospy_shim.client.timer import make_rate, make_timer
 from rospy_shim.client.topics import make_publisher, make_subscriber
-from rospy_shim.msgs import Library, OnDisk, Packages, shipped
+from rospy_shim.types.exceptions import ROSInitException
+from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
+from rospy_shim.types.names import Names, is_legal_name, refusal
 
 if TYPE_CHECKING:
     from cfepy.app import Cfe
     from cfepy.nodes import NodeConfig, Universe
     from rospy_shim.client.tasks import NodeTasks
     from rospy_shim.graph.graph import Graph, TopicEntry
-    from rospy_shim.msgs import MessageClass
+    from rospy_shim.types.msgs import MessageClass
 
 
 class Node:

@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from xml.parsers.expat import ExpatError
 
-from rospy_shim.client.exceptions import ROSException
-from rospy_shim.client.names import SEP, is_legal_name
 from rospy_shim.parameters.tree import ParameterTree
 from rospy_shim.parameters.values import DateTime, marshalled, through_xml
+from rospy_shim.types.exceptions import ROSException
+from rospy_shim.types.names import SEP, is_legal_name
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from cfepy.rtos import WaitList
 from cfepy.units import NS_PER_S
-from rospy_shim import genpy
-from rospy_shim.client.exceptions import ROSInitException, ROSInterruptException, ROSTimeMovedBackwardsException
 from rospy_shim.client.life import SPIN_NS
+from rospy_shim.types import genpy
+from rospy_shim.types.exceptions import ROSInitException, ROSInterruptException, ROSTimeMovedBackwardsException
 
 if TYPE_CHECKING:
     from collections.abc import Callable

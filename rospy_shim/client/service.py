@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from cfepy.nodes.report import traceback_parts
 from cfepy.rtos import TIMEOUT, WaitList
 from cfepy.status import CfeError
-from rospy_shim.client.exceptions import ROSInterruptException, ServiceException
 from rospy_shim.client.message import packer, unpacker
 from rospy_shim.client.subscription import DEFAULT_BUFF_SIZE, NO_PIPE
-from rospy_shim.client.transport import FIRST, LAST, MIDDLE, WHOLE
-from rospy_shim.genpy import Message
+from rospy_shim.types.exceptions import ROSInterruptException, ServiceException
+from rospy_shim.types.genpy import Message
+from rospy_shim.types.transport import FIRST, LAST, MIDDLE, WHOLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from cfepy.sb import Pipe
     from rospy_shim.client.node import Node
     from rospy_shim.graph.graph import ServiceEntry
-    from rospy_shim.msgs import MessageClass, ServiceClass
+    from rospy_shim.types.msgs import MessageClass, ServiceClass
 
 REQUEST_LEAD = 8 + 4  # command header (function code 0), call number
 ANSWER_LEAD = 16 + 5  # telemetry header, call number, success

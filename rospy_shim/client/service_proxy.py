@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
 from cfepy.rtos import FOREVER, WaitList
 from cfepy.status import CfeError
-from rospy_shim.client.exceptions import ROSException, ROSInterruptException, ServiceException
 from rospy_shim.client.message import args_kwds_to_message, packer, unpacker
 from rospy_shim.client.rostime import nanoseconds
 from rospy_shim.client.service import ANSWER_LEAD, Pieces, call_of_answer, request_packets
-from rospy_shim.genpy import DeserializationError
 from rospy_shim.graph.graph import ServiceCall
+from rospy_shim.types.exceptions import ROSException, ROSInterruptException, ServiceException
+from rospy_shim.types.genpy import DeserializationError
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
     from rospy_shim.graph.graph import Header, ServiceEntry
-    from rospy_shim.msgs import ServiceClass
+    from rospy_shim.types.msgs import ServiceClass
 
 LOOK_MS = 500  # how often a caller looks whether the service is still there
 POLL_NS = 300_000_000  # how often wait_for_service looks, as on ROS

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 from cfepy.nodes.report import traceback_text
 from cfepy.status import CfeError
 from rospy_shim.client import connecting
-from rospy_shim.client.exceptions import ROSException
 from rospy_shim.client.message import packer, unpacker
 from rospy_shim.client.topic_side import INBOUND, TopicConnection, TopicSide
-from rospy_shim.client.transport import EVERYBODY, HEADER_BYTES, SPARE_AT, Assembler, is_for_another, sequence_of
+from rospy_shim.types.exceptions import ROSException
+from rospy_shim.types.transport import EVERYBODY, HEADER_BYTES, SPARE_AT, Assembler, is_for_another, sequence_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rospy_shim.client.node import Node
     from rospy_shim.graph.compiled import CompiledNode
     from rospy_shim.graph.graph import Header, TopicEntry
-    from rospy_shim.msgs import MessageClass
+    from rospy_shim.types.msgs import MessageClass
 
 DEFAULT_BUFF_SIZE = 65536
 WHOLE = 0xC0

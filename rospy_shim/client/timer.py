@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from cfepy.units import NS_PER_S
-from rospy_shim.client.exceptions import ROSInterruptException, ROSTimeMovedBackwardsException
 from rospy_shim.client.rostime import Duration, Time
+from rospy_shim.types.exceptions import ROSInterruptException, ROSTimeMovedBackwardsException
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node

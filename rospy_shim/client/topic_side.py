@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rospy_shim.client.node import Node
     from rospy_shim.graph.compiled import CompiledNode
     from rospy_shim.graph.graph import TopicEntry
-    from rospy_shim.msgs import MessageClass
+    from rospy_shim.types.msgs import MessageClass
 
 INBOUND, OUTBOUND, BIDIRECTIONAL = "i", "o", "b"  # rospy.impl.transport
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
-from rospy_shim.client.exceptions import ROSException
 from rospy_shim.client.message import args_kwds_to_message
-from rospy_shim.client.names import is_legal_name
 from rospy_shim.client.subscription import DEFAULT_BUFF_SIZE, Subscription
+from rospy_shim.types.exceptions import ROSException
+from rospy_shim.types.names import is_legal_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rospy_shim.client.link import Link, SubscribeListener
     from rospy_shim.client.node import Node
     from rospy_shim.client.service import Service
-    from rospy_shim.msgs import MessageClass
+    from rospy_shim.types.msgs import MessageClass
 
 NO_QUEUE_SIZE = (
     "The publisher should be created with an explicit keyword argument 'queue_size'. Please see"

@@ -16,13 +16,13 @@ from cfepy.nodes import ProcessNumbers, process_number
 from cfepy.sb import ONESUB_TLM
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_MS
-from rospy_shim.client.exceptions import ServiceException
-from rospy_shim.client.names import ANYTYPE
 from rospy_shim.client.service import REQUEST_LEAD, Pieces, answer_packets, call_of_request, room_of
-from rospy_shim.client.transport import HEADER_BYTES, addressed, segments, whole_header
 from rospy_shim.graph.compiled_params import CompiledParams
 from rospy_shim.graph.msg_ids import COMMAND_BIT
 from rospy_shim.parameters.table import MASTER_TLM_MID
+from rospy_shim.types.exceptions import ServiceException
+from rospy_shim.types.names import ANYTYPE
+from rospy_shim.types.transport import HEADER_BYTES, addressed, segments, whole_header
 
 if TYPE_CHECKING:
     from cfepy.sb import SoftwareBus

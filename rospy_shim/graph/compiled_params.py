@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 from xml.parsers.expat import ExpatError
 
 from cfepy.status import UsageError
-from rospy_shim.client.exceptions import ROSException
-from rospy_shim.client.names import SEP
 from rospy_shim.client.service import answer_packets
 from rospy_shim.parameters.table import MASTER_TLM_MID
 from rospy_shim.parameters.tree import ParameterTree
 from rospy_shim.parameters.values import json_of, marshalled, of_json, through_xml
+from rospy_shim.types.exceptions import ROSException
+from rospy_shim.types.names import SEP
 
 if TYPE_CHECKING:
     from cfepy.sb import SoftwareBus

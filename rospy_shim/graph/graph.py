@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from cfepy.cached import CachedProperty
+from cfepy.interpreter.cached import CachedProperty
 from cfepy.sb import SUBSCRIPTION, UNSUBSCRIPTION
-from rospy_shim.client.exceptions import ServiceException
-from rospy_shim.client.transport import sequence_of
 from rospy_shim.graph.compiled import CompiledNode, CompiledService, DeclaredType, tell_subscription
 from rospy_shim.graph.msg_ids import COMMAND_BIT, MsgIds
 from rospy_shim.parameters.tree import ParameterTree
+from rospy_shim.types.exceptions import ServiceException
+from rospy_shim.types.transport import sequence_of
 
 if TYPE_CHECKING:
     from cfepy.nodes import RosConfig
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rospy_shim.client.node import Node
     from rospy_shim.client.service import Service
     from rospy_shim.client.subscription import Subscription
-    from rospy_shim.msgs import MessageClass, ServiceClass
+    from rospy_shim.types.msgs import MessageClass, ServiceClass
 
 Header = dict[str, str]
 """What ROS tells the two ends of a connection: caller, type, md5sum, topic, ..."""

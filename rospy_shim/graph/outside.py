@@ -11,10 +11,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 from xmlrpc.client import loads
 
-from cfepy.input_limits import ROS_CALLS, ROS_NAMES
+from cfepy.reading.input_limits import ROS_CALLS, ROS_NAMES
 from cfepy.sb import Outlet
 from cfepy.status import CFE_ES_NO_RESOURCE_IDS_AVAILABLE, CfeError, UsageError
-from rospy_shim.client.exceptions import ServiceException
 from rospy_shim.client.service import (
     ANSWER_LEAD,
     REQUEST_LEAD,
@@ -29,6 +28,7 @@ from rospy_shim.graph.compiled import DeclaredType
 from rospy_shim.graph.graph import MOST_NAMES, ServiceCall
 from rospy_shim.graph.outside_nodes import OutsideLink, OutsideNode, OutsideService, OutsideSubscription
 from rospy_shim.master.calls import call
+from rospy_shim.types.exceptions import ServiceException
 
 if TYPE_CHECKING:
     from cfepy.app import Cfe

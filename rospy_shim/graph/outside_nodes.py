@@ -14,7 +14,8 @@ from cfepy.sb import Outlet
 from cfepy.status import CfeError
 from rospy_shim.client.link import Link
 from rospy_shim.client.subscription import Subscription
-from rospy_shim.client.transport import (
+from rospy_shim.graph.compiled import CompiledService, DeclaredType
+from rospy_shim.types.transport import (
     EVERYBODY,
     HEADER_BYTES,
     SPARE_AT,
@@ -25,7 +26,6 @@ from rospy_shim.client.transport import (
     sequence_of,
     whole_header,
 )
-from rospy_shim.graph.compiled import CompiledService, DeclaredType
 
 if TYPE_CHECKING:
     from cfepy.app import Cfe

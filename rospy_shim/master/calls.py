@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from rospy_shim.client.names import ANYTYPE, PRIV_NAME, SEP, canonicalize_name
+from rospy_shim.types.names import ANYTYPE, PRIV_NAME, SEP, canonicalize_name
 
 Answer = tuple[int, str, Any]
 """Code (1 success, 0 failure, -1 error of the caller), text, value (wiki.ros.org/ROS/Master_API)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rospy_shim.client.exceptions import ROSException
+from rospy_shim.types.exceptions import ROSException
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node

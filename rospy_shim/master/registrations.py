@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rospy_shim.client.names import ANYTYPE
+from rospy_shim.types.names import ANYTYPE
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node

@@ -2,5 +2,5 @@
 
 What belongs here works on parameters for all nodes together: values, their text, rows and images of tables, the
 application ROS, and the table files as tools see them. The functions that a node calls are in
-`rospy_shim.client.params`.
+`rospy_shim.client.params`. The central file is `rospy_shim/parameters/table.py`.
 """

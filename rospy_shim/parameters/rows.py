@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from rospy_shim.client.exceptions import ROSException
 from rospy_shim.parameters.table import FREE, VALUE_BYTES, Record, Row, count_rows, rows_for
 from rospy_shim.parameters.values import leaf_names, least_size, leaves_of, text_of, written
+from rospy_shim.types.exceptions import ROSException
 
 _FREE, _USED = 0, 1
 _MOST_SHOWN = 200  # characters of a name in an error

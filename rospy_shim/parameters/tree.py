@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from cfepy.input_limits import PARAMETER_BYTES, PARAMETER_DEPTH
-from rospy_shim.client.exceptions import ROSException
-from rospy_shim.client.names import SEP, join, namespace_of
+from cfepy.reading.input_limits import PARAMETER_BYTES, PARAMETER_DEPTH
 from rospy_shim.parameters.rows import ParameterRows, name_of
 from rospy_shim.parameters.values import depth_of, least_size
+from rospy_shim.types.exceptions import ROSException
+from rospy_shim.types.names import SEP, join, namespace_of
 
 _MISSING = object()
 

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from cfepy.input_limits import PARAMETER_DEPTH
+from cfepy.reading.input_limits import PARAMETER_DEPTH
 
 _INT_MAX = 2**31 - 1
 _INT_MIN = -(2**31)

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from cfepy.input_files import read_limited
-from cfepy.input_limits import LAUNCH_NUMBER, XML_BYTES
-from cfepy.plain_xml import XmlError, parse_xml
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import LAUNCH_NUMBER, XML_BYTES
+from cfepy.reading.plain_xml import XmlError, parse_xml
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 from rospy_shim.roslaunch.model import LaunchRemark
 from rospy_shim.roslaunch.scope import Scope
 from rospy_shim.roslaunch.substitution import SubstitutionError, UnknownArgument, UnsetArgument, arguments_in
@@ -151,7 +151,7 @@ class Attributes:
         self._scope.findings.remarks.append(self.tag.remark(text, is_error=is_error))
 
     def charge(self, work: int) -> None:
-        """What the tag brings makes the launch larger (`LAUNCH_WORK` of `cfepy.input_limits`)."""
+        """What the tag brings makes the launch larger (`LAUNCH_WORK` of `cfepy.reading.input_limits`)."""
         self._scope.findings.work += work
 
     def tell_unknown(self, known: tuple[str, ...]) -> None:

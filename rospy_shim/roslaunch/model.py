@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cfepy.marked_yaml import Mistakes
+from cfepy.reading.marked_yaml import Mistakes
 
 DEFAULT_TIME_LIMIT_S = 60.0
 
@@ -41,7 +41,7 @@ class LaunchFindings:
         mistakes: takes what is wrong: it raises the first mistake, or keeps all.
         remarks: all else that a user should know.
         unset: arguments without a value that have been told of: file, the <include> that reads it, name.
-        work: how large the launch is so far (`LAUNCH_WORK` of `cfepy.input_limits`).
+        work: how large the launch is so far (`LAUNCH_WORK` of `cfepy.reading.input_limits`).
     """
 
     mistakes: Mistakes = field(default_factory=Mistakes)

@@ -12,14 +12,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from cfepy.input_files import read_limited, text_limited
-from cfepy.input_limits import LAUNCH_FILE_BYTES, LAUNCH_NAME
-from rospy_shim.client.names import PRIV_NAME, SEP, canonicalize_name
+from cfepy.reading.input_files import read_limited, text_limited
+from cfepy.reading.input_limits import LAUNCH_FILE_BYTES, LAUNCH_NAME
 from rospy_shim.parameters.values import marshalled
 from rospy_shim.roslaunch.document import Attributes, Tag
 from rospy_shim.roslaunch.model import Launch
 from rospy_shim.roslaunch.scope import Scope, joined
 from rospy_shim.roslaunch.values import converted, from_yaml
+from rospy_shim.types.names import PRIV_NAME, SEP, canonicalize_name
 
 STOOD_IN = {"xacro": Path("xacro")}
 """What $(find) gives for packages whose programs are stood in for, when they are not there."""

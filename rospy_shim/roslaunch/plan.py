@@ -16,17 +16,17 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from cfepy.input_files import beginning_of, text_limited
-from cfepy.input_limits import CMAKE_BYTES, XML_BYTES
-from cfepy.marked_yaml import Mistakes
 from cfepy.nodes import ROSCORE_PARAMS, CppNode, NodeConfig
+from cfepy.reading.input_files import beginning_of, text_limited
+from cfepy.reading.input_limits import CMAKE_BYTES, XML_BYTES
+from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 from cfepy.units import NS_PER_S
-from rospy_shim.client.names import SEP
-from rospy_shim.msgs import Packages
 from rospy_shim.roslaunch.model import Launch, LaunchNode, LaunchRemark, LaunchTest
 from rospy_shim.roslaunch.reader import read
+from rospy_shim.types.msgs import Packages
+from rospy_shim.types.names import SEP
 
 _TOOLS = Path(__file__).parent / "tools"
 LONGEST_NAME = 16  # an application's file has ".so" behind it, and names of files have 19 characters in OSAL

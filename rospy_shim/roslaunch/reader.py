@@ -11,13 +11,11 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
 
-from cfepy.input_files import open_input
-from cfepy.input_limits import LAUNCH_INCLUDES_DEEP, LAUNCH_NAME, LAUNCH_WORK
-from cfepy.marked_yaml import Mistakes
+from cfepy.reading.input_files import open_input
+from cfepy.reading.input_limits import LAUNCH_INCLUDES_DEEP, LAUNCH_NAME, LAUNCH_WORK
+from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
-from rospy_shim.client.names import PRIV_NAME, is_legal_name
-from rospy_shim.msgs import Packages
 from rospy_shim.roslaunch.document import Attributes, Tag, read_launch_tag, unused_arguments
 from rospy_shim.roslaunch.model import (
     DEFAULT_TIME_LIMIT_S,
@@ -30,6 +28,8 @@ from rospy_shim.roslaunch.model import (
 from rospy_shim.roslaunch.param_tags import STOOD_IN, add_param, read_param, read_rosparam
 from rospy_shim.roslaunch.scope import Scope, as_namespace, joined
 from rospy_shim.roslaunch.substitution import UNKNOWN, World
+from rospy_shim.types.msgs import Packages
+from rospy_shim.types.names import PRIV_NAME, is_legal_name
 
 # fmt: off
 NODE = (

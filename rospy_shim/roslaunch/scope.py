@@ -9,9 +9,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from rospy_shim.client.names import PRIV_NAME, SEP, canonicalize_name, is_legal_name
 from rospy_shim.roslaunch.model import LaunchFindings
 from rospy_shim.roslaunch.substitution import Substitutions, World
+from rospy_shim.types.names import PRIV_NAME, SEP, canonicalize_name, is_legal_name
 
 
 def joined(namespace: str, name: str) -> str:

@@ -9,20 +9,39 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import count
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from cfepy.nodes import NodeConfig
 from cfepy.units import NS_PER_MS, NS_PER_S
-from rospy_shim.msgs import Packages
 from rospy_shim.roslaunch.model import LaunchNode
 from rospy_shim.roslaunch.plan import Planner, ScriptError, plan_of
 from rospy_shim.roslaunch.substitution import SubstitutionError, Substitutions, UnsetArgument, World
+from rospy_shim.types.msgs import Packages
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
-    from rospy_shim.runtime import RosRuntime
 
 LOOK_NS = 50 * NS_PER_MS  # how often is looked whether a node has ended
+
+
+class NodeStarts(Protocol):
+    """What starts nodes on the mission, and ends them."""
+
+    def app_names(self) -> list[str]:
+        """Names that a new node's application cannot have."""
+
+    def start_node(self, config: NodeConfig) -> None:
+        """Start a node that nothing else of the mission names.
+
+        Raises:
+            CfeError: there is no room for another application.
+        """
+
+    def forget_start(self, app: str) -> None:
+        """The application of a node that was started here is no node any more."""
+
+    def begin_shutdown(self, reason: str, app_name: str | None = None) -> None:
+        """Ask all nodes to end, or the one of an application."""
 
 
 class Starter:
@@ -33,7 +52,7 @@ class Starter:
         node: the caller.
     """
 
-    def __init__(self, runtime: RosRuntime, node: Node) -> None:
+    def __init__(self, runtime: NodeStarts, node: Node) -> None:
         self._runtime = runtime
         self._node = node
 

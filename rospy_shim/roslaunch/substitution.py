@@ -1,7 +1,7 @@
 """Substitution arguments of launch files: $(arg x), $(find pkg), $(eval ...) (wiki.ros.org/roslaunch/XML).
 
-The expression of $(eval ...) is evaluated by `rospy_shim.expression`; it can reach arguments, numbers and texts, and
-nothing of the computer.
+The expression of $(eval ...) is evaluated by `rospy_shim.types.expression`; it can reach arguments, numbers and texts,
+and nothing of the computer.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cfepy.input_limits import SUBSTITUTED_CHARACTERS, SUBSTITUTED_IN_ALL
-from rospy_shim.expression import MATH, ExpressionError, plain_text, value_of
+from cfepy.reading.input_limits import SUBSTITUTED_CHARACTERS, SUBSTITUTED_IN_ALL
 from rospy_shim.roslaunch.values import converted
+from rospy_shim.types.expression import MATH, ExpressionError, plain_text, value_of
 
 _SHORTER = "does an argument hold itself several times? Make it shorter"
 _TOO_LONG = f"the text becomes longer than {SUBSTITUTED_CHARACTERS:,} characters; {_SHORTER}"

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from cfepy.plain_yaml import YamlError, plain_yaml, safe_loader
-from rospy_shim.angles import degrees, radians
+from cfepy.reading.plain_yaml import YamlError, plain_yaml, safe_loader
+from rospy_shim.types.angles import degrees, radians
 
 _TRUTH = {"true": True, "1": True, "false": False, "0": False}
 TYPES = ("str", "string", "int", "double", "bool", "boolean", "yaml", "auto")

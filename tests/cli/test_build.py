@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
-from tests.c.building import needs_compiler
+from tests.extra.c.building import needs_compiler
 
 pytestmark = needs_compiler
 

@@ -14,6 +14,7 @@ import pytest
 
 from cfepy.cli.main import ROOMS, main, parser_for
 from cfepy.cli.shell.completion import complete
+from cfepy.plugins import OWN
 from tests.cli.parsers import options, parsers
 from tests.cli.ros_packages import Launch, demo, write_launch
 
@@ -33,7 +34,8 @@ def told(line: str, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def test_all_commands(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert set(told("cfepy ", monkeypatch)) == {name for names in ROOMS.values() for name in names}
+    own = {name for names in ROOMS.values() for name in names} | {name for each in OWN for name in each.commands}
+    assert set(told("cfepy ", monkeypatch)) == own
 
 
 def test_every_option_of_every_command(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from cfepy import early_end
 from cfepy.cli.host import Interrupts
 from cfepy.cli.main import main
 from cfepy.ground.bag import BagReader
-from cfepy.host_system import interrupt_once
+from cfepy.interpreter import early_end
+from cfepy.interpreter.host_system import interrupt_once
 from cfepy.journal import read_journal
 from cfepy.mission.pieces import HeldBack
 from cfepy.resources import import_path
@@ -51,7 +51,7 @@ def ended(words: Sequence[str], when: str = "", before: str = "", after: str = "
 
 
 @pytest.mark.parametrize(
-    "when", ["cfepy.faces", "cfepy.cli", "cfepy.cli.options", "cfepy.cli.run", "cfepy.cli.run.boards"]
+    "when", ["cfepy.interpreter.faces", "cfepy.cli", "cfepy.cli.options", "cfepy.cli.board", "cfepy.cli.board.boards"]
 )
 def test_ctrl_c_during_the_first_imports_ends_it_without_a_traceback(when: str) -> None:
     done = ended(["boards"], when)
@@ -59,7 +59,7 @@ def test_ctrl_c_during_the_first_imports_ends_it_without_a_traceback(when: str) 
 
 
 def test_ctrl_c_while_a_command_imports_more_ends_it_without_a_traceback() -> None:
-    body = "from cfepy.cli.run import boards; boards.run = lambda chosen: __import__('wave')"
+    body = "from cfepy.cli.board import boards; boards.run = lambda chosen: __import__('wave')"
     done = ended(["boards"], "wave", after=body)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
 
@@ -72,7 +72,7 @@ def test_ctrl_c_in_its_last_steps_ends_it_without_a_traceback() -> None:
 
 def test_ctrl_c_that_comes_up_in_a_finalizer_is_not_lost() -> None:
     body = """
-from cfepy.cli.run import boards
+from cfepy.cli.board import boards
 
 class Dying:
     def __del__(self):
@@ -91,9 +91,8 @@ boards.run = run
 
 
 def test_a_traceback_has_no_control_characters() -> None:
-    body = (
-        "from cfepy.cli.run import boards\ndef run(chosen): raise RuntimeError(chr(27) + ']0;title')\nboards.run = run"
-    )
+    body = "from cfepy.cli.board import boards\n"
+    body += "def run(chosen): raise RuntimeError(chr(27) + ']0;title')\nboards.run = run"
     done = ended(["boards"], after=body)
     assert done.returncode == 1
     assert r"RuntimeError: \x1b]0;title" in done.stderr
@@ -115,7 +114,7 @@ def test_a_program_that_imports_cfepy_keeps_its_answer_to_ctrl_c() -> None:
         (["-m"], ["python", "-X", "dev", "-m", "cfepy", "run"], True),
         (["-m"], ["python", "-mcfepy"], True),
         (["-m"], ["python", "-m", "pytest", "cfepy"], False),
-        (["-m", "cfepy"], ["python", "-m", "cfepy.exploration.worker", "cfepy"], False),
+        (["-m", "cfepy"], ["python", "-m", "cfepy.extra.exploration.worker", "cfepy"], False),
         (["my_cfepy.py"], ["python", "my_cfepy.py"], False),
         ([], ["python"], False),
     ],

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED, main
-from cfepy.exploration.campaign import Inline
-from cfepy.exploration.shrink import Shrinker
-from cfepy.exploration.trial import Trial
-from tests.exploration import missions
+from cfepy.extra.exploration.campaign import Inline
+from cfepy.extra.exploration.shrink import Shrinker
+from cfepy.extra.exploration.trial import Trial
+from tests.extra.exploration import missions
 
 ROOT = Path(__file__).parents[2]
 EVENT = "event: LISTENER: ERROR event 1: nothing came in 100 ms"
@@ -153,7 +153,7 @@ def test_an_error_of_cfepy_is_no_success(
     def broken(*_: object) -> object:
         raise ZeroDivisionError("a bug in cfepy")
 
-    monkeypatch.setattr("cfepy.exploration.expedition.make_crew", lambda *_: Inline())
+    monkeypatch.setattr("cfepy.extra.exploration.expedition.make_crew", lambda *_: Inline())
     monkeypatch.setattr(Trial, "run", broken)
     assert explore(late, "--for", 0.7, "--seeds", 3) == FOUND_PROBLEMS
     out = capsys.readouterr().out

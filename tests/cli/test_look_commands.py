@@ -10,7 +10,7 @@ import pytest
 
 from cfepy.cli.main import main
 from tests.cli.conftest import Write
-from tests.reports.looked_at import busy_mission
+from tests.extra.reports.looked_at import busy_mission
 
 Capture = pytest.CaptureFixture[str]
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 import cfepy
-from cfepy import compiled
 from cfepy.cli.main import ROOMS, main
+from cfepy.interpreter import compiled
 
 
 @pytest.mark.parametrize("words", [["--help"], ["run", "--help"], ["check", "--help"], ["new", "--help"]])

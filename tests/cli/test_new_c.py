@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.c import Options, build
-from cfepy.c.toolchain.sources import read_cmake_lists
 from cfepy.cli.main import main
-from tests.c.building import needs_compiler
+from cfepy.extra.c import Options, build
+from cfepy.extra.c.toolchain.sources import read_cmake_lists
+from tests.extra.c.building import needs_compiler
 
 pytestmark = needs_compiler
 

@@ -12,12 +12,12 @@ import pytest
 
 from cfepy.cli.main import main
 from cfepy.cli.options import RUN_OPTIONS
-from cfepy.exploration.trial import Trial
+from cfepy.extra.exploration.trial import Trial
 from cfepy.flight.flight import Flight
 from cfepy.journal.recorder import record
 from cfepy.pilot import pilot
 from cfepy.pilot.plan import RunPlan
-from cfepy.rtos.schedule import Schedule
+from cfepy.schedules.schedule import Schedule
 from tests.cli.ros_packages import Launch, demo, write_launch
 
 __all__ = ["demo", "write_launch"]  # fixtures

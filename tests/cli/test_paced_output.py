@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 
-from tests.ros_host.graphs import started, wait_for_line
+from tests.extra.ros_host.graphs import started, wait_for_line
 
 
 def test_paced_run_shows_its_lines_in_a_pipe_as_they_come() -> None:

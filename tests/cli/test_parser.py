@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.cli.main import ROOMS, TITLES, main, parser_for
+from cfepy.cli.main import ORDER, ROOMS, TITLES, main, parser_for
 from cfepy.cli.parser import LAUNCH_FILES
 from cfepy.mission import LAUNCH_FILES as KNOWN_LAUNCH_FILES
+from cfepy.plugins import OWN
 from tests.cli.parsers import parsers
 from tests.cli.ros_packages import Launch, demo, write_launch
 
@@ -32,11 +33,16 @@ def test_commands_are_in_groups(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["--help"])
     shown = capsys.readouterr().out
-    places = [shown.index(f"\n{TITLES[room]}:\n") for room in ROOMS]
+    places = [shown.index(f"\n{title}:\n") for title in ORDER]
     assert places == sorted(places)
-    for room, begins in zip(ROOMS, places, strict=True):
+    commands = {name: title for room, title in TITLES.items() for name in ROOMS[room]}
+    commands |= {name: plugin.title for plugin in OWN for name in plugin.commands}
+    for title, begins in zip(ORDER, places, strict=True):
         group = shown[begins + 1 :].split("\n\n")[0]
-        assert re.findall("^  ([a-z]+)", group, re.MULTILINE) == list(ROOMS[room])
+        shown_here = re.findall("^  ([a-z]+)", group, re.MULTILINE)
+        assert shown_here
+        assert {commands.pop(name) for name in shown_here} == {title}
+    assert not commands, "each command stands in one group"
 
 
 def test_every_help_fits_a_narrow_terminal(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""`cfepy plot`; what is drawn is tested in tests/reports/test_curves.py."""
+"""`cfepy plot`; what is drawn is tested in tests/extra/reports/test_curves.py."""
 
 from __future__ import annotations
 

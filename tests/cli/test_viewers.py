@@ -15,8 +15,8 @@ import pytest
 from websockets.sync.client import connect
 
 from cfepy.cli.main import main
-from tests.viewers.foxglove.client import FoxgloveClient
-from tests.viewers.foxglove.runs import TALKER, spec_of
+from tests.extra.viewers.foxglove.client import FoxgloveClient
+from tests.extra.viewers.foxglove.runs import TALKER, spec_of
 
 
 @pytest.fixture

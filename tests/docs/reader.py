@@ -18,7 +18,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.c.build_cache import cache_folder
+from cfepy.extra.c.build_cache import cache_folder
 from cfepy.resources import import_path
 from tests.docs.pages import ROOT
 from tests.docs.scene import Scene, scene_of

@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 import yaml
 
-from cfepy.exploration import Expedition, Report, Trial
-from cfepy.exploration.verdict import INVARIANT
+from cfepy.extra.exploration import Expedition, Report, Trial
+from cfepy.extra.exploration.verdict import INVARIANT
 from cfepy.faults import FaultPlan
 from cfepy.pilot import RunPlan, fly
-from cfepy.rtos import Decision, Policy, Question, Schedule
+from cfepy.rtos import Decision, Policy, Question
+from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 from tests.faults import worlds
 from tests.mission.flights import write_mission

@@ -10,7 +10,7 @@ import pytest
 
 from cfepy.pilot.pilot import fly
 from cfepy.pilot.plan import RunPlan
-from cfepy.rtos.schedule import Schedule
+from cfepy.schedules.schedule import Schedule
 from cfepy.status import CfeError, UsageError
 from cfepy.testing import ExpectationError, Flight
 from tests.testing.conftest import TALKER, write_mission

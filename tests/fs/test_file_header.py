@@ -6,8 +6,8 @@ import pytest
 
 from cfepy import fs, status
 from cfepy.fs import FileHeader, TableHeader
+from cfepy.reading.texts import to_bytes
 from cfepy.status import CfeError, UsageError
-from cfepy.texts import to_bytes
 from tests.layouts import DATA, c_structs
 
 

@@ -16,9 +16,9 @@ from cfepy.console import Console
 from cfepy.ground.bag import BagReader, BagRecorder, is_bag
 from cfepy.ground.mcap_recorder import recorder_of
 from cfepy.mission import Mission, MissionSpec
-from cfepy.nodes.config import RosConfig, TopicConfig
 from cfepy.status import UsageError
-from rospy_shim.msgs import message_class
+from rospy_shim.types.config import RosConfig, TopicConfig
+from rospy_shim.types.msgs import message_class
 from tests.disk import room_for
 
 TALKS = """

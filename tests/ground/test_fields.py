@@ -8,7 +8,7 @@ import numpy
 import pytest
 
 from cfepy.ground.fields import array_of, columns_of, path_of, steps_of, value_at, values_at
-from rospy_shim.msgs import message_class
+from rospy_shim.types.msgs import message_class
 
 
 def a_pose(x: float = 1.5) -> Any:

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from cfepy.ground import message_from_json
-from rospy_shim.msgs import message_class
+from rospy_shim.types.msgs import message_class
 
 
 def made(kind: str, value: Any) -> Any:

@@ -14,7 +14,7 @@ from cfepy.ground.bag import BagReader, storage
 from cfepy.ground.mcap_writer import McapWriter
 from cfepy.pilot import NODE, RunPlan, fly
 from cfepy.status import UsageError
-from rospy_shim.msgs import message_class
+from rospy_shim.types.msgs import message_class
 
 HEARS = """
 import rospy

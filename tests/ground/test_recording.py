@@ -18,7 +18,7 @@ from cfepy.ground.recording import KINDS, rewrite, summary_of
 from cfepy.status import UsageError
 from dev.fuzz.bit_flips import flips_of
 from dev.fuzz.recordings import COUNT, FORMATS, SECOND, converted, ends, placed_chunks, read, written
-from rospy_shim.msgs import message_class
+from rospy_shim.types.msgs import message_class
 
 DATA = Path(__file__).parents[1] / "data" / "bags"
 

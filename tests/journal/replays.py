@@ -10,7 +10,7 @@ from cfepy.attachment import Attachment
 from cfepy.journal import Journal, read_journal, record, replay
 from cfepy.pilot.pilot import Flown
 from cfepy.pilot.plan import RunPlan
-from cfepy.rtos.schedule import Schedule
+from cfepy.schedules.schedule import Schedule
 
 CONTEXTS = ("thread", "greenlet")
 

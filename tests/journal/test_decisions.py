@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from cfepy.journal.decisions import JournalPolicy, RetoldPolicy
-from cfepy.rtos import Decision, Kernel, NotingPolicy, Policy, Schedule, make_kernel
+from cfepy.rtos import Decision, Kernel, NotingPolicy, Policy
+from cfepy.schedules import Schedule, make_kernel
 
 
 def fly(policy: Policy) -> list[int]:

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.contained_files import is_contained
 from cfepy.journal import Journal, read_journal, record, replay
 from cfepy.journal.looks import ABSENT, FOLDER, LINK, REGULAR, PathLook, put_in_place
 from cfepy.pilot import RunPlan
+from cfepy.reading.contained_files import is_contained
 from cfepy.status import UsageError
 from tests.journal.replays import CONTEXTS
 from tests.mission.flights import write_mission

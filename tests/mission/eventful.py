@@ -14,7 +14,7 @@ from cfepy.console import Console
 from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission
 from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
-from cfepy.rtos.policy import SeededRandom
+from cfepy.rtos import SeededRandom
 
 ES_CMD = 0x1806
 RESTART, NOOP = 2, 0

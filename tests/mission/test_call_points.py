@@ -12,8 +12,8 @@ from cfepy.mission.call_points import GIVING
 from cfepy.osal import Osal
 from cfepy.pilot.pilot import fly
 from cfepy.pilot.plan import RunPlan
-from cfepy.rtos.schedule import Schedule
 from cfepy.sb import SoftwareBus
+from cfepy.schedules.schedule import Schedule
 from cfepy.tbl import TableServices
 
 LETS_GO_TOO_EARLY = """

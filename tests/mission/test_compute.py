@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import cfepy
-from tests.exploration import missions
+from tests.extra.exploration import missions
 
 APP = """
 def Work(cfe):

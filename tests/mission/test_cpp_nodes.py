@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.convert.build import library_folder
+from cfepy.extra.convert.build import library_folder
 from cfepy.mission import ARENA_BYTES, CppNodesConfig, read_sections
 from cfepy.status import UsageError
 

@@ -9,7 +9,7 @@ import pytest
 from cfepy.attachment import Attachment
 from cfepy.mission import EndlessWaits, Mission, endless_waits
 from cfepy.pilot import RunPlan, fly
-from tests.exploration import missions
+from tests.extra.exploration import missions
 
 HEAD = """
     import queue

@@ -10,9 +10,9 @@ import pytest
 from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
 from cfepy.mission.launch import spec_of
-from cfepy.nodes.config import NodeConfig
 from cfepy.pilot.check import check_mission
 from cfepy.status import UsageError
+from rospy_shim.types.config import NodeConfig
 
 SAY = "import rospy\nrospy.init_node('say')\nprint(rospy.get_name(), rospy.get_param('/shared', None))\n"
 LAUNCH = """

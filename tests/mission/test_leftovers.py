@@ -11,11 +11,12 @@ from collections.abc import Iterator
 import pytest
 
 from cfepy.console import Console
-from cfepy.exploration.trial import Trial
+from cfepy.extra.exploration.trial import Trial
 from cfepy.mission import Mission, read_mission
 from cfepy.nodes import Universe
 from cfepy.pilot import RunPlan
-from cfepy.rtos import Kernel, Schedule
+from cfepy.rtos import Kernel
+from cfepy.schedules import Schedule
 
 FLIGHTS = 6
 SECONDS = 0.65  # capture's nodes have begun

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.marked_yaml import Mistakes
 from cfepy.mission import MissionSpec, read_mission
 from cfepy.mission.mission_file import DEMANDS, SECTIONS, MissionSections, read_mission_file
 from cfepy.mission.record import RunRecord
-from cfepy.nodes.config import RosConfig
+from cfepy.reading.marked_yaml import Mistakes
 from cfepy.status import UsageError
+from rospy_shim.types.config import RosConfig
 
 WRONG = """\
 name: [a]

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from cfepy.mission import read_mission
-from cfepy.nodes.config import ROSCORE_PARAMS
 from cfepy.pilot.check import check_mission
 from cfepy.status import UsageError
+from rospy_shim.types.config import ROSCORE_PARAMS
 from tests.mission.flights import write_mission
 
 STARTUP = "CFE_APP, n, __main__, N, 100, 16384, 0x0, 0;\n!\n"

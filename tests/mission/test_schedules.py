@@ -12,7 +12,8 @@ import pytest
 
 from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
-from cfepy.rtos import NotingPolicy, Policy, Schedule
+from cfepy.rtos import NotingPolicy, Policy
+from cfepy.schedules import Schedule
 from tests.mission.flights import write_mission
 
 pytest.importorskip("greenlet")

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from cfepy.exploration import Expedition
+from cfepy.extra.exploration import Expedition
 from cfepy.pilot import RunPlan
 from cfepy.pilot.pilot import fly
 from cfepy.pilot.results import Results
 from cfepy.resources import shipped
-from cfepy.rtos import Schedule
+from cfepy.schedules import Schedule
 
 LATE = Schedule.parse("random:2:hold=1ms")
 MORE_DATA = str(shipped("missions") / "pathfinder" / "more_data.yaml")

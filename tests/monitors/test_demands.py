@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.marked_yaml import Mistakes
 from cfepy.mission import MissionSpec, read_mission
 from cfepy.monitors.deadline_monitor import DeadlineMonitor
 from cfepy.monitors.demands import Demands, demands_of, judges_of, read_demands
 from cfepy.monitors.invariant_watch import InvariantWatch
+from cfepy.reading.marked_yaml import Mistakes
 from cfepy.status import UsageError
 
 GOOD = """\

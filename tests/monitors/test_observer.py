@@ -10,8 +10,8 @@ from cfepy.monitors.observer import MESSAGE_LIMIT, OLDEST, PIPE_FULL, Observer, 
 from cfepy.pilot.pilot import Flown, fly
 from cfepy.pilot.plan import RunPlan
 from cfepy.rtos import Task
-from cfepy.rtos.schedule import Schedule
 from cfepy.sb.pipe import Pipe
+from cfepy.schedules.schedule import Schedule
 from tests.mission.flights import write_mission
 
 READER = """\

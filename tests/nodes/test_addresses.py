@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import cfepy
-from cfepy.texts import without_addresses
+from cfepy.reading.texts import without_addresses
 
 NODE = """
 import logging

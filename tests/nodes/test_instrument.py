@@ -9,10 +9,11 @@ from typing import Any
 
 import pytest
 
+from cfepy.interpreter.syntax_trees import compiled
 from cfepy.nodes.accesses import Accesses, Touch
 from cfepy.nodes.instrument import Kinds, compile_with_hooks
-from cfepy.rtos import Policy, make_kernel
-from cfepy.syntax_trees import compiled
+from cfepy.rtos import Policy
+from cfepy.schedules import make_kernel
 from tests.nodes.programs import PROGRAMS
 
 ALL = Kinds(accesses=True, lines=True, calls=False, is_main=True)

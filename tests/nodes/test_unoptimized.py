@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.syntax_trees import compiled
+from cfepy.interpreter.syntax_trees import compiled
 
 NODE = """
 '''A node.'''

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 import yaml
 
-from cfepy.exploration.results_file import keep_failure
+from cfepy.extra.exploration.results_file import keep_failure
 from cfepy.resources import import_path
-from cfepy.rtos import Schedule
+from cfepy.schedules import Schedule
 
 ROOT = Path(__file__).parents[2]
 PROBE = ROOT / "examples" / "probe"

@@ -15,15 +15,15 @@ import pytest
 from cfepy import __version__
 from cfepy.console import Console
 from cfepy.mission import Mission
-from tests.c.building import needs_compiler
+from tests.extra.c.building import needs_compiler
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = [
-    "cfepy/c/engine/engine.h",
-    "cfepy/c/engine/run.c",
-    "cfepy/c/engine/switch_x86_64.S",
-    "cfepy/c/headers/es.h",
-    "cfepy/c/headers/names.txt",
+    "cfepy/extra/c/engine/engine.h",
+    "cfepy/extra/c/engine/run.c",
+    "cfepy/extra/c/engine/switch_x86_64.S",
+    "cfepy/extra/c/headers/es.h",
+    "cfepy/extra/c/headers/names.txt",
     "cfepy/cli/run/templates/c_app/fsw/src/NAME.c.in",
     "cfepy/py.typed",
     "cfepy/share/apps/hk/tables/hk_cpy_tbl.tbl",
@@ -32,7 +32,7 @@ SHIPPED = [
     "cfepy/share/missions/rx64m_pubsub/mission.yaml",
     "ros_libraries/tf/transformations/__init__.py",
     "ros_libraries/tf2_ros/__init__.py",
-    "rospy_shim/msgs/definitions/std_msgs.msgs",
+    "rospy_shim/types/msgs/definitions/std_msgs.msgs",
 ]
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("wheel")]  # one wheel and one environment for all

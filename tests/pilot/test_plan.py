@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from cfepy.cli.main import main
 from cfepy.pilot.pilot import TakeoffOptions, fly, takeoff
 from cfepy.pilot.plan import RunPlan
-from cfepy.rtos.schedule import Schedule
+from cfepy.schedules.schedule import Schedule
 
 WORDS = st.text(st.characters(codec="utf-8", exclude_categories=("Cs", "Cc")), min_size=1)
 PLANS = st.builds(

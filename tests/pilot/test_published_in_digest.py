@@ -8,10 +8,11 @@ import pytest
 
 from cfepy.attachment import Attachment
 from cfepy.mission import Processor, TopicWatch
-from cfepy.mission.call_points import handle_for_apps
+from cfepy.mission.call_points import with_call_points
 from cfepy.pilot import RunPlan, fly
-from cfepy.rtos import GREENLET, THREAD, Schedule, has_greenlets
+from cfepy.rtos import GREENLET, THREAD, has_greenlets
 from cfepy.sb import SoftwareBus
+from cfepy.schedules import Schedule
 from cfepy.trace import Trace
 from tests.mission.flights import write_mission
 
@@ -145,7 +146,7 @@ def test_unsent_message_is_no_scheduling_point(tmp_path: Path) -> None:
     class Look(Attachment):
         def power_up(self, processor: Processor) -> None:
             bus = processor.cfe.sb
-            handle = handle_for_apps(processor.cfe, processor.machine.kernel).sb
+            handle = with_call_points(processor.cfe, processor.machine.kernel).sb
             found.append((handle.unsent == bus.unsent, handle.transmit_msg == bus.transmit_msg))
 
     plan = RunPlan((str(tmp_path),), seconds=1, schedule=Schedule.parse("random:1"))

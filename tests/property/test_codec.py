@@ -13,15 +13,15 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from rospy_shim import genpy
-from rospy_shim.msgs import message_class, shipped
-from rospy_shim.msgs.reference import encode
+from rospy_shim.types import genpy
+from rospy_shim.types.msgs import message_class, shipped
+from rospy_shim.types.msgs.reference import encode
 from tests.rospy_shim.golden_msgs import build
-from tests.rospy_shim.msgs.values import plain
+from tests.rospy_shim.types.msgs.values import plain
 
 TYPES = [f"{package}/{name}" for package in shipped().packages() for name in shipped().names(package) or ()]
 ROS_PYTHON = "/usr/bin/python3"
-PEER = Path(__file__).parents[1] / "rospy_shim/msgs/genpy_peer.py"
+PEER = Path(__file__).parents[1] / "rospy_shim/types/msgs/genpy_peer.py"
 
 _SMALL = settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 

@@ -17,13 +17,12 @@ from cfepy.rtos import (
     NotingPolicy,
     Policy,
     Queue,
-    Schedule,
     SeededRandom,
     Semaphore,
     Task,
     WaitList,
-    make_kernel,
 )
+from cfepy.schedules import Schedule, make_kernel
 from cfepy.trace import Trace
 
 pytest.importorskip("greenlet")

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.exploration.shrink import SUBSETS_OF
-from cfepy.exploration.trial import Trial
-from cfepy.exploration.verdict import Verdict
-from cfepy.rtos import Schedule
+from cfepy.extra.exploration.shrink import SUBSETS_OF
+from cfepy.extra.exploration.trial import Trial
+from cfepy.extra.exploration.verdict import Verdict
+from cfepy.schedules import Schedule
 from dev.quality.bugs import BUGS, MISSIONS, Bug, by_name, reference_trial
 from dev.quality.measure import as_deviations, find, simplest
 from dev.quality.mended import mended_trial

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.rtos import Schedule
+from cfepy.schedules import Schedule
 from dev.quality.measure import as_deviations, find
 from dev.quality.mended import verdicts
 from dev.quality.program_report import PAGE, load, missed, page

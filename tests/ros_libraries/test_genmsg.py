@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from rospy_shim.msgs import message_class, service_class
+from rospy_shim.types.msgs import message_class, service_class
 from tests.ros_libraries.world import universe
 
 genmsg: Any = universe().importer.load("genmsg")

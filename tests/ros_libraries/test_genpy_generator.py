@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from rospy_shim.msgs import message_class, service_class, shipped
+from rospy_shim.types.msgs import message_class, service_class, shipped
 from tests.ros_libraries.world import universe
 from tests.rospy_shim.golden_msgs import build, recorded
 from tests.rospy_shim.missions import run_nodes

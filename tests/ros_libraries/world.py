@@ -10,7 +10,7 @@ from cfepy.nodes import Universe
 from cfepy.rtos import Kernel
 from rospy_shim.client import rostime
 from rospy_shim.library_parts import FOLDER, library_names
-from rospy_shim.msgs import make_module
+from rospy_shim.types.msgs import make_module
 
 
 def universe() -> Universe:

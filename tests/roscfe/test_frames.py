@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from cfepy.convert.messages import Profile, write_headers
-from rospy_shim.msgs import library_of, shipped
+from cfepy.extra.convert.messages import Profile, write_headers
+from rospy_shim.types.msgs import library_of, shipped
 from tests.ros_libraries.world import universe
 from tests.roscfe.compiling import BOOST, HEADERS, ROSCFE, STRICT, compiled
 from tests.roscfe.frame_scripts import scripts

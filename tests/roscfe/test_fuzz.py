@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.convert.messages import Profile
+from cfepy.extra.convert.messages import Profile
 from dev.roscfe.building import needs_cpp
 from dev.roscfe.random_messages import LIBRARY, all_types
 from dev.roscfe.roundtrip import Program, frames_of, hash_of
-from rospy_shim.msgs.spec import PRIMITIVES
+from rospy_shim.types.msgs.spec import PRIMITIVES
 
 pytestmark = [pytest.mark.slow, needs_cpp]
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize=vptr", "-fno-sanitize-recover=all")

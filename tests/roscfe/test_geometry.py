@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.convert.messages import Profile, write_headers
-from rospy_shim.msgs import shipped
+from cfepy.extra.convert.messages import Profile, write_headers
+from rospy_shim.types.msgs import shipped
 from tests.roscfe.compiling import BOOST, HEADERS, STRICT, compiled
 from tests.roscfe.test_linear_math import answers, inputs
 

@@ -7,8 +7,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from rospy_shim import genpy
-from rospy_shim.msgs import Library
+from rospy_shim.types import genpy
+from rospy_shim.types.msgs import Library
 
 _DATA = Path(__file__).parent.parent / "data"
 _FILE = _DATA / "golden_msgs.json"

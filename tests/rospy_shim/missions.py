@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from cfepy.cli.run.outputs import SavedRunFiles
 from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
-from cfepy.nodes.config import NodeConfig, RosConfig, TopicConfig
+from rospy_shim.types.config import NodeConfig, RosConfig, TopicConfig
 
 
 class Run(NamedTuple):

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from cfepy.rtos import Kernel, make_kernel
-from cfepy.rtos.schedule import Schedule
+from cfepy.rtos import Kernel
+from cfepy.schedules import make_kernel
+from cfepy.schedules.schedule import Schedule
 
 MS = 1_000_000
 

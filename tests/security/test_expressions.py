@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.input_limits import EXPRESSION_BITS, EXPRESSION_CHARACTERS
-from rospy_shim.angles import degrees, radians
-from rospy_shim.expression import ExpressionError, value_of
+from cfepy.reading.input_limits import EXPRESSION_BITS, EXPRESSION_CHARACTERS
 from rospy_shim.roslaunch.substitution import SubstitutionError, Substitutions, World
+from rospy_shim.types.angles import degrees, radians
+from rospy_shim.types.expression import ExpressionError, value_of
 
 
 def evaluated(text: str) -> str:

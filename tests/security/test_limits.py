@@ -13,13 +13,13 @@ import pytest
 
 from cfepy.cli.ground.export import file_name
 from cfepy.cli.main import main
-from cfepy.contained_files import make_folder, write_contained
-from cfepy.input_files import read_limited, text_limited
-from cfepy.input_limits import BAG_CHUNK_BYTES, JOURNAL_VALUES, YAML_DEPTH
 from cfepy.journal import read_journal, staged
 from cfepy.journal.frame_check import check_values
 from cfepy.journal.journal import JournalError
-from cfepy.plain_yaml import YamlError, plain_yaml
+from cfepy.reading.contained_files import make_folder, write_contained
+from cfepy.reading.input_files import read_limited, text_limited
+from cfepy.reading.input_limits import BAG_CHUNK_BYTES, JOURNAL_VALUES, YAML_DEPTH
+from cfepy.reading.plain_yaml import YamlError, plain_yaml
 from cfepy.status import UsageError
 from dev.fuzz.sample_journal import sample, with_frames
 from ros_libraries.rosbag_storage import compression
@@ -38,7 +38,7 @@ def test_a_file_of_another_kind_or_size_is_refused(tmp_path: Path) -> None:
 
 
 def test_yaml_is_held_to_its_limits(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cfepy.plain_yaml.YAML_VALUES", 1000)
+    monkeypatch.setattr("cfepy.reading.plain_yaml.YAML_VALUES", 1000)
     assert len(plain_yaml("[" + "1," * 999 + "]")) == 999
     for text, said in (
         ("[" + "1," * 1000 + "]", "more than 1,000 values"),

@@ -21,7 +21,7 @@ from cfepy.cli.main import main
 from cfepy.cli.table import Table, show_tables
 from cfepy.ground.bag import storage
 from dev.house.tree import ROOT
-from rospy_shim.msgs import message_class
+from rospy_shim.types.msgs import message_class
 
 NASTY = "x\x1b]0;title\a\x1b[31m\x9b2J\u202e\x7f\ry"
 FORBIDDEN = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")

@@ -18,13 +18,13 @@ SECONDS = 30
 MEMORY = 500 << 10
 """KB that a trick may take."""
 QUICKER = {
-    "cfepy.c.toolchain.cmake_script.CMAKE_CHARACTERS": 1_000_000,
-    "cfepy.c.toolchain.cmake_script.CMAKE_COMMANDS": 20_000,
-    "cfepy.c.toolchain.cmake_script.CMAKE_FILES": 5_000,
-    "cfepy.convert.packages.CPP_FILES": 500,
-    "cfepy.syntax_trees.PYTHON_WORDS": 50_000,
+    "cfepy.extra.c.toolchain.cmake_script.CMAKE_CHARACTERS": 1_000_000,
+    "cfepy.extra.c.toolchain.cmake_script.CMAKE_COMMANDS": 20_000,
+    "cfepy.extra.c.toolchain.cmake_script.CMAKE_FILES": 5_000,
+    "cfepy.extra.convert.packages.CPP_FILES": 500,
+    "cfepy.interpreter.syntax_trees.PYTHON_WORDS": 50_000,
     "ros_libraries.rosbag_storage.compression.LARGEST": 10 << 20,
-    "cfepy.plain_xml.XML_TAGS": 10_000,
+    "cfepy.reading.plain_xml.XML_TAGS": 10_000,
     "rospy_shim.roslaunch.reader.LAUNCH_WORK": 100_000,
 }
 """Limits that are made smaller, so that they are reached in less time."""

@@ -8,10 +8,11 @@ from typing import Any
 
 import pytest
 
-from cfepy.exploration import Shrinker, Trial, budget_of
+from cfepy.extra.exploration import Shrinker, Trial, budget_of
+from cfepy.extra.exploration.in_tests import schedules_of
 from cfepy.journal import read_journal, replay
 from cfepy.pilot import RunPlan
-from cfepy.rtos import Schedule
+from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 from cfepy.testing import explore
 from tests.testing.conftest import Suite, given_verbatim, told_command
@@ -213,7 +214,7 @@ def test_a_decorator_without_parentheses_is_told() -> None:
 def test_options_of_schedules() -> None:
     found = explore(seeds=4, policy=["random", "pct"], depth=2, any_priority=True, hold="500us", start="600ms").args[0]
     options = "any:hold=500us:from=600ms"
-    assert [each.text() for each in found.schedules(lambda: 40)] == [
+    assert [each.text() for each in schedules_of(found, lambda: 40, found.seeds)] == [
         "fifo",
         f"random:1:{options}",
         f"pct:2:2:40:{options}",
@@ -224,7 +225,8 @@ def test_options_of_schedules() -> None:
 def test_the_default_is_that_of_the_command() -> None:
     """As many kinds by turns as `cfepy explore` has, and PCT counts on as many decisions as the longest run had."""
     lengths = iter([40, 60, *[50] * 6])
-    found = [each.text() for each in explore(seeds=8).args[0].schedules(lambda: next(lengths))]
+    choice = explore(seeds=8).args[0]
+    found = [each.text() for each in schedules_of(choice, lambda: next(lengths), choice.seeds)]
     assert found == [
         "fifo",
         "random:1",

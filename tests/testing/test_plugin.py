@@ -13,10 +13,11 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
+from cfepy.extra.exploration import in_tests as exploration
 from cfepy.journal import read_journal, replay
 from cfepy.rtos import watchdog
 from cfepy.rtos.watchdog import Spent
-from cfepy.testing import exploration, plugin
+from cfepy.testing import plugin
 from tests.own_paths import own_files
 from tests.testing.conftest import ROOT, Suite, given_verbatim, told_command, write_mission
 
@@ -221,7 +222,13 @@ def test_other_suites_import_nothing() -> None:
     code = "import pytest, sys; before = set(sys.modules); import cfepy.testing.plugin as plugin"
     code += "; print(*sorted(set(sys.modules) - before))"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["cfepy", "cfepy.faces", "cfepy.testing", "cfepy.testing.plugin"]
+    assert done.stdout.split() == [
+        "cfepy",
+        "cfepy.interpreter",
+        "cfepy.interpreter.faces",
+        "cfepy.testing",
+        "cfepy.testing.plugin",
+    ]
 
 
 def test_the_plugin_knows_the_mark_of_explored_tests() -> None:

@@ -14,10 +14,10 @@ from cfepy.flight.message_library import library_near
 from cfepy.ground.dictionary import dictionary_of, table_type
 from cfepy.mission import read_mission
 from cfepy.msg import get_msg_id, get_size
-from cfepy.rtos.schedule import Schedule
+from cfepy.schedules.schedule import Schedule
 from cfepy.status import UsageError
 from cfepy.testing.strategies import fault_plans, messages, packets, schedules, tables
-from rospy_shim.msgs import message_class
+from rospy_shim.types.msgs import message_class
 
 PROBE = Path(__file__).parents[2] / "examples/probe"
 COPY_TABLE = table_type("CopyTable", None)

@@ -1,7 +1,7 @@
-"""The commands build, tbl and log, which work on cFE's files; here are their options.
+"""The commands tbl and log, which work on cFE's files; here are their options.
 
 A command belongs here when it makes, shows or checks a file that goes to a flight computer or comes from it, and flies
-no mission. This module imports argparse only, for a quick start.
+no mission.
 """
 
 from __future__ import annotations
@@ -15,43 +15,8 @@ TBL_STATUS = "exit status: 0 well, 1 differences or faults were found, 2 bad usa
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add these commands to the parser of `cfepy`."""
-    _add_build(commands)
     _add_tbl(commands)
     _add_log(commands)
-
-
-def _add_build(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    build = commands.add_parser(
-        "build",
-        help="compile an application in C to a shared object and table files",
-        description="Compile a cFS application, a folder with fsw/src, fsw/inc and fsw/tables, to NAME.so and its "
-        "table files. No cFS tree is needed: cfepy has headers of cFE, OSAL and the PSP.",
-        epilog="exit status: 0 built, 1 the compiler refused a file, 2 bad usage, nothing to build or no compiler",
-    )
-    build.add_argument("folder", metavar="FOLDER", nargs="?", help="the application's folder")
-    add_output(build, "NAME.so in the application's folder; table files come beside it")
-    build.add_argument("--cfs", metavar="TREE", help="take the headers of this cFS tree in place of cfepy's")
-    build.add_argument(
-        "--defs", metavar="DIR", help="a folder of a mission's headers, which go before the application's own"
-    )
-    build.add_argument(
-        "--flag", metavar="FLAG", action="append", default=[], help="one more flag of the compiler, as --flag=-DNAME=1"
-    )
-    build.add_argument("-O", dest="optimize", metavar="LEVEL", default="1", help="the compiler's -O (default: 1)")
-    build.add_argument("--no-debug", action="store_true", help="leave debug data out")
-    build.add_argument(
-        "--omit-deprecated",
-        action="store_true",
-        help="leave deprecated names out, as OMIT_DEPRECATED=true does in a cFS build: table handles have 32 bits then",
-    )
-    build.add_argument("--coverage", action="store_true", help="have the code count what is executed, for gcov")
-    build.add_argument(
-        "--sanitize-thread", action="store_true", help="have the code tell its accesses to memory (-fsanitize=thread)"
-    )
-    build.add_argument(
-        "--headers", action="store_true", help="print the folder of cfepy's headers, for an editor or another build"
-    )
-    build.set_defaults(module="files.build")
 
 
 def _add_tbl(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -87,7 +52,7 @@ def _add_action(
     action = actions.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".", epilog=TBL_STATUS)
     add_mission(action, "--mission", help=f"whose tables are known by name: {MISSION_HELP}")
     action.add_argument("--layout", metavar="FILE.yaml", help="takes a table's layout from a YAML file that has one")
-    action.set_defaults(module="files.tbl")
+    action.set_defaults(module="cfepy.cli.files.tbl")
     return action
 
 
@@ -101,4 +66,4 @@ def _add_log(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     log.add_argument("files", metavar="FILE", nargs="+", help="a file with a cFE header")
     add_json(log, "an object for each file")
     add_perfetto(log)
-    log.set_defaults(module="files.log")
+    log.set_defaults(module="cfepy.cli.files.log")

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import sys
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TextIO
 
 from cfepy.cli.failures import tell, writing
 from cfepy.cli.json_output import write_json
@@ -13,11 +14,14 @@ from cfepy.cli.main import BAD_USAGE, ENDED_WELL
 from cfepy.cli.table import Table, show_tables
 from cfepy.ground.files.dump_files import DumpFile, read_dump, timings, value_at
 from cfepy.ground.files.table_file import is_zero
-from cfepy.input_files import read_limited
-from cfepy.input_limits import TABLE_BYTES
+from cfepy.plugins import Hook
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import TABLE_BYTES
 from cfepy.status import UsageError
 from cfepy.time import print_ as time_text
 
+PERF_LOG: Hook[Callable[[TextIO, Sequence[Mapping[str, Any]], Mapping[str, Any]], None]] = Hook("perf_log")
+"""Writes performance data for Perfetto: the file, the entries, what is to be known of them."""
 PERF_FACTS = ("State", "Mode", "TriggerCount", "DataCount", "InvalidMarkerReported")
 
 
@@ -60,12 +64,11 @@ def _draw(arguments: argparse.Namespace) -> int:
     dump = read_dump(_bytes(name), name)
     if not dump.about:
         raise UsageError(f"is for performance data, and this is the {dump.kind}", file=name, field="--perfetto")
-    from cfepy.reports import write_perf_log
-
+    write = PERF_LOG.need("--perfetto")
     path = arguments.perfetto
     about = {"file": name, **{key: dump.about[key] for key in PERF_FACTS}}
     with writing(path, "--perfetto"), open(path, "w", encoding="utf-8") as file:
-        write_perf_log(file, dump.records, about)
+        write(file, dump.records, about)
     print(f"{path}: {len(dump.records):,} entries; open it in https://ui.perfetto.dev")
     tell([f"{name}: {dump.problem}"] if dump.problem else [])
     return BAD_USAGE if dump.problem else ENDED_WELL

@@ -24,9 +24,9 @@ from cfepy.ground.files.table_file import (
     is_zero,
     take_apart,
 )
-from cfepy.input_files import read_limited
-from cfepy.input_limits import TABLE_BYTES
-from cfepy.marked_yaml import load
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import TABLE_BYTES
+from cfepy.reading.marked_yaml import load
 from cfepy.status import UsageError
 from cfepy.tbl import TableType
 

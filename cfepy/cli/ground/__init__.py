@@ -1,15 +1,16 @@
 """The commands of a ground system: cmd, tlm, console, mids, graph, export; here are their options.
 
 A command belongs here when it works with cFE's packets by their names, over the network or with a mission that it
-flies. This module imports argparse only, for a quick start.
+flies.
 """
 
 from __future__ import annotations
 
 import argparse
 
+from cfepy.cli import flight_add_ons
 from cfepy.cli.csv_cells import add_quote_formulas
-from cfepy.cli.flight_options import add_pace, add_recording, add_viewers
+from cfepy.cli.flight_options import add_pace, add_recording
 from cfepy.cli.options import (
     LOOK_STATUS,
     VALUES_HELP,
@@ -66,7 +67,7 @@ def _add_cmd(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         help="virtual seconds to wait for what it causes (default: 2)",
     )
     add_run_options(cmd, without=["seconds"])
-    cmd.set_defaults(module="ground.cmd")
+    cmd.set_defaults(module="cfepy.cli.ground.cmd")
 
 
 def _add_tlm(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -96,7 +97,7 @@ def _add_tlm(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     )
     add_json(tlm, "an object for each packet, a line each,")
     add_run_options(tlm, without=["seconds"])
-    tlm.set_defaults(module="ground.tlm")
+    tlm.set_defaults(module="cfepy.cli.ground.tlm")
 
 
 def _add_console(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -129,8 +130,8 @@ def _add_console(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_run_options(console)
     add_recording(console)
     add_pace(console)
-    add_viewers(console)
-    console.set_defaults(module="ground.console")
+    flight_add_ons.add_options(console)
+    console.set_defaults(module="cfepy.cli.ground.console")
 
 
 def _add_mids(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -148,7 +149,7 @@ def _add_mids(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         help="write topics.lock in the mission's folder, which gives every ROS topic and service a MsgId of its own; "
         "ids that are in it already stay",
     )
-    mids.set_defaults(module="ground.mids")
+    mids.set_defaults(module="cfepy.cli.ground.mids")
 
 
 def _add_graph(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -169,7 +170,7 @@ def _add_graph(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     add_json(graph, "the graph")
     add_drawing(graph, "svg", "draw the graph")
     add_drawing(graph, "dot", "write the graph for graphviz")
-    graph.set_defaults(module="ground.graph")
+    graph.set_defaults(module="cfepy.cli.ground.graph")
 
 
 def _add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -178,7 +179,7 @@ def _add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         help="write values over time as CSV or Parquet, or a mission's packets for a ground system",
         description="Write what other programs read: values over time, or what a mission's packets mean.",
     )
-    export.set_defaults(module="ground.export")
+    export.set_defaults(module="cfepy.cli.ground.export")
     formats = export.add_subparsers(metavar="FORMAT", dest="format", required=True)
     _add_values(formats, "csv", "values over time as comma-separated values", "-")
     _add_values(formats, "parquet", "values over time as Apache Parquet", "values.parquet")

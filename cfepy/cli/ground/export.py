@@ -6,7 +6,7 @@ import argparse
 import os
 import re
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
@@ -16,11 +16,12 @@ from cfepy.cli.failures import check_writable, writing
 from cfepy.cli.json_output import STDOUT, write_text
 from cfepy.cli.looked_at import look_at_series
 from cfepy.cli.main import ENDED_WELL
-from cfepy.contained_files import write_contained
 from cfepy.ground import Series, dictionary_of, surveyed_topics
 from cfepy.mission import read_mission
 from cfepy.msg import Telemetry
 from cfepy.pilot import booting
+from cfepy.plugins import Hook
+from cfepy.reading.contained_files import write_contained
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
 
 TIME, STAMP = "time", "stamp"
 """Columns of every table: virtual time of sending and time on board, in s."""
+
+TELEMETRY_PACKAGE: Hook[Callable[[Sequence[Telemetry], str], Mapping[str, str]]] = Hook("telemetry_package")
+"""Makes the files of a catkin package of telemetry: the packets and the name of the mission; texts by names."""
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -59,14 +63,13 @@ def _xtce(arguments: argparse.Namespace) -> int:
 
 
 def _ros(arguments: argparse.Namespace) -> int:
-    from cfepy.ros_host import telemetry_package
-
+    make = TELEMETRY_PACKAGE.need("the format ros")
     spec = read_mission(arguments.mission)
     dictionary = dictionary_of(spec)
     for problem in dictionary.problems:
         print(f"cfepy: {problem}", file=sys.stderr)
     declared = [each for each in dictionary.telemetry.values() if isinstance(each, Telemetry)]
-    files = telemetry_package(declared, spec.name)
+    files = make(declared, spec.name)
     for name, text in files.items():
         path = Path(arguments.output) / name
         with writing(str(path), "--output"):

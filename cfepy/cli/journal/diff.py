@@ -15,11 +15,11 @@ from typing import Any, TextIO
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.run.compared_run import ComparedRun
 from cfepy.cli.run.compared_runs import FirstDifference, facts_of, failure, show_sides, started
-from cfepy.input_files import open_input
 from cfepy.journal import Journal, differences, is_journal, read_journal
 from cfepy.pilot import SUDDEN
 from cfepy.pilot.determinism import RunEndedError, first_parting
 from cfepy.pilot.determinism_look import Look
+from cfepy.reading.input_files import open_input
 from cfepy.status import UsageError
 
 MOST_FIELDS = 12

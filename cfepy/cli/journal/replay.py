@@ -6,7 +6,7 @@ import argparse
 import contextlib
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from typing import TextIO
 
@@ -20,11 +20,16 @@ from cfepy.cli.trace_text import TraceText
 from cfepy.journal import Journal, Replay, ReplayVerdict, read_journal, staged
 from cfepy.mission import Mission
 from cfepy.pilot import LAUNCH, NODE, STALLED, SUDDEN, RunPlan
+from cfepy.plugins import Hook
 from cfepy.rtos import GREENLET, THREAD, has_greenlets, task_kind
 from cfepy.trace import TimedRecords
 from cfepy.units import NS_PER_S
 
 MOST_LINES = 12
+FlyWithStops = Callable[[argparse.Namespace, Replay, View, Sequence[Attachment]], tuple[int, Replay]]
+STOPPED_REPLAY: Hook[FlyWithStops] = Hook("replay_stops")
+"""Flies a replay that stops for a debugger: the command line, the replay, its view, what watches each flight;
+the exit status, and the last of the replays."""
 _FILES = ("json", "save_files", "bag", "trace")  # what a replay leaves behind
 
 
@@ -131,10 +136,8 @@ def _fly(arguments: argparse.Namespace, replay: Replay) -> tuple[int, Replay]:
     view = _view(replay.plan.command, arguments)
     if not (arguments.stops or arguments.step or _looks_into(arguments) or _goes_back(arguments)):
         return fly_again(arguments, replay, view), replay
-    from cfepy.cli.journal.debugging import fly_with_debugger
-
     looking_on = [each for each in replay.attachments if isinstance(each, RecordLines)]
-    return fly_with_debugger(arguments, replay, view, looking_on)
+    return STOPPED_REPLAY.need("a replay that stops")(arguments, replay, view, looking_on)
 
 
 def _tasks(arguments: argparse.Namespace, plan: RunPlan) -> str | None:

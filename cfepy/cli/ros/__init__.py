@@ -64,7 +64,7 @@ def _add_launch(commands: _Actions[argparse.ArgumentParser]) -> None:
     launch.add_argument("--dump-params", action="store_true", help="only show the parameters, as YAML")
     add_run_options(launch)
     add_flight(launch)
-    launch.set_defaults(module="ros.launch")
+    launch.set_defaults(module="cfepy.cli.ros.launch")
 
 
 def _add_node(commands: _Actions[argparse.ArgumentParser]) -> None:
@@ -78,7 +78,7 @@ def _add_node(commands: _Actions[argparse.ArgumentParser]) -> None:
     node.add_argument("words", metavar="WORD", nargs="+", help=_NODE_WORDS)
     add_run_options(node, without=["launch_args"])
     add_flight(node)
-    node.set_defaults(module="ros.node", hint="; what the node itself is to get comes after --")
+    node.set_defaults(module="cfepy.cli.ros.node", hint="; what the node itself is to get comes after --")
 
 
 def _add_rostest(commands: _Actions[argparse.ArgumentParser]) -> None:
@@ -92,7 +92,7 @@ def _add_rostest(commands: _Actions[argparse.ArgumentParser]) -> None:
     test.add_argument("--text", "-t", action="store_true", help="show what the nodes and tests print")
     test.add_argument("--results", metavar="FILE", help="write the result of every test to a file, as JUnit XML")
     add_run_options(test, without=["seconds"])  # each test has its own time limit
-    test.set_defaults(module="ros.rostest")
+    test.set_defaults(module="cfepy.cli.ros.rostest")
 
 
 # -- topics and services -----------------------------------------------------------------------------------------------
@@ -103,7 +103,7 @@ def _add_topic(commands: _Actions[argparse.ArgumentParser]) -> None:
     topic = commands.add_parser(
         "topic", help="show ROS topics", description=f"Like rostopic: {text}.", epilog=_TOPIC_STATUS
     )
-    topic.set_defaults(module="ros.topic")
+    topic.set_defaults(module="cfepy.cli.ros.topic")
     actions = topic.add_subparsers(metavar="ACTION", dest="action", required=True)
     listing = _flown(actions, "list", "list the topics")
     listing.add_argument("namespace", nargs="?", metavar="NAMESPACE", help="only those in it")
@@ -169,7 +169,7 @@ def _add_service(commands: _Actions[argparse.ArgumentParser]) -> None:
     service = commands.add_parser(
         "service", help="show or call ROS services", description=f"Like rosservice: {text}.", epilog=_TOPIC_STATUS
     )
-    service.set_defaults(module="ros.service")
+    service.set_defaults(module="cfepy.cli.ros.service")
     actions = service.add_subparsers(metavar="ACTION", dest="action", required=True)
     listing = _flown(actions, "list", "list the services", MISSION_HELP)
     listing.add_argument("namespace", nargs="?", metavar="NAMESPACE", help="only those in it")
@@ -196,7 +196,7 @@ def _add_param(commands: _Actions[argparse.ArgumentParser]) -> None:
         "the application ROS, which keeps them.",
         epilog=_PARAM_STATUS,
     )
-    param.set_defaults(module="ros.param")
+    param.set_defaults(module="cfepy.cli.ros.param")
     actions = param.add_subparsers(metavar="ACTION", dest="action", required=True)
     _add_param_shows(actions)
     _add_param_files(actions)
@@ -252,7 +252,7 @@ def _add_param_action(actions: _Actions[argparse.ArgumentParser], name: str, tex
 def _add_bag(commands: _Actions[argparse.ArgumentParser]) -> None:
     text = "show, save and convert bags and MCAP files"
     bag = commands.add_parser("bag", help=text, description=f"{text[0].upper()}{text[1:]}.", epilog=_BAG_STATUS)
-    bag.set_defaults(module="ros.bag")
+    bag.set_defaults(module="cfepy.cli.ros.bag")
     actions = bag.add_subparsers(metavar="ACTION", dest="action", required=True)
     for name, help_text in (
         ("info", "show what is in a recording, and what is wrong with it"),

@@ -15,9 +15,9 @@ from cfepy.cli.options import plan_of, refuse_run_options
 from cfepy.cli.table import print_lines
 from cfepy.ground.parameters import Parameters, at_start, changed, is_source_of_files, of_files, present, table_files
 from cfepy.pilot import never_happened, takeoff
-from cfepy.plain_yaml import YamlError, plain_yaml
+from cfepy.reading.plain_yaml import YamlError, plain_yaml
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -19,14 +19,13 @@ from cfepy.cli.options import launch_words
 from cfepy.cli.options import plan_of as run_plan_of
 from cfepy.cli.ros.view import NodesDisplay
 from cfepy.cli.run.outputs import SavedRunFiles
-from cfepy.convert import TEST_RESULTS
-from cfepy.input_files import read_limited
-from cfepy.input_limits import XML_BYTES
 from cfepy.markup import printable
-from cfepy.mission import BuiltProgram, CppNodesConfig, NodeBuilder, built_programs, launch_file, spec_of
+from cfepy.mission import TEST_RESULTS, BuiltProgram, CppNodesConfig, NodeBuilder, built_programs, launch_file, spec_of
 from cfepy.nodes import CppNode, NodeConfig
 from cfepy.pilot import LAUNCH, Flown, builder, fly, is_reported
-from cfepy.plain_xml import XmlError, plain_xml
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import XML_BYTES
+from cfepy.reading.plain_xml import XmlError, plain_xml
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 from rospy_shim.roslaunch.plan import LaunchPlan, PlannedTest, plan_of

@@ -15,8 +15,8 @@ from cfepy.cli.table import print_lines
 from cfepy.console import Console
 from cfepy.flight import library_near
 from cfepy.ground import GroundConsole, is_bag, with_ground_node
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 from rospy_shim.graph.compiled import DeclaredType
 
 

@@ -19,8 +19,8 @@ from cfepy.console import Console
 from cfepy.escapes import visible_line
 from cfepy.ground import GroundConsole, candidates, with_ground_node
 from cfepy.mission import described
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 
 
 def run(arguments: argparse.Namespace) -> int:

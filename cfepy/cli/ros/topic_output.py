@@ -48,7 +48,7 @@ class Echo:
         return True
 
     def _text(self, message: TopicMessage, value: Any) -> None:
-        strify = importlib.import_module("rospy_shim.genpy.strify").strify_message
+        strify = importlib.import_module("rospy_shim.types.genpy.strify").strify_message
         text = strify(value, field_filter=self._shown_fields) if self._hides else strify(value)
         self._stream.write(f"{text}\n---\n")
 

@@ -45,7 +45,7 @@ def add(commands: _Actions[argparse.ArgumentParser]) -> None:
 
 def _tool(commands: _Actions[argparse.ArgumentParser], name: str, text: str) -> _Actions[argparse.ArgumentParser]:
     tool = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}, as {name} does.")
-    tool.set_defaults(module="ros_tools.tool", tool=name)
+    tool.set_defaults(module="cfepy.cli.ros_tools.tool", tool=name)
     return tool.add_subparsers(metavar="ACTION", dest="action", required=True)
 
 

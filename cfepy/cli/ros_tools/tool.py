@@ -23,7 +23,7 @@ from cfepy.cli.ros.source import FlightSource
 from cfepy.cli.ros_tools import words_of
 from cfepy.console import Console
 from cfepy.ground import BagReader, GroundConsole, empty_mission, ground_node_ended, is_bag, with_ground_node
-from cfepy.host_system import is_absent
+from cfepy.interpreter.host_system import is_absent
 from cfepy.mission import MissionSpec
 from cfepy.pilot import BOOT_S, DEFAULT_S, RunPlan
 from cfepy.status import UsageError

@@ -13,7 +13,7 @@ from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.escapes import visible_line
 from cfepy.mission import read_mission
-from cfepy.pilot.check import MissionProblem, check_mission, problem_of
+from cfepy.pilot import MissionProblem, check_mission, problem_of
 from cfepy.status import UsageError
 
 

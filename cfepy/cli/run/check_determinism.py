@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from cfepy.cli import flight_add_ons
 from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.run.compared_run import ComparedRun
@@ -60,8 +61,8 @@ def check(arguments: argparse.Namespace, plan: RunPlan) -> int:
     Raises:
         UsageError: the mission cannot run, or an option does not go with this one.
     """
-    for option, place in (("--foxglove", arguments.foxglove), ("--rosbridge", arguments.rosbridge)):
-        if place is not None:
+    for name, option in flight_add_ons.options():
+        if getattr(arguments, name) not in (None, []):
             raise UsageError("runs that are compared are not shown; leave one of the two out", field=option)
     for name in _NOT_TOGETHER:
         if getattr(arguments, name) is not None:

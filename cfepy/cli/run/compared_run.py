@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from cfepy.attachment import Recorder
-from cfepy.child_pipes import descriptor_of
 from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL
 from cfepy.cli.trace_text import TraceText
 from cfepy.ground import dictionary_of, flat, library_of, plain, text_of, topics_of
+from cfepy.interpreter.child_pipes import descriptor_of
 from cfepy.journal import Replay, read_journal, staged
 from cfepy.mission import Mission, MissionSpec
 from cfepy.pilot import RunPlan, fly

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import IO, Any, TextIO
 
-from cfepy.child_pipes import number_of, popen_options
 from cfepy.cli.run.compared_run import ComparedRun
+from cfepy.interpreter.child_pipes import number_of, popen_options
 from cfepy.pilot.determinism import RecordReader, RunEndedError
 from cfepy.pilot.determinism_look import Line, Look, suspects
 from cfepy.resources import import_path, python_command

@@ -17,8 +17,6 @@ from typing import TYPE_CHECKING, Any
 from cfepy.attachment import Attachment, Recorder
 from cfepy.cli.failures import writing
 from cfepy.cli.json_output import check_json, write_json
-from cfepy.cli.trace_text import TraceText
-from cfepy.contained_files import write_contained
 from cfepy.mission import Mission
 from cfepy.pilot import Flown, RunPlan
 from cfepy.status import UsageError
@@ -44,6 +42,8 @@ class TraceFile(Recorder):
     """
 
     def __init__(self, path: str) -> None:
+        from cfepy.cli.trace_text import TraceText
+
         with writing(path, "--trace"):
             self._file = open(path, "w", encoding="utf-8")  # noqa: SIM115  # closed in __exit__
         self.trace = Trace(self.write, TimedRecords())
@@ -203,6 +203,8 @@ def _saving_to(folder: str) -> Path:
 
 def _write(folder: Path, name: str, data: bytes) -> None:
     """/ram/cfe_evs.log becomes DIR/ram/cfe_evs.log; a file of the same name is written over."""
+    from cfepy.reading.contained_files import write_contained
+
     inside = f"/{name.lstrip('/')}"
     with writing(f"{folder}{inside}", SAVE_FILES):
         write_contained(folder, inside, data)

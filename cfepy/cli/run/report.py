@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from typing import Any, TextIO
 
 from cfepy.cli.table import Table, show_paragraph, show_tables
 from cfepy.monitors import time_text
 from cfepy.pilot import Results
+from cfepy.plugins import Hook
 from cfepy.units import NS_PER_S
+
+REPORT_TABLES: Hook[Callable[[Results], Iterable[Table]]] = Hook("report_tables")
+"""Each makes more tables for the end of a report."""
+
+
+def load_add_ons() -> None:
+    """Import what makes tables, before a run: after it, an error would cost its report.
+
+    Raises:
+        UsageError: an add-on of another package cannot be imported.
+    """
+    list(REPORT_TABLES.all())
 
 
 def show(results: Results, stream: TextIO) -> None:
@@ -24,6 +38,7 @@ def show(results: Results, stream: TextIO) -> None:
         *_inversions(results),
         *_invariants(results),
         *_memory(results),
+        *(table for make in REPORT_TABLES.all() for table in make(results)),
     ]
     show_tables([*tables, *more], stream)
     show_speed(results, stream)

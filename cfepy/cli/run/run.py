@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 from cfepy.cli.display import Display, make_display
 from cfepy.cli.failures import note, tell
+from cfepy.cli.flight_add_ons import FlightAddOns
 from cfepy.cli.flight_options import check_pace
 from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of_mission
 from cfepy.cli.run import report
 from cfepy.cli.run.outputs import Outputs, recording
-from cfepy.cli.viewers import Viewers
 from cfepy.pilot import Flown, RunPlan, fly
 from cfepy.trace import TimedRecords, Trace
 
@@ -89,6 +89,7 @@ def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> in
         UsageError: it cannot run like this.
     """
     check_pace(arguments)
+    report.load_add_ons()
     if arguments.check_determinism is not None:
         from cfepy.cli.run.check_determinism import check
 
@@ -96,21 +97,20 @@ def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> in
     with recording(arguments, plan) as journal, Interrupts() as interrupts, Outputs(arguments, plan) as outputs:
         spec = plan.spec()  # a journal has the files that are read for it
         with (
-            Viewers(arguments, spec.name, note) as viewers,
+            FlightAddOns(arguments, spec.name, note) as add_ons,
             WatchedHost(
                 interrupts,
                 view.display,
                 realtime=arguments.realtime,
                 ports=dict(arguments.port),
-                ros_master=arguments.ros_master,
-                viewers=viewers,
+                add_ons=add_ons,
                 pause=_nothing if journal is None else journal.mark,
             ) as host,
         ):
             flown = fly(
                 plan,
                 spec=spec,
-                attachments=[*outputs.attachments, *viewers.attachments, *([] if journal is None else [journal])],
+                attachments=[*outputs.attachments, *add_ons.attachments, *([] if journal is None else [journal])],
                 console=host.console,
                 policy=None if journal is None else journal.policy,
                 trace=outputs.trace,

@@ -17,4 +17,4 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     text = "print what makes a shell complete the words of cfepy"
     command = commands.add_parser("completion", help=text, description=f"{text[0].upper()}{text[1:]}.", epilog=_SETUP)
     command.add_argument("shell", choices=SHELLS, help="the shell")
-    command.set_defaults(module="shell.completion")
+    command.set_defaults(module="cfepy.cli.shell.completion")

@@ -18,8 +18,9 @@ from cfepy.status import UsageError
 
 if TYPE_CHECKING:
     from cfepy.ground import Dictionary
-    from rospy_shim.msgs.packages import Packages
+    from rospy_shim.types.msgs.packages import Packages
 
+COMMANDS_OF, TELEMETRY_OF = "cfepy.cli.ground.cmd", "cfepy.cli.ground.tlm"
 NEEDS = "needs the library argcomplete: pip install 'cfepy[completion]'"
 _MISSIONS = (*LAUNCH_FILES, ".scr", ".py", ".bag", ".cfepy")
 _FILES = ("FILE", "FILE|-", "FILE|seed:N", "PATH", "BAG", "FILE.yaml", "FILE.tbl", "A", "B", "DIR", "FILE.tbl|DIR")
@@ -137,10 +138,10 @@ def boards(prefix: str, **_: object) -> list[str]:
 def packets(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """Commands for `cfepy cmd`, and telemetry for `cfepy tlm`, of a mission that is named before."""
     module = getattr(parsed_args, "module", "")
-    if module not in ("ground.cmd", "ground.tlm"):
+    if module not in (COMMANDS_OF, TELEMETRY_OF):
         return []
     dictionary = _dictionary(parsed_args)
-    return sorted(dictionary.commands if module == "ground.cmd" else dictionary.telemetry)
+    return sorted(dictionary.commands if module == COMMANDS_OF else dictionary.telemetry)
 
 
 def fields(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:

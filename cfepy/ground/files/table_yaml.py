@@ -17,8 +17,8 @@ from typing import Any
 
 from cfepy.fs import DESCRIPTION_SIZE, SUBTYPE_TBL_IMG, FileHeader, TableHeader
 from cfepy.ground.files.table_file import HEADER_FIELDS, ROW, Find, TableContents, cut, one_nan
-from cfepy.marked_yaml import Marked, load
 from cfepy.msg import Layout
+from cfepy.reading.marked_yaml import Marked, load
 from cfepy.status import UsageError
 from cfepy.tbl import PROCESSOR_ID, SPACECRAFT_ID, TableType
 from cfepy.tbl.packets import FULL_NAME_SIZE

@@ -19,7 +19,7 @@ from contextlib import suppress
 from functools import cache
 from weakref import WeakSet, finalize
 
-from cfepy.host_system import before_end, in_forked_process
+from cfepy.interpreter.host_system import before_end, in_forked_process
 from cfepy.nodes.files.paths import (
     HAS_DRIVES,
     is_in,

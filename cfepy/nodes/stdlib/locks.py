@@ -13,8 +13,9 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cfepy.own_code import called_as, is_shown, is_standard
-from cfepy.rtos import FOREVER, TIMEOUT, ExploringKernel, WaitList
+from cfepy.interpreter.own_code import called_as, is_shown, is_standard
+from cfepy.rtos import FOREVER, TIMEOUT, WaitList
+from cfepy.schedules import ExploringKernel
 
 if TYPE_CHECKING:
     from collections.abc import Callable

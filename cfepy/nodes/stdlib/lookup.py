@@ -11,7 +11,7 @@ import functools
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from cfepy.cached import CachedProperty
+from cfepy.interpreter.cached import CachedProperty
 from cfepy.nodes.synth import proxy, rebind
 
 if TYPE_CHECKING:

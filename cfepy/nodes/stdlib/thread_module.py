@@ -15,13 +15,14 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 from weakref import ref
 
+from cfepy.interpreter.own_code import called_as
 from cfepy.nodes.report import traceback_text
 from cfepy.nodes.stdlib.futures import hash_by_serial
 from cfepy.nodes.stdlib.locks import END, INNER, MAX_WAIT_S, as_waiter
 from cfepy.nodes.stdlib.signal_module import NodeInterrupt
 from cfepy.nodes.synth import made
-from cfepy.own_code import called_as
-from cfepy.rtos import ExploringKernel, TaskExit
+from cfepy.rtos import TaskExit
+from cfepy.schedules import ExploringKernel
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe

@@ -7,13 +7,10 @@ when its answer is certain without a run; what reads a file, for a run as for a 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from cfepy.es import CFE_APP, StartupEntry, entries
-from cfepy.input_files import read_limited
-from cfepy.input_limits import STARTUP_BYTES
-from cfepy.marked_yaml import Mistakes
 from cfepy.mission import (
     LAUNCH_FILES,
     NODE_SYMBOL,
@@ -32,7 +29,6 @@ from cfepy.pilot.check.cfe_names import wrong_names
 from cfepy.pilot.check.mission_sections import (
     check_board,
     check_bridge,
-    check_cpp_nodes,
     check_deadlines,
     check_lock,
     check_nodes_said,
@@ -40,10 +36,20 @@ from cfepy.pilot.check.mission_sections import (
 )
 from cfepy.pilot.check.problem import MissionProblem, problem_of
 from cfepy.pilot.check.ros_files import NodeScript, check_definitions_of, check_launch, check_nodes
-from cfepy.pilot.check.startup import app_sources, check_profiles, check_startup
+from cfepy.pilot.check.startup import app_sources, check_startup
+from cfepy.plugins import Hook
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import STARTUP_BYTES
+from cfepy.reading.marked_yaml import Mistakes
 from cfepy.status import UsageError
 from cfepy.versions import RELEASES
 
+CHECK_PROFILES: Hook[Callable[[Path, list[StartupEntry], MissionSections], Iterable[MissionProblem]]] = Hook(
+    "check_profiles"
+)
+"""Checks all code of a mission together: the startup script, what it starts, what the mission file says."""
+CHECK_SECTIONS: Hook[Callable[[MissionSections], Iterable[MissionProblem]]] = Hook("check_sections")
+"""Checks what the mission file says."""
 __all__ = ["MissionProblem", "check_mission", "problem_of"]
 
 
@@ -101,7 +107,8 @@ def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None
     started = entries(data, longest)
     demands = read_demands(said.demands, mistakes)
     found = [*check_startup(script, data, started, longest), *(problem_of(error, script) for error in mistakes.errors)]
-    found += check_profiles(script, started, said)
+    for check_code in CHECK_PROFILES.all():
+        found += check_code(script, started, said)
     for source, entry_point in dict.fromkeys(app_sources(script.parent, started)):
         found += wrong_names(source, entry_point)
     nodes = _nodes_of(script.parent, started, said)
@@ -116,7 +123,8 @@ def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None
     if not mistakes.errors:  # what the mission has is known when its file is right
         found += check_packets(said, demands, script)
         found += check_bridge(said, script)
-    found += check_cpp_nodes(said)
+    for check_said in CHECK_SECTIONS.all():
+        found += check_said(said)
     found += check_lock(script.parent, said)
     found += check_board(script, started, said, board, script.parent)
     return [*found, *check_nodes(nodes), *check_definitions_of(nodes, script)]

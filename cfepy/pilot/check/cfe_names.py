@@ -21,10 +21,10 @@ from typing import Any, NamedTuple, get_type_hints
 
 from cfepy import msg
 from cfepy.app import Cfe
+from cfepy.interpreter.syntax_trees import parsed
 from cfepy.mission import sources
 from cfepy.pilot.check.problem import MissionProblem
-from cfepy.suggestions import did_you_mean
-from cfepy.syntax_trees import parsed
+from cfepy.reading.suggestions import did_you_mean
 
 HANDLE = "cfe"
 _MOST = 500  # problems of a file that are told

@@ -9,13 +9,11 @@ from pathlib import Path
 from cfepy.config import PlatformConfig
 from cfepy.es import CFE_APP, CFE_LIB, StartupEntry
 from cfepy.ground import dictionary_of
-from cfepy.marked_yaml import Marked, Mistakes
 from cfepy.mission import (
     CORE_APPS,
     LOCK_FILE,
     NODE_SYMBOL,
     MissionSections,
-    mission_environment,
     read_lock,
     read_mission,
 )
@@ -23,9 +21,9 @@ from cfepy.monitors import Demands
 from cfepy.nodes import RosConfig
 from cfepy.pilot.check.problem import MissionProblem, problem_of, with_field
 from cfepy.psp import BoardProfile, load_profile
+from cfepy.reading.marked_yaml import Marked, Mistakes
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
-from rospy_shim.msgs import Library, OnDisk, Packages, shipped
 
 
 def check_nodes_said(said: MissionSections, entries: list[StartupEntry]) -> Iterator[MissionProblem]:
@@ -58,19 +56,6 @@ def check_lock(folder: Path, said: MissionSections) -> Iterator[MissionProblem]:
         read_lock(path, RosConfig(topics=said.topics))
     except UsageError as error:
         yield problem_of(error, path)
-
-
-def check_cpp_nodes(said: MissionSections) -> Iterator[MissionProblem]:
-    """Capacities of types and fields that are not there, seen from the packages of the mission's launch files."""
-    if not said.cpp_nodes.capacities:
-        return
-    from cfepy.convert import wrong_capacities
-
-    section = said.places["cpp_nodes"]
-    near = said.launch[0][0] if said.launch else section.file
-    library = Library([OnDisk(Packages(near, mission_environment()))], base=shipped())
-    for error in wrong_capacities(said.cpp_nodes, library):
-        yield problem_of(error, section.file)
 
 
 def check_deadlines(said: MissionSections, entries: list[StartupEntry]) -> Iterator[MissionProblem]:

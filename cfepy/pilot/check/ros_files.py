@@ -13,17 +13,17 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from cfepy.marked_yaml import Mistakes
 from cfepy.mission import CppNodesConfig, CppNodesError, sources
 from cfepy.nodes import CppNode
 from cfepy.pilot.check.problem import MissionProblem, problem_of
 from cfepy.pilot.plan import built_node
+from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
-from cfepy.suggestions import did_you_mean
 
 if TYPE_CHECKING:
-    from rospy_shim.msgs import Packages
     from rospy_shim.roslaunch.plan import LaunchPlan
+    from rospy_shim.types.msgs import Packages
 
 _KINDS = ("msg", "srv")
 
@@ -114,7 +114,7 @@ def check_definitions_of(scripts: Iterable[NodeScript], near: Path) -> Iterator[
         scripts: the nodes.
         near: the startup script, launch file or node that is the mission; definitions below its folder count too.
     """
-    from rospy_shim.msgs import Packages, check_definitions
+    from rospy_shim.types.msgs import Packages, check_definitions
 
     for script in scripts:
         packages = Packages(script.file, script.environ)
@@ -148,7 +148,7 @@ def _message_imports(file: Path) -> Iterator[tuple[str, str, list[str], int]]:
 
 def _check_imports(script: NodeScript) -> Iterator[MissionProblem]:
     """Packages of messages, and types in them, that a script imports and that are not there."""
-    from rospy_shim.msgs import Library, OnDisk, Packages, shipped
+    from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 
     imports = list(_message_imports(script.file))
     if not imports:

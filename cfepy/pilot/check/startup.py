@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from cfepy.es import CFE_APP, CFE_LIB, StartupEntry, startup_script
-from cfepy.input_files import read_limited
-from cfepy.input_limits import OBJECT_BYTES
-from cfepy.marked_yaml import Mistakes
-from cfepy.mission import CORE_APPS, NODE_SYMBOL, MissionSections, find_code, find_compiled, find_node, sources
+from cfepy.es import CFE_APP, StartupEntry, startup_script
+from cfepy.mission import CORE_APPS, NODE_SYMBOL, find_code, find_compiled, find_node, sources
 from cfepy.osal import OS_MAX_FILE_NAME
 from cfepy.pilot.check.problem import MissionProblem
-from cfepy.suggestions import did_you_mean
+from cfepy.plugins import Hook, missing
+from cfepy.reading.suggestions import did_you_mean
 
 NO_SYMBOL = "NULL"
 FILES = "/cf/"
 C_SOURCES = "fsw/src"
-PROFILE = "omit_deprecated"
-SHOWN = 8
-"""Names of missing functions that are listed."""
+CheckCompiled = Callable[[Path, Sequence[StartupEntry], StartupEntry, Path], Iterator[MissionProblem]]
+CHECK_COMPILED: Hook[CheckCompiled] = Hook("check_compiled")
+"""Finds what is wrong with compiled code: startup script, what it starts, the line that names the file, the file."""
 
 
 def check_startup(script: Path, data: bytes, entries: list[StartupEntry], longest: int) -> Iterator[MissionProblem]:
@@ -79,7 +77,11 @@ def _check_code(script: Path, entries: list[StartupEntry], entry: StartupEntry) 
         return
     compiled = None if is_node else find_compiled(entry.path, folder)
     if compiled is not None:
-        yield from _check_compiled(script, entries, entry, compiled)
+        check = CHECK_COMPILED.first()
+        if check is None:
+            yield MissionProblem(script, entry.line, missing(f"compiled code, as {compiled.name},", "c"))
+        else:
+            yield from check(script, entries, entry, compiled)
         return
     code = (find_node(entry.path, folder) if is_node else None) or find_code(entry.path, folder)
     if code is None:
@@ -96,126 +98,6 @@ def _check_code(script: Path, entries: list[StartupEntry], entry: StartupEntry) 
     if source is not None and not is_node:
         broken = list(_check_syntax(source))
         yield from broken or _check_symbol(script, entry, source)
-
-
-def _check_compiled(
-    script: Path, entries: Sequence[StartupEntry], entry: StartupEntry, file: Path
-) -> Iterator[MissionProblem]:
-    """What is wrong with a compiled application or library.
-
-    Args:
-        script: the startup script.
-        entries: what it starts.
-        entry: the line that names the file.
-        file: the shared object.
-    """
-    from cfepy.c import ElfError, read_shared_object, wanted_names
-
-    try:
-        source = read_shared_object(read_limited(file, OBJECT_BYTES), file.name)
-        wanted = wanted_names(source)
-    except ElfError as error:
-        yield MissionProblem(file, 0, str(error))
-        return
-    functions = [each.name for each in source.symbols if each.is_defined and each.kind == "STT_FUNC"]
-    if entry.symbol not in ("", NO_SYMBOL, *functions):
-        hint = did_you_mean(entry.symbol, functions, "correct the name, or export the function (it may be static)")
-        yield MissionProblem(script, entry.line, f"{file.name} has no function {entry.symbol}; {hint}")
-    yield from _check_needs(script, entries, entry, set(wanted))
-
-
-def _check_needs(
-    script: Path, entries: Sequence[StartupEntry], entry: StartupEntry, wanted: set[str]
-) -> Iterator[MissionProblem]:
-    from cfepy.c import function_names
-
-    wanted -= function_names()
-    before = True
-    for each in entries:
-        if each is entry:
-            before = False
-            continue
-        exported = _exported(script.parent, each) & wanted
-        if exported and not before:
-            text = (
-                f"{entry.name} needs {_listed(exported)} of the library {each.name}, which line {each.line} loads later"
-            )
-            yield MissionProblem(script, entry.line, text + "; move that line up", is_warning=True)
-        wanted -= exported
-    if wanted:
-        text = f"{entry.name} needs {_listed(wanted)}, which neither cfepy nor a library of the mission has"
-        yield MissionProblem(script, entry.line, text + "; a call of it is a fault", is_warning=True)
-
-
-def _exported(folder: Path, entry: StartupEntry) -> set[str]:
-    """What a library has."""
-    from cfepy.c import ElfError, read_shared_object
-
-    file = find_compiled(entry.path, folder) if entry.kind == CFE_LIB else None
-    if file is None:
-        return set()
-    try:
-        source = read_shared_object(read_limited(file, OBJECT_BYTES), file.name)
-    except ElfError:
-        return set()
-    return {each.name for each in source.symbols if each.is_defined}
-
-
-def check_profiles(script: Path, entries: list[StartupEntry], said: MissionSections) -> Iterator[MissionProblem]:
-    """Shared objects that were built for the other profile than the mission's, and those of which that is not known.
-
-    Of the latter nothing is told when the mission file says itself which profile holds.
-
-    Args:
-        script: the startup script.
-        entries: what it starts.
-        said: what the mission file says.
-    """
-    named = [find_compiled(each.path, script.parent) for each in entries if each.symbol != NODE_SYMBOL]
-    files = [file for file in dict.fromkeys(named) if file is not None]
-    if not files:
-        return
-    from cfepy.c import AbiProfile, ElfError, abi_profile, read_shared_object
-
-    omits = said.compiled.omit_deprecated
-    unknown = []
-    for file in files:
-        try:
-            profile = abi_profile(read_shared_object(read_limited(file, OBJECT_BYTES), file.name))
-        except ElfError:
-            continue  # told with the line that names the file
-        if profile.contradicts(omits):
-            text = f"was built {profile.value}, and the mission is for the other: build it with the option"
-            text += f" OMIT_DEPRECATED={_word(omits)}, or write {_line(not omits)} into the mission file"
-            yield MissionProblem(file, 0, text)
-        elif profile is AbiProfile.UNKNOWN:
-            unknown.append(file.name)
-    if unknown and not _says_profile(said):
-        text = f"whether {', '.join(unknown)} have OMIT_DEPRECATED cannot be told, without debug data of table handles;"
-        text += (
-            f" {_word(omits)} is taken: write {_line(omits)} into the mission file if that is right, or compile with -g"
-        )
-        yield MissionProblem(script, 0, text, is_warning=True)
-
-
-def _word(value: bool) -> str:
-    return str(value).lower()
-
-
-def _line(omits: bool) -> str:
-    return f"`compiled: {{{PROFILE}: {_word(omits)}}}`"
-
-
-def _says_profile(said: MissionSections) -> bool:
-    """Whether the mission file itself says the profile."""
-    section = said.places.get("compiled")
-    return section is not None and PROFILE in Mistakes(keep=True).mapping(section)
-
-
-def _listed(names: set[str]) -> str:
-    ordered = sorted(names)
-    more = f" and {len(ordered) - SHOWN} more" if len(ordered) > SHOWN else ""
-    return ", ".join(ordered[:SHOWN]) + more
 
 
 def _check_syntax(source: Path) -> Iterator[MissionProblem]:

@@ -7,13 +7,13 @@ import subprocess
 import time
 from pathlib import Path
 
-from cfepy.c.engine import compiler
-from cfepy.c.toolchain import headers_folder
 from cfepy.console import Console
+from cfepy.extra.c.engine import compiler
+from cfepy.extra.c.toolchain import headers_folder
 from cfepy.mission import Mission
 from dev.twin.real import RealCfe
 
-HERE = Path(__file__).parents[3] / "tests/c/api"
+HERE = Path(__file__).parents[3] / "tests/extra/c/api"
 FLAGS = ("-shared", "-fPIC", "-g", "-O1", "-Wall", "-Werror", "-fno-builtin", f"-I{HERE}")
 NAMES = sorted(each.stem for each in HERE.glob("*.c"))
 STARTUP = "CFE_APP, apitest, APITEST_Main, APITEST, 50, 32768, 0x0, 0;\n!\n"

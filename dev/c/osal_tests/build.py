@@ -6,8 +6,8 @@ import re
 import subprocess
 from pathlib import Path
 
-from cfepy.c.engine import compiler
 from cfepy.config import PlatformConfig
+from cfepy.extra.c.engine import compiler
 
 DRIVER = Path(__file__).with_name("driver.c")
 FLAGS = ("-shared", "-fPIC", "-g", "-O1", "-w", "-fno-builtin", "-D_LINUX_OS_", "-D_POSIX_OS_")

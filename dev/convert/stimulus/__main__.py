@@ -17,8 +17,8 @@ import traceback
 from pathlib import Path
 from typing import Any
 
-from cfepy.convert.check import programs_of
-from cfepy.convert.flight import message_library
+from cfepy.extra.convert.check import programs_of
+from cfepy.extra.convert.flight import message_library
 from cfepy.status import UsageError
 from dev.convert.stimulus import report
 from dev.convert.stimulus.comparing import Likeness, Part, compared
@@ -26,7 +26,7 @@ from dev.convert.stimulus.debian import NotBuilt, RoscppNode
 from dev.convert.stimulus.flight import Fault, NodeFlight
 from dev.convert.stimulus.script import Scene, Seen, script
 from dev.convert.survey import Node, listed
-from rospy_shim.msgs import Packages
+from rospy_shim.types.msgs import Packages
 
 HERE = Path(__file__).parent
 SCENES = HERE / "scenes.json"

@@ -17,15 +17,15 @@ from pathlib import Path
 from typing import Any
 from xmlrpc.client import ServerProxy
 
-from cfepy.convert.build import library_includes
-from cfepy.convert.configurations import configuration_script
-from cfepy.convert.packages import Program
-from cfepy.convert.sources import collect, message_types
+from cfepy.extra.convert.build import library_includes
+from cfepy.extra.convert.configurations import configuration_script
+from cfepy.extra.convert.packages import Program
+from cfepy.extra.convert.sources import collect, message_types
 from dev.convert.stimulus.outcome import Outcome, outcome_of
 from dev.convert.stimulus.script import Scene
 from dev.roscfe.building import CPP
 from dev.roscfe.probing import master
-from rospy_shim.msgs import Library
+from rospy_shim.types.msgs import Library
 
 PYTHON = "/usr/bin/python3"
 HERE = Path(__file__).parent

@@ -12,19 +12,19 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-import cfepy.convert.flight
+import cfepy.extra.convert.flight
 from cfepy.console import Console
-from cfepy.convert import build_for_flight
-from cfepy.convert.build import provided_packages
-from cfepy.convert.packages import Program
 from cfepy.es.packets import START_APP
+from cfepy.extra.convert import build_for_flight
+from cfepy.extra.convert.build import provided_packages
+from cfepy.extra.convert.packages import Program
 from cfepy.mission import Mission
 from cfepy.mission.launch import COMPILED_STACK_BYTES, PRIORITY, read_launch
 from cfepy.mission.processor import Machine
 from dev.convert.stimulus.outcome import Outcome, outcome_of
 from dev.convert.stimulus.script import Scene, Seen
 from rospy_shim.graph.compiled import CompiledNodes
-from rospy_shim.msgs import Library
+from rospy_shim.types.msgs import Library
 
 NODE, DRIVER = "NODE", "DRIVER"
 HERE = Path(__file__).parent
@@ -134,7 +134,7 @@ class NodeFlight:
             calls[name] = calls.get(name, ANY) if declared._type == "*" else declared._type
             return enroll(graph, node, name, declared)
 
-        whatever = patch.object(cfepy.convert.flight, "program_of", return_value=self._program)
+        whatever = patch.object(cfepy.extra.convert.flight, "program_of", return_value=self._program)
         with patch.dict(os.environ, self._environ), whatever:  # CMakeLists.txt does not name all that the survey lists
             spec = read_launch(launch, {}, build_for_flight)
         assert not spec.notes, spec.notes

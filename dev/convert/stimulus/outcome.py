@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 from dev.convert.stimulus.script import SECONDS
 from dev.corpus.likeness import lines as log_lines
-from rospy_shim.genpy import Duration, Message, Time
-from rospy_shim.msgs import Library
+from rospy_shim.types.genpy import Duration, Message, Time
+from rospy_shim.types.msgs import Library
 
 MARK = "@ "
 UNORDERED = ("visualization_msgs/InteractiveMarkerUpdate", "visualization_msgs/InteractiveMarkerInit")

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 from io import BytesIO
 from typing import Any, NamedTuple
 
-from cfepy.convert.capacities import Capacities
+from cfepy.extra.convert.capacities import Capacities
 from dev.roscfe.random_messages import Source
-from rospy_shim.genpy import Duration
-from rospy_shim.msgs import Library
-from rospy_shim.msgs.spec import BUILTINS, Field
+from rospy_shim.types.genpy import Duration
+from rospy_shim.types.msgs import Library
+from rospy_shim.types.msgs.spec import BUILTINS, Field
 
 GAP_S = 0.1
 """Between two steps: what one leads to is over before the next."""

@@ -15,14 +15,14 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
-from cfepy.exploration.fork_server import ForkingJudge
-from cfepy.exploration.trial import Trial
+from cfepy.extra.exploration.fork_server import ForkingJudge
+from cfepy.extra.exploration.trial import Trial
 from cfepy.journal import read_journal, record
 from cfepy.nodes import PREFIX, Overlay
 from cfepy.pilot.pilot import fly
 from cfepy.pilot.plan import NODE, RunPlan
 from cfepy.resources import import_path
-from cfepy.rtos.schedule import Schedule
+from cfepy.schedules.schedule import Schedule
 from tests.journal.replays import assert_same_again
 
 COUNTER = """

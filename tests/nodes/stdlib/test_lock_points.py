@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.exploration.search import DepthFirst
+from cfepy.extra.exploration.search import DepthFirst
 from cfepy.nodes import Universe
-from cfepy.rtos import DeadlockError, NotingPolicy, Policy, make_kernel
+from cfepy.rtos import DeadlockError, NotingPolicy, Policy
+from cfepy.schedules import make_kernel
 from cfepy.trace import Trace
 
 DEADLOCK = "deadlock"

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.marked_yaml import Mistakes
 from cfepy.mission.mission_file import read_mission_file
 from cfepy.monitors.demands import read_demands
 from cfepy.pilot.check import check_mission
 from cfepy.psp.profile import load_profile
+from cfepy.reading.marked_yaml import Mistakes
 from cfepy.status import UsageError
 from dev.house.tree import ROOT
 

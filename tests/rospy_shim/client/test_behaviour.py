@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from cfepy.nodes.config import NodeConfig
+from rospy_shim.types.config import NodeConfig
 from tests.rospy_shim.missions import run_nodes
 
 RECORD = Path(__file__).parents[2] / "data" / "rospy_behaviour.json"

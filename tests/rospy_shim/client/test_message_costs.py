@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rospy_shim.msgs import message_class
+from rospy_shim.types.msgs import message_class
 from tests.rospy_shim.missions import run_nodes
 
 LISTENER = """

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from cfepy.nodes.config import NodeConfig
+from rospy_shim.types.config import NodeConfig
 from tests.rospy_shim.missions import run_nodes
 
 NODES = Path(__file__).parents[2] / "ros_nodes"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from cfepy.status import CfeError
 from rospy_shim.client.service import MOST_BEGUN, REQUEST_LEAD, Pieces
-from tests.ros_host.peers import CALLER, SERVER, SET_BOOL, TALKER, joined, text
+from tests.extra.ros_host.peers import CALLER, SERVER, SET_BOOL, TALKER, joined, text
 
 LENGTHS = (7, 8, 9, 11, 12, 15, 16, 17, 20, 21, 40)
 FLAGS = (0xC0, 0x40, 0x00, 0x80)

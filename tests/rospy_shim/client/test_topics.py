@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.nodes.config import NodeConfig, TopicConfig
+from rospy_shim.types.config import NodeConfig, TopicConfig
 from tests.rospy_shim.missions import Run, run_nodes
 
 HEAD = """

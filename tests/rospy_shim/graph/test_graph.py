@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from cfepy.nodes.config import RosConfig, TopicConfig
 from cfepy.status import UsageError
-from rospy_shim.client import names
-from rospy_shim.client.exceptions import ROSException
 from rospy_shim.client.params import marshalled
-from rospy_shim.client.transport import Assembler, segments
 from rospy_shim.graph.graph import Graph
 from rospy_shim.graph.msg_ids import FIRST_MSG_ID, LAST_MSG_ID, msg_id_of
 from rospy_shim.parameters.tree import ParameterTree
+from rospy_shim.types import names
+from rospy_shim.types.config import RosConfig, TopicConfig
+from rospy_shim.types.exceptions import ROSException
+from rospy_shim.types.transport import Assembler, segments
 
 
 def test_msg_ids_are_stable_and_in_range() -> None:

@@ -6,9 +6,9 @@ from itertools import combinations
 
 import pytest
 
-from cfepy.nodes.config import RosConfig, TopicConfig
 from cfepy.status import UsageError
 from rospy_shim.graph.msg_ids import FIRST_MSG_ID, LAST_MSG_ID, MsgIds, locked, msg_id_of, next_free
+from rospy_shim.types.config import RosConfig, TopicConfig
 
 NAMES = [f"/topic{number}" for number in range(100)]
 FIRST, SECOND = next(pair for pair in combinations(NAMES, 2) if msg_id_of(pair[0]) == msg_id_of(pair[1]))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cfepy.nodes.config import NodeConfig
+from rospy_shim.types.config import NodeConfig
 from tests.rospy_shim.missions import run_nodes
 
 

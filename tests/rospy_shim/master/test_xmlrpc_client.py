@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.nodes.config import NodeConfig
+from rospy_shim.types.config import NodeConfig
 from tests.rospy_shim.missions import run_nodes
 
 

@@ -12,10 +12,10 @@ from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
 from cfepy.mission.limits import MissionLimits
 from cfepy.msg import command
-from cfepy.nodes.config import NodeConfig, RosConfig
 from cfepy.tbl import build
 from cfepy.tbl.packets import ACTIVATE, ACTIVE_BUFFER, DUMP, LOAD, VALIDATE
 from rospy_shim.parameters.table import TABLES, Row, rows_for, unpack
+from rospy_shim.types.config import NodeConfig, RosConfig
 
 PROCESSOR_RESET, POWERON_RESET = 1, 2
 

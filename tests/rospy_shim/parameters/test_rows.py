@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rospy_shim.client.exceptions import ROSException
 from rospy_shim.parameters import rows as rows_module
 from rospy_shim.parameters.rows import ParameterRows, ParametersFull
 from rospy_shim.parameters.table import FREE, count_rows, pack, records, rows_for, tree_of, unpack
 from rospy_shim.parameters.tree import ParameterTree
 from rospy_shim.parameters.values import DateTime, leaf_names, leaves_of, parts_of, text_of, value_of, written
+from rospy_shim.types.exceptions import ROSException
 
 SCALARS = st.one_of(
     st.booleans(),

@@ -12,11 +12,11 @@ from typing import Any
 
 import pytest
 
-from cfepy.marked_yaml import Mistakes
+from cfepy.reading.marked_yaml import Mistakes
 from cfepy.status import UsageError
-from rospy_shim.msgs import Packages
 from rospy_shim.roslaunch.model import Launch, LaunchNode
 from rospy_shim.roslaunch.reader import read
+from rospy_shim.types.msgs import Packages
 
 GOLDEN = json.loads((Path(__file__).parents[2] / "data/roslaunch_golden.json").read_text(encoding="utf-8"))
 CASES = {case["name"]: case for case in GOLDEN["cases"]}

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.marked_yaml import Mistakes
+from cfepy.reading.marked_yaml import Mistakes
 from cfepy.status import UsageError
-from rospy_shim.msgs import Packages
 from rospy_shim.parameters.values import DateTime
 from rospy_shim.roslaunch.model import Launch
 from rospy_shim.roslaunch.plan import plan_of
 from rospy_shim.roslaunch.reader import read
+from rospy_shim.types.msgs import Packages
 
 
 def launch(folder: Path, body: str, **args: str) -> Launch:

@@ -14,6 +14,7 @@ from dataclasses import replace
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, NamedTuple
 
+from cfepy.cli import flight_add_ons
 from cfepy.cli.failures import check_writable, note, tell
 from cfepy.cli.flight_options import check_pace
 from cfepy.cli.ground.console.pages import PacketBoard
@@ -24,7 +25,6 @@ from cfepy.cli.host import Interrupts
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of, refuse_run_options
 from cfepy.cli.run.run import told_problems
-from cfepy.cli.viewers import FOXGLOVE, ORIGIN, ROSBRIDGE, TOKEN, Viewers
 from cfepy.ground import CI_PORT, TO_PORT, dictionary_of, packet_of
 from cfepy.io import TypedLines, own_address, send
 from cfepy.mission import MissionSpec, read_mission
@@ -91,7 +91,7 @@ class Opening:
             dictionary = dictionary_of(spec)
             saved = SavedScript(dictionary)
             with (
-                Viewers(arguments, spec.name, note) as viewers,
+                flight_add_ons.FlightAddOns(arguments, spec.name, note) as add_ons,
                 FlownCraft(
                     plan,
                     spec,
@@ -100,8 +100,7 @@ class Opening:
                     self._interrupts,
                     realtime=arguments.realtime,
                     ports=dict(arguments.port),
-                    ros_master=arguments.ros_master,
-                    viewers=viewers,
+                    add_ons=add_ons,
                     journal=journal,
                     note=note,
                 ) as craft,
@@ -229,11 +228,6 @@ _NOT_OF_A_COMPUTER = (
     ("realtime", "--realtime"),
     ("record", "--record"),
     ("port", "--port"),
-    ("ros_master", "--ros-master"),
-    ("foxglove", FOXGLOVE),
-    ("rosbridge", ROSBRIDGE),
-    ("viewer_token", TOKEN),
-    ("viewer_origin", ORIGIN),
 )
 
 
@@ -243,7 +237,7 @@ def _check(arguments: argparse.Namespace) -> None:
     if arguments.udp is not None:
         why = f"{arguments.udp} is a computer, which is not flown; leave it out"
         refuse_run_options(arguments, why, but=["script", "stop_on_failure"])
-        for name, option in _NOT_OF_A_COMPUTER:
+        for name, option in (*_NOT_OF_A_COMPUTER, *flight_add_ons.options()):
             if getattr(arguments, name):
                 raise UsageError(why, field=option)
         return

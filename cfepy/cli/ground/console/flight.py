@@ -8,10 +8,10 @@ from dataclasses import replace
 from typing import Any
 
 from cfepy.cli.display import SilentDisplay
+from cfepy.cli.flight_add_ons import FlightAddOns
 from cfepy.cli.ground.console.saved import SavedScript
 from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.cli.options import LONGEST_S
-from cfepy.cli.viewers import Viewers
 from cfepy.ground import Dictionary
 from cfepy.journal import JournalRecorder
 from cfepy.mission import PACKET, Mission, MissionSpec, PacketWatch, Seen
@@ -75,7 +75,7 @@ class FlownCraft:
         saved: gets what is sent.
         interrupts: whether Ctrl-C was pressed.
         realtime: as of `WatchedHost`.
-        ports, ros_master, viewers: as of `WatchedHost`.
+        ports, add_ons: as of `WatchedHost`.
         journal: records the run; None for nobody.
         note: gets what the user should know.
 
@@ -93,8 +93,7 @@ class FlownCraft:
         *,
         realtime: float | None = None,
         ports: Mapping[int, int] | None = None,
-        ros_master: str | None = None,
-        viewers: Viewers | None = None,
+        add_ons: FlightAddOns | None = None,
         journal: JournalRecorder | None = None,
         note: Callable[[str], object] = print,
     ) -> None:
@@ -105,7 +104,7 @@ class FlownCraft:
         self._spec = spec
         self._dictionary = dictionary
         self._saved = saved
-        self._attachments = [] if viewers is None else viewers.attachments
+        self._attachments = [] if add_ons is None else add_ons.attachments
         self._journal = journal
         self._packets = Collected(MOST_PACKETS)
         self._news = News()
@@ -115,8 +114,7 @@ class FlownCraft:
             lambda seconds: self._news,
             realtime=realtime,
             ports=ports,
-            ros_master=ros_master,
-            viewers=viewers,
+            add_ons=add_ons,
             pause=(lambda: None) if journal is None else journal.mark,
             note=note,
         )

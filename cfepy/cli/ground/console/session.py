@@ -17,10 +17,10 @@ from cfepy.cli.ground.console.saved import SavedScript, when_of
 from cfepy.cli.options import LONGEST_S, count_of, factor_of, seconds_of
 from cfepy.escapes import visible, visible_line
 from cfepy.ground import EVENT_IDS, EVENT_TYPES, DecodedEvent
-from cfepy.input_files import text_limited
-from cfepy.input_limits import LINE_FILE_BYTES
 from cfepy.mission import Seen, receivers
 from cfepy.msg import MsgType, get_type
+from cfepy.reading.input_files import text_limited
+from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.rtos import ENDLESS, Stopwatch
 from cfepy.script import OVER, TYPED, StandingScript, Step, StepVerdict
 from cfepy.status import UsageError

@@ -1,0 +1,77 @@
+"""The commands boards and board; here are their options.
+
+A command belongs here when it is about boards, or makes the profile of one.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from typing import Any
+
+from cfepy.cli.options import seconds_of
+from cfepy.plugins import Hook
+
+FASTEST_CPU_HZ = 1e11
+ACTIONS: Hook[Callable[[Any], None]] = Hook("board_actions")
+"""Each adds actions to the command board."""
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add these commands to the parser of `cfepy`."""
+    boards = commands.add_parser("boards", help="list the boards and their main numbers")
+    boards.set_defaults(module="cfepy.cli.board.boards")
+    _add_board(commands)
+
+
+def _add_board(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    board = commands.add_parser("board", help="what a mission needs of a board, and a profile from measurements")
+    actions = board.add_subparsers(metavar="ACTION", required=True)
+    for add_actions in ACTIONS.all():
+        add_actions(actions)
+    new = actions.add_parser(
+        "new",
+        help="write a profile from three measurements",
+        description="Write a profile of a board, whose costs follow from three times that were measured on it; "
+        "docs/board_profiles.md says how.",
+    )
+    new.add_argument("file", metavar="FILE.yaml", help="the profile that is made; its name is that of the board")
+    new.add_argument("--cpu-hz", type=_cycles_of, required=True, metavar="HZ", help="processor clock, such as 120e6")
+    new.add_argument(
+        "--round-trip",
+        type=seconds_of,
+        required=True,
+        metavar="TIME",
+        help="of two tasks that wake each other by binary semaphores, such as 8us",
+    )
+    new.add_argument(
+        "--short",
+        type=seconds_of,
+        required=True,
+        metavar="TIME",
+        help="to send a message of 32 bytes on the Software Bus and receive it, in one task",
+    )
+    new.add_argument("--long", type=seconds_of, required=True, metavar="TIME", help="the same with 2048 bytes")
+    new.add_argument("--tick", type=seconds_of, metavar="TIME", help="the kernel's tick, such as 10ms (default: none)")
+    new.add_argument("--ram", metavar="SIZE", help="such as 512KiB or 8MiB (default: no limit)")
+    new.add_argument("--flash", metavar="SIZE", help="such as 4MiB (default: no limit)")
+    new.set_defaults(module="cfepy.cli.board.new")
+    program = actions.add_parser(
+        "program",
+        help="write the application, in C, that takes these measurements",
+        description="Write an application of cFS, in C, that measures the three times on a board and tells them in an "
+        "event, as options of `cfepy board new`.",
+    )
+    program.add_argument("folder", metavar="FOLDER", help="of the application; it must not be there yet")
+    program.set_defaults(module="cfepy.cli.board.program")
+
+
+def _cycles_of(text: str) -> int:
+    """A clock rate in Hz, for argparse."""
+    try:
+        rate = float(text)
+    except ValueError:
+        rate = 0.0
+    if not 1 <= rate <= FASTEST_CPU_HZ:
+        raise argparse.ArgumentTypeError(f"{text!r} is no clock rate in Hz, such as 120e6")
+    return round(rate)

@@ -1,0 +1,89 @@
+"""Compiled applications: unmodified C, built against NASA's headers, as lines of a startup script.
+
+What belongs here: the engine, a C extension that runs such code as coroutines (`engine/`), what loads a shared object
+without the host's loader (`elf.py`, `image.py`), the memory that C code sees (`arena.py`), and in `api/` what the
+public functions of OSAL, the PSP and cFE mean for C: arguments, outputs, structures; and what builds applications from
+their sources (`toolchain/`, with `headers/`). What does not: the services.
+
+It is imported only when a mission has an ELF file where a startup script names one, or when an application is built.
+The central file is `cfepy/extra/c/runtime.py`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.interpreter.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.extra.c.abi import AbiProfile, abi_profile
+    from cfepy.extra.c.api import function_names
+    from cfepy.extra.c.build_cache import cache_folder, writing_cache
+    from cfepy.extra.c.elf import ElfError, read_shared_object
+    from cfepy.extra.c.linking import wanted_names
+    from cfepy.extra.c.loading import CompiledLoader
+    from cfepy.extra.c.runtime import CRuntime
+    from cfepy.extra.c.toolchain import (
+        Built,
+        CMakeBudget,
+        CMakeScript,
+        CompilerError,
+        Options,
+        build,
+        call_bounded,
+        cpp_compiler,
+        end_bounded,
+        headers_folder,
+        start_bounded,
+    )
+
+__all__ = [
+    "AbiProfile",
+    "Built",
+    "CMakeBudget",
+    "CMakeScript",
+    "CRuntime",
+    "CompiledLoader",
+    "CompilerError",
+    "ElfError",
+    "Options",
+    "abi_profile",
+    "build",
+    "cache_folder",
+    "call_bounded",
+    "cpp_compiler",
+    "end_bounded",
+    "function_names",
+    "headers_folder",
+    "read_shared_object",
+    "start_bounded",
+    "wanted_names",
+    "writing_cache",
+]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".abi": ("AbiProfile", "abi_profile"),
+            ".api": ("function_names",),
+            ".build_cache": ("cache_folder", "writing_cache"),
+            ".elf": ("ElfError", "read_shared_object"),
+            ".linking": ("wanted_names",),
+            ".loading": ("CompiledLoader",),
+            ".runtime": ("CRuntime",),
+            ".toolchain": (
+                "Built",
+                "CMakeBudget",
+                "CMakeScript",
+                "CompilerError",
+                "Options",
+                "build",
+                "call_bounded",
+                "cpp_compiler",
+                "end_bounded",
+                "headers_folder",
+                "start_bounded",
+            ),
+        },
+    )

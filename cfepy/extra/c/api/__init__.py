@@ -1,0 +1,88 @@
+"""The public functions of OSAL, the PSP and cFE in C's terms: a module for each service.
+
+Each module has `declare(api, c)`, which adds its functions to the API: name, signature (`engine/calls.c` tells the
+letters), the Python function that answers, and the status for a NULL pointer where there must not be one. Functions
+raise `CfeError` or `OsalError` for a status, as the services do.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+from cfepy.extra.c.api import (
+    cds,
+    config,
+    cpp,
+    es,
+    evs,
+    fs,
+    gcov,
+    memory_pools,
+    osal_disks,
+    osal_files,
+    osal_locks,
+    osal_modules,
+    osal_objects,
+    osal_queues,
+    osal_select,
+    osal_semaphores,
+    osal_sockets,
+    osal_system,
+    osal_tasks,
+    osal_time,
+    psp,
+    psp_iodriver,
+    psp_memory,
+    pthread,
+    resource_ids,
+    sb,
+    sorting,
+    streams,
+    tbl,
+    text,
+    time,
+    unsent,
+)
+
+if TYPE_CHECKING:
+    from cfepy.extra.c.calls import Declarations
+    from cfepy.extra.c.runtime import CRuntime
+
+_OSAL = (
+    *(osal_tasks, osal_semaphores, osal_locks, osal_queues, osal_time, osal_files, osal_disks),
+    *(osal_sockets, osal_select, osal_modules, osal_objects, osal_system),
+)
+_PSP = (psp, psp_memory, psp_iodriver)
+_TOOLS = (streams, sorting, cpp, pthread, gcov, unsent)
+_CORE = (text, es, memory_pools, cds, evs, sb, tbl, time, fs, config, resource_ids)
+_MODULES = (*_CORE, *_TOOLS, *_OSAL, *_PSP)
+
+
+def declare(api: Declarations, c: CRuntime) -> None:
+    """Add all functions.
+
+    Args:
+        api: where they are added.
+        c: the C side of the processor that answers.
+    """
+    for module in _MODULES:
+        module.declare(api, c)
+
+
+class _Anything:
+    """Stands for a processor where only the names of functions are wanted."""
+
+    def __getattr__(self, name: str) -> _Anything:
+        return self
+
+    def __call__(self, *args: object, **options: object) -> _Anything:
+        return self
+
+
+def function_names() -> set[str]:
+    """The functions that compiled code can call."""
+    from cfepy.extra.c.calls import Declarations
+
+    api = Declarations()
+    declare(api, cast("Any", _Anything()))
+    return {*api.functions, *api.data}

@@ -1,0 +1,44 @@
+"""What functions of the API do with pointers again and again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from cfepy.extra.c.memory import CMemory
+from cfepy.status import CFE_SUCCESS, CfeError
+
+
+def need(status: int, *pointers: object) -> None:
+    """Refuse NULL, or a text that is one.
+
+    Raises:
+        CfeError: `status`.
+    """
+    if None in pointers or 0 in pointers:
+        raise CfeError(status, "a NULL pointer")
+
+
+def name_into(
+    memory: CMemory, get: Callable[[int], str], no_room: int, too_long: int
+) -> Callable[[int, int, int], None]:
+    """A function `(char *buffer, id, size_t size)` that tells a name.
+
+    Args:
+        memory: of C.
+        get: gives the name of an id.
+        no_room: the status for no buffer, or one of size 0.
+        too_long: the status when the name had to be cut; CFE_SUCCESS where C does not tell.
+    """
+
+    def call(buffer: int, key: int, size: int) -> None:
+        if not buffer or not size:
+            raise CfeError(no_room, "no room for a name")
+        try:
+            name = get(key)
+        except CfeError:
+            memory.poke(buffer, b"\0")
+            raise
+        if not memory.put_text(buffer, name, size) and too_long != CFE_SUCCESS:
+            raise CfeError(too_long, f"{size} bytes are too few for {name!r}")
+
+    return call

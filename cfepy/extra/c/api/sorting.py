@@ -1,0 +1,39 @@
+"""qsort and bsearch of libc, with a comparison in C.
+
+Nothing moves while the comparison is asked: items are compared where they lie, and put in order then. Equal ones keep
+their order, as glibc's merge sort leaves them.
+"""
+
+from __future__ import annotations
+
+from functools import cmp_to_key, partial
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from cfepy.extra.c.calls import Declarations
+    from cfepy.extra.c.runtime import CRuntime
+
+
+def declare(api: Declarations, c: CRuntime) -> None:
+    memory = c.memory
+
+    def sort(base: int, count: int, size: int, compare: int) -> None:
+        if count < 2:
+            return
+        order = sorted(range(base, base + count * size, size), key=cmp_to_key(partial(c.status, compare)))
+        items = memory.peek(base, count * size)
+        memory.poke(base, b"".join(items[at - base : at - base + size] for at in order))
+
+    def search(key: int, base: int, count: int, size: int, compare: int) -> int:
+        low, high = 0, count
+        while low < high:
+            middle = (low + high) // 2
+            at = base + middle * size
+            order = c.status(compare, key, at)
+            if order == 0:
+                return at
+            low, high = (low, middle) if order < 0 else (middle + 1, high)
+        return 0
+
+    api.add("qsort", "pQQp", sort)
+    api.add("bsearch", "ppQQp", search)

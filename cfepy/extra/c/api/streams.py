@@ -1,0 +1,164 @@
+"""stdout and stderr of C code, and what ends it: abort(), exit().
+
+Both streams go to the console of the mission. What was written to stderr last is told when the code aborts: there
+libstdc++ says which exception nobody caught.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import partial
+from typing import TYPE_CHECKING
+
+from cfepy.extra.c.faults import CFault
+from cfepy.reading.texts import to_bytes
+
+if TYPE_CHECKING:
+    from cfepy.extra.c.calls import Declarations
+    from cfepy.extra.c.runtime import CRuntime
+
+STDIN, STDOUT, STDERR = 3, 1, 2
+"""What stands for a FILE: nobody looks into one. There is nothing to read from stdin."""
+EOF = -1
+UNREADABLE = ("getc", "getwc")
+LAST_WORDS = 8
+"""Lines of stderr that an abort tells."""
+
+
+class LineWriter:
+    """A stream of text: lines are shown when they are whole, those of each application by themselves.
+
+    Args:
+        show: gets the name of an application and a line of it.
+    """
+
+    def __init__(self, show: Callable[[str, str], object]) -> None:
+        self._show = show
+        self._begun: dict[str, bytes] = {}
+
+    def write(self, app: str, data: bytes) -> None:
+        """Take what an application prints."""
+        *lines, rest = (self._begun.get(app, b"") + data).split(b"\n")
+        self._begun[app] = rest
+        for line in lines:
+            self._show(app, line.decode("utf-8", "surrogateescape"))
+
+    def finish(self, app: str) -> None:
+        """Show the line that an application has begun, if there is one."""
+        if self._begun.get(app):
+            self.write(app, b"\n")
+
+
+class Streams:
+    """The streams that are open, by what stands for a FILE.
+
+    Args:
+        show: gets lines.
+        app: the name of the application that runs.
+        nodes: names of ROS nodes, by the names of their applications: their lines begin with them.
+    """
+
+    def __init__(
+        self, show: Callable[[str], object], app: Callable[[], str] = str, nodes: Mapping[str, str] | None = None
+    ) -> None:
+        self._last: list[str] = []
+        self._show_line = show
+        self._app = app
+        self._nodes = nodes or {}
+        self._ending = ""
+        self._lines = {STDOUT: LineWriter(self._show), STDERR: LineWriter(self._show_error)}
+        self.writers: dict[int, Callable[[bytes], object]] = {
+            stream: partial(self._write_text, lines) for stream, lines in self._lines.items()
+        }
+
+    def _write_text(self, lines: LineWriter, data: bytes) -> None:
+        lines.write(self._owner(), data)
+
+    def _owner(self) -> str:
+        """Whose line it is: those that are no ROS nodes share the console, as they do on a flight computer."""
+        app = self._ending or self._app()
+        return app if app in self._nodes else ""
+
+    def _show(self, app: str, line: str) -> None:
+        self._show_line(f"[{self._nodes[app]}] {line}" if app else line)
+
+    def _show_error(self, app: str, line: str) -> None:
+        self._last = [*self._last[1 - LAST_WORDS :], line]
+        self._show(app, line)
+
+    def finish(self, app: str) -> None:
+        """Show the lines that an application has begun, if it is a ROS node: it is at its end."""
+        for lines in self._lines.values() if app in self._nodes else ():
+            lines.finish(app)
+
+    @contextmanager
+    def ending(self, app: str) -> Iterator[None]:
+        """What is printed meanwhile is of an application whose task has ended, such as by destructors."""
+        self._ending = app
+        try:
+            yield
+        finally:
+            self._ending = ""
+            self.finish(app)
+
+    def write(self, stream: int, data: bytes) -> int:
+        """Write to a stream; the bytes that were written.
+
+        Raises:
+            CFault: there is no such stream.
+        """
+        writer = self.writers.get(stream)
+        if writer is None:
+            raise CFault(f"0x{stream:x} is no open FILE")
+        writer(data)
+        return len(data)
+
+    def abort(self) -> None:
+        """The end of an application that says so itself.
+
+        Raises:
+            CFault: always.
+        """
+        last, self._last = self._last, []
+        raise CFault(": ".join(("abort()", *(line.strip() for line in last))))
+
+
+def declare(api: Declarations, c: CRuntime) -> None:
+    memory, streams = c.memory, c.streams
+
+    def put_text(text: str, stream: int) -> int:
+        return streams.write(stream, to_bytes(text))
+
+    def put_character(code: int, stream: int) -> int:
+        streams.write(stream, bytes([code & 0xFF]))
+        return code & 0xFF
+
+    def write(data: int, size: int, count: int, stream: int) -> int:
+        streams.write(stream, memory.peek(data, size * count))
+        return count
+
+    def print_to(stream: int, text: str) -> int:
+        return streams.write(stream, to_bytes(text))
+
+    def end(status: int) -> None:
+        raise CFault(f"exit({status}) was called, which would end the whole of cFE")
+
+    for name in UNREADABLE:
+        api.add(name, "p", lambda stream: EOF)
+    for name, value in (("stdin", STDIN), ("stdout", STDOUT), ("stderr", STDERR)):
+        api.data[name] = struct.pack("<Q", value)
+    api.add("fputs", "Sp", put_text, EOF)
+    api.add("fputc", "ip", put_character)
+    api.add("putc", "ip", put_character)
+    api.add("fwrite", "pQQp", write)
+    api.add("fprintf", "pf", print_to)
+    api.add("__fprintf_chk", "p-f", print_to)
+    api.add("vfprintf", "pv", print_to)
+    api.add("__vfprintf_chk", "p-v", print_to)
+    api.add("vprintf", "v", lambda text: print_to(STDOUT, text))
+    api.add("fflush", "p", lambda stream: 0)
+    api.add("gettext", "p", lambda text: text)
+    api.add("abort", "", streams.abort)
+    api.add("exit", "i", end)

@@ -1,0 +1,53 @@
+"""cfepy_unsent and its kin: messages of compiled ROS nodes that reach no subscriber, for the trace, bags and viewers.
+
+The interface library finds these functions by weak symbols, so a flight computer never calls them. A call takes no
+virtual time, and its memory is outside of the arena: no address that a program sees depends on it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from cfepy.extra.c.calls import Declarations
+    from cfepy.extra.c.runtime import CRuntime
+
+SMALLEST = 256
+"""Bytes that an application gets at first."""
+
+
+class PublicationWatch(Protocol):
+    """Looks on at what compiled ROS nodes publish."""
+
+    def unsent(self, app: str, msg_id: int, message: bytes) -> None:
+        """An application publishes a message that reaches no subscriber."""
+
+    def latches(self, app: str, msg_id: int) -> None:
+        """An application has a publisher of the topic that latches."""
+
+
+def declare(api: Declarations, c: CRuntime) -> None:
+    watch = c.publication_watch
+    if watch is None:
+        return
+    rooms: dict[str, bytearray] = {}  # by application, which fills one at a time
+    memory = c.memory
+
+    def app() -> str:
+        return str(getattr(c.kernel.current.owner, "name", ""))
+
+    def room(size: int) -> int:
+        found = rooms.get(app())
+        if found is None or len(found) < size:
+            found = rooms[app()] = bytearray(max(SMALLEST, 2 * size))
+        return int(memory.address_of(found))
+
+    def unsent(msg_id: int, at: int, size: int) -> None:
+        watch.unsent(app(), msg_id, memory.peek(at, size))
+
+    def latches(msg_id: int) -> None:
+        watch.latches(app(), msg_id)
+
+    api.add("cfepy_unsent_room", "Q", room)
+    api.add("cfepy_unsent", "HPQ", unsent)
+    api.add("cfepy_latches", "H", latches)

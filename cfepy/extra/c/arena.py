@@ -1,0 +1,117 @@
+"""The memory of C code: stretches at addresses that are the same in each run.
+
+A processor has a region of its own, of 8 GiB of address space, the lowest that no other living processor of this
+process has. In it memory is given out by whole pages, lowest first, with a gap of a page that nobody may touch behind
+each piece. What only the guard needs comes from its end, so that all else has the same addresses with and without it.
+"""
+
+from __future__ import annotations
+
+import mmap
+from bisect import insort
+
+from cfepy.extra.c.engine import engine
+
+PAGE = mmap.PAGESIZE
+"""4096 bytes on x86-64; kernels for aarch64 may have 16 or 64 KiB."""
+REGION = 8 << 30
+_FIRST = PAGE
+"""The first page of a region only holds its place."""
+
+
+def pages(size: int) -> int:
+    """Bytes of whole pages, at least one."""
+    return max(-(-size // PAGE), 1) * PAGE
+
+
+_left: dict[int, int] = {}
+"""Address and bytes of what processors of before left in place.
+
+It is the process's and no processor's: Python may still look at such memory through views that outlive the processor,
+so it stays until another one's region needs the place; in a region's second half, until another one has the region.
+If views owned it, where a processor's memory is would depend on when garbage is collected, and addresses are to be the
+same in each run.
+"""
+
+
+class Arena:
+    """The region of one processor.
+
+    Attributes:
+        base: its lowest address.
+    """
+
+    def __init__(self) -> None:
+        self._engine = engine()
+        self.base = self._take_region()
+        self._top = self.base + _FIRST + PAGE
+        self._end = self.base + REGION
+        self._free: list[tuple[int, int]] = []  # (address, bytes), in this order
+        self._sizes: dict[int, int] = {}
+        self._shared: set[int] = set()
+
+    def _take_region(self) -> int:
+        """Whoever maps the first page of a region has it."""
+        low, high = self._engine.ARENA_LOW, self._engine.ARENA_HIGH
+        for base in range(low, high, REGION):
+            try:
+                self._engine.map(base, _FIRST)
+            except OSError:
+                continue
+            self._drop_left(base + REGION // 2, base + REGION)
+            return base
+        raise MemoryError(f"{(high - low) // REGION} processors with compiled applications live in this process")
+
+    def map(self, size: int, shares: bool = False, is_last: bool = False) -> int:
+        """New memory of zeros, readable and writable; its address.
+
+        Args:
+            size: bytes; rounded up to pages.
+            shares: objects of Python have it as well, and may do so longer than the processor lives: it stays where it
+                is until another processor has this region.
+            is_last: from the end of the region.
+        """
+        room = pages(size)
+        address = None if is_last else self._reuse(room)
+        if address is None:
+            address = self._end - room - PAGE if is_last else self._top
+            if self._top + room + PAGE > self._end:
+                raise MemoryError(f"no {size} bytes are left for compiled applications")
+            if is_last:
+                self._end = address
+            else:
+                self._top += room + PAGE
+        self._drop_left(address, address + room)
+        self._engine.map(address, room)
+        self._sizes[address] = room
+        if shares:
+            self._shared.add(address)
+        return address
+
+    def _drop_left(self, start: int, end: int) -> None:
+        """Unmap what others left in place in a stretch."""
+        for left in [each for each, size in _left.items() if each < end and start < each + size]:
+            self._engine.unmap(left, _left.pop(left))
+
+    def _reuse(self, room: int) -> int | None:
+        for number, (address, size) in enumerate(self._free):
+            if size == room:
+                del self._free[number]
+                return address
+        return None
+
+    def unmap(self, address: int) -> None:
+        """Give memory back that `map` gave."""
+        room = self._sizes.pop(address)
+        self._engine.unmap(address, room)
+        insort(self._free, (address, room))
+
+    def close(self) -> None:
+        """Give everything back, and the region with it."""
+        for address, room in self._sizes.items():
+            if address in self._shared:
+                _left[address] = room
+            else:
+                self._engine.unmap(address, room)
+        self._sizes.clear()
+        self._engine.unmap(self.base, _FIRST)

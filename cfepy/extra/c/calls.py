@@ -1,0 +1,119 @@
+"""The functions that C code can call: what the API declares, and the stubs in the arena through which it is called."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from cfepy.extra.c.arena import PAGE, Arena
+from cfepy.extra.c.engine import engine
+from cfepy.extra.c.faults import CFault
+
+STUB = 32
+"""Bytes that are kept for one."""
+DESCRIPTOR = "(thread-local)"
+"""The function in descriptors of thread-local variables on aarch64, which is called as no other."""
+_STUB_PAGES = 16 * PAGE
+
+
+class Declared(NamedTuple):
+    """A function of the API: who answers, how its arguments are handed over, and what a NULL pointer is answered with.
+
+    `signature` has a letter for each parameter; the head of `engine/calls.c` tells them. `on_null` is called before a
+    NULL is answered, with the first three arguments as they are, such as for an event.
+    """
+
+    function: Callable[..., object] | None
+    signature: str
+    null_status: int
+    on_null: Callable[[int, int, int], object] | None = None
+
+
+class Declarations:
+    """The functions of the API, by name.
+
+    Attributes:
+        functions: what was declared.
+        data: variables of libc, by name: their first value.
+    """
+
+    def __init__(self) -> None:
+        self.functions: dict[str, Declared] = {name: Declared(None, "", 0) for name in engine().natives()}
+        self.data: dict[str, bytes] = {}
+
+    def add(
+        self,
+        name: str,
+        signature: str,
+        function: Callable[..., object],
+        null_status: int = 0,
+        on_null: Callable[[int, int, int], object] | None = None,
+    ) -> None:
+        """Declare a function; one that the engine has as well is asked only when the engine wants that."""
+        self.functions[name] = Declared(function, signature, null_status, on_null)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.functions or name in self.data
+
+
+class CallTable:
+    """The functions that were asked for so far, each behind a stub of its own.
+
+    Args:
+        arena: where stubs are.
+        table: the engine's table.
+        declared: the API.
+    """
+
+    def __init__(self, arena: Arena, table: Any, declared: Declarations) -> None:
+        self._arena = arena
+        self._table = table
+        self._declared = declared
+        self._stubs: dict[str, int] = {}
+        self._next = self._end = 0
+        table.end = self._room()
+        engine().make_end(table.end)
+
+    def address(self, name: str) -> int:
+        """Where a function is called; one that nobody has is a fault of whoever calls it."""
+        stub = self._stubs.get(name)
+        if stub is None:
+            stub = self._stubs[name] = self._make(name)
+        return stub
+
+    def name_at(self, address: int) -> str | None:
+        """The function whose stub is at an address."""
+        return next((name for name, at in self._stubs.items() if at <= address < at + STUB), None)
+
+    def _make(self, name: str) -> int:
+        declared = self._declared.functions.get(name) or Declared(_absent(name), "", 0)
+        number = self._table.add(name, declared.function, declared.signature, declared.null_status, declared.on_null)
+        stub = self._room()
+        engine().make_stub(stub, number, name == DESCRIPTOR)
+        return stub
+
+    def _room(self) -> int:
+        if self._next == self._end:
+            self._next = self._arena.map(_STUB_PAGES)
+            self._end = self._next + _STUB_PAGES
+            engine().protect(self._next, _STUB_PAGES, 7)
+        self._next += STUB
+        return self._next - STUB
+
+
+_INSTEAD = {
+    "pthread_create": "a task is made by OS_TaskCreate or CFE_ES_CreateChildTask, also in place of std::thread",
+    "pthread_cond_init": "a task waits for another by OS_BinSemTake, or by a pipe",
+    "pthread_condattr_init": "a task waits for another by OS_BinSemTake, or by a pipe",
+    "fork": "a flight computer has no processes; a task is made by OS_TaskCreate",
+    "system": "a flight computer has no shell; see OS_ShellOutputToFile",
+}
+"""What flight software has in place of functions of a workstation."""
+
+
+def _absent(name: str) -> Callable[[], object]:
+    def fail() -> None:
+        instead = f"; {_INSTEAD[name]}" if name in _INSTEAD else ""
+        raise CFault(f"{name}() was called, which neither cfepy nor a library of the mission has{instead}")
+
+    return fail

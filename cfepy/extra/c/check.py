@@ -1,0 +1,135 @@
+"""Compiled code that a startup script names, checked before a run: entry points, missing functions, the ABI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from cfepy.es import CFE_LIB, StartupEntry
+from cfepy.extra.c.abi import AbiProfile, abi_profile
+from cfepy.extra.c.api import function_names
+from cfepy.extra.c.elf import ElfError, read_shared_object
+from cfepy.extra.c.linking import wanted_names
+from cfepy.mission import NODE_SYMBOL, MissionSections, find_compiled
+from cfepy.pilot import MissionProblem
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import OBJECT_BYTES
+from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.suggestions import did_you_mean
+
+NO_SYMBOL = "NULL"
+PROFILE = "omit_deprecated"
+SHOWN = 8
+"""Names of missing functions that are listed."""
+
+
+def check_compiled(
+    script: Path, entries: Sequence[StartupEntry], entry: StartupEntry, file: Path
+) -> Iterator[MissionProblem]:
+    """What is wrong with a compiled application or library.
+
+    Args:
+        script: the startup script.
+        entries: what it starts.
+        entry: the line that names the file.
+        file: the shared object.
+    """
+    try:
+        source = read_shared_object(read_limited(file, OBJECT_BYTES), file.name)
+        wanted = wanted_names(source)
+    except ElfError as error:
+        yield MissionProblem(file, 0, str(error))
+        return
+    functions = [each.name for each in source.symbols if each.is_defined and each.kind == "STT_FUNC"]
+    if entry.symbol not in ("", NO_SYMBOL, *functions):
+        hint = did_you_mean(entry.symbol, functions, "correct the name, or export the function (it may be static)")
+        yield MissionProblem(script, entry.line, f"{file.name} has no function {entry.symbol}; {hint}")
+    yield from _check_needs(script, entries, entry, set(wanted))
+
+
+def _check_needs(
+    script: Path, entries: Sequence[StartupEntry], entry: StartupEntry, wanted: set[str]
+) -> Iterator[MissionProblem]:
+    wanted -= function_names()
+    before = True
+    for each in entries:
+        if each is entry:
+            before = False
+            continue
+        exported = _exported(script.parent, each) & wanted
+        if exported and not before:
+            text = (
+                f"{entry.name} needs {_listed(exported)} of the library {each.name}, which line {each.line} loads later"
+            )
+            yield MissionProblem(script, entry.line, text + "; move that line up", is_warning=True)
+        wanted -= exported
+    if wanted:
+        text = f"{entry.name} needs {_listed(wanted)}, which neither cfepy nor a library of the mission has"
+        yield MissionProblem(script, entry.line, text + "; a call of it is a fault", is_warning=True)
+
+
+def _exported(folder: Path, entry: StartupEntry) -> set[str]:
+    """What a library has."""
+    file = find_compiled(entry.path, folder) if entry.kind == CFE_LIB else None
+    if file is None:
+        return set()
+    try:
+        source = read_shared_object(read_limited(file, OBJECT_BYTES), file.name)
+    except ElfError:
+        return set()
+    return {each.name for each in source.symbols if each.is_defined}
+
+
+def check_profiles(script: Path, entries: list[StartupEntry], said: MissionSections) -> Iterator[MissionProblem]:
+    """Shared objects that were built for the other profile than the mission's, and those of which that is not known.
+
+    Of the latter nothing is told when the mission file says itself which profile holds.
+
+    Args:
+        script: the startup script.
+        entries: what it starts.
+        said: what the mission file says.
+    """
+    named = [find_compiled(each.path, script.parent) for each in entries if each.symbol != NODE_SYMBOL]
+    files = [file for file in dict.fromkeys(named) if file is not None]
+    if not files:
+        return
+    omits = said.compiled.omit_deprecated
+    unknown = []
+    for file in files:
+        try:
+            profile = abi_profile(read_shared_object(read_limited(file, OBJECT_BYTES), file.name))
+        except ElfError:
+            continue  # told with the line that names the file
+        if profile.contradicts(omits):
+            text = f"was built {profile.value}, and the mission is for the other: build it with the option"
+            text += f" OMIT_DEPRECATED={_word(omits)}, or write {_line(not omits)} into the mission file"
+            yield MissionProblem(file, 0, text)
+        elif profile is AbiProfile.UNKNOWN:
+            unknown.append(file.name)
+    if unknown and not _says_profile(said):
+        text = f"whether {', '.join(unknown)} have OMIT_DEPRECATED cannot be told, without debug data of table handles;"
+        text += (
+            f" {_word(omits)} is taken: write {_line(omits)} into the mission file if that is right, or compile with -g"
+        )
+        yield MissionProblem(script, 0, text, is_warning=True)
+
+
+def _word(value: bool) -> str:
+    return str(value).lower()
+
+
+def _line(omits: bool) -> str:
+    return f"`compiled: {{{PROFILE}: {_word(omits)}}}`"
+
+
+def _says_profile(said: MissionSections) -> bool:
+    """Whether the mission file itself says the profile."""
+    section = said.places.get("compiled")
+    return section is not None and PROFILE in Mistakes(keep=True).mapping(section)
+
+
+def _listed(names: set[str]) -> str:
+    ordered = sorted(names)
+    more = f" and {len(ordered) - SHOWN} more" if len(ordered) > SHOWN else ""
+    return ", ".join(ordered[:SHOWN]) + more

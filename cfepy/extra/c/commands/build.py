@@ -1,0 +1,57 @@
+"""`cfepy build`: compile an application in C, as cFS has them, to a shared object and table files."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from cfepy.cli.failures import writing
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.extra.c import Built, CompilerError, Options, build, headers_folder
+from cfepy.status import UsageError
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Build what the command line says.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: there is nothing to build, no compiler, or a file cannot be written.
+    """
+    if arguments.headers:
+        print(headers_folder())
+    if arguments.folder is None:
+        if arguments.headers:
+            return ENDED_WELL
+        raise UsageError("say which folder: cfepy build FOLDER", field="FOLDER")
+    try:
+        with writing(arguments.output or arguments.folder, "--output"):
+            built = build(arguments.folder, arguments.output, _options(arguments))
+    except CompilerError as error:
+        print(error, file=sys.stderr)
+        return FOUND_PROBLEMS
+    _tell(built)
+    return ENDED_WELL
+
+
+def _options(arguments: argparse.Namespace) -> Options:
+    return Options(
+        cfs=None if arguments.cfs is None else Path(arguments.cfs),
+        definitions=None if arguments.defs is None else Path(arguments.defs),
+        optimize=arguments.optimize,
+        debug=not arguments.no_debug,
+        omit_deprecated=arguments.omit_deprecated,
+        coverage=arguments.coverage,
+        sanitize_thread=arguments.sanitize_thread,
+        flags=arguments.flag,
+    )
+
+
+def _tell(built: Built) -> None:
+    for warning in built.warnings:
+        print(warning, file=sys.stderr)
+    for file in (built.library, *built.tables):
+        print(file)

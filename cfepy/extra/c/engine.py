@@ -1,0 +1,100 @@
+"""The engine: the C extension `cfepy.extra.c._engine`, found, or built when it is used for the first time.
+
+A wheel may have it beside this file. Otherwise it is compiled into the user's cache folder, once for each version of
+its sources and of Python; that needs a C compiler and Python's headers.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.machinery
+import importlib.util
+import os
+import platform
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+from cfepy.extra.c.build_cache import cache_folder, writing_cache
+from cfepy.interpreter.host_system import is_absent
+from cfepy.status import UsageError
+
+SOURCES = Path(__file__).with_name("engine")
+MACHINES = ("x86_64", "aarch64")
+FLAGS = ("-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-fno-strict-aliasing", "-pthread", "-std=gnu11")
+
+
+@cache
+def engine() -> ModuleType:
+    """The engine, built before if need be.
+
+    Raises:
+        UsageError: this computer cannot have it; says what is missing.
+    """
+    if sys.platform != "linux" or platform.machine() not in MACHINES:
+        here = f"{sys.platform} on {platform.machine()}"
+        raise UsageError(f"compiled applications run on Linux on {' and '.join(MACHINES)}; this is {here}")
+    name = "cfepy.extra.c._engine"
+    beside = importlib.util.find_spec(name)
+    path = Path(beside.origin) if beside is not None and beside.origin else built()
+    loader = importlib.machinery.ExtensionFileLoader(name, str(path))
+    spec = importlib.util.spec_from_file_location(name, path, loader=loader)
+    assert spec is not None
+    module = importlib.util.module_from_spec(spec)
+    loader.exec_module(module)
+    return module
+
+
+def built(folder: Path | None = None) -> Path:
+    """The file of the extension in the cache, or in another folder, compiled if it is not there yet.
+
+    Raises:
+        UsageError: there is no compiler, or it failed.
+    """
+    sources = sorted([*SOURCES.glob("*.c"), SOURCES / f"switch_{platform.machine()}.S"])
+    suffix = sysconfig.get_config_var("EXT_SUFFIX")
+    digest = hashlib.sha256(repr((FLAGS, suffix)).encode())
+    for source in [*sources, SOURCES / "engine.h"]:
+        digest.update(source.read_bytes())
+    where = folder or cache_folder()
+    target = where / (f"_engine{suffix}" if folder else f"_engine-{digest.hexdigest()[:16]}{suffix}")
+    if folder or not target.exists():
+        with writing_cache(where):
+            where.mkdir(parents=True, exist_ok=True)
+            _compile(sources, target)
+    return target
+
+
+def compiler() -> list[str]:
+    """The command of the C compiler: CC in the environment, or that which Python was built with."""
+    return (os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc").split()
+
+
+def _compile(sources: list[Path], target: Path) -> None:
+    """Compile to a file beside the target first: two processes may do it at the same time."""
+    command = compiler()
+    include = f"-I{sysconfig.get_paths()['include']}"
+    with tempfile.TemporaryDirectory(dir=target.parent) as folder:
+        made = Path(folder) / target.name
+        try:
+            subprocess.run(
+                [*command, *FLAGS, include, *map(str, sources), "-o", str(made), "-lm"],
+                check=True,
+                capture_output=True,
+                text=True,
+            )
+        except OSError as error:
+            if not is_absent(command[0], error):
+                raise UsageError(f"{command[0]} cannot be started: {error.strerror}") from None
+            raise UsageError(
+                f"compiled applications need a C compiler, once: {command[0]} is not there. Install one (on Debian "
+                "`apt-get install gcc python3-dev`), or say with CC which one to take"
+            ) from None
+        except subprocess.CalledProcessError as error:
+            hint = " (on Debian, Python's headers are in python3-dev)" if "Python.h" in error.stderr else ""
+            raise UsageError(f"the engine for compiled applications cannot be built{hint}:\n{error.stderr}") from None
+        os.replace(made, target)

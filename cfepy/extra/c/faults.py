@@ -1,0 +1,78 @@
+"""What goes wrong in C code, as exceptions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from cfepy.interpreter.host_system import signal_number
+
+
+class CFault(Exception):
+    """A processor exception in C code, or a bad address that it handed over: its text tells what and where.
+
+    Attributes:
+        called_from: the address to which the last call of that code returns; 0 for none.
+        at: the address of the code whose fault it is; 0 when that is not known.
+        is_anywhere: the code was stopped from outside, elsewhere in each run: its stack is no part of what is recorded.
+        registers: of the code that it came from last, and whether that is in a call; see
+            `cfepy.extra.c.unwinding.Unwinder`.
+    """
+
+    __module__ = "builtins"  # so that a report, which has 80 characters, begins with `CFault:`
+    called_from = 0
+    at = 0
+    is_anywhere = False
+    registers: tuple[bytes, bool] = (b"", False)
+
+
+_BAD_ADDRESSES = frozenset({signal_number("SIGSEGV"), signal_number("SIGBUS")})
+_WORDS = {
+    signal_number("SIGSEGV"): "SIGSEGV (no such memory, or not to be written)",
+    signal_number("SIGBUS"): "SIGBUS (a bad address)",
+    signal_number("SIGFPE"): "SIGFPE (such as a division by zero)",
+    signal_number("SIGILL"): "SIGILL (no such instruction)",
+    signal_number("SIGTRAP"): "SIGTRAP (a trap that the compiler put there)",
+}
+_NEAR_STACK = 1 << 16
+_BAD_ADDRESS = re.compile("bad address (0x[0-9a-f]+)")
+
+
+def explained(fault: CFault, place_of: Callable[[int], str], about: Callable[[int], str]) -> CFault:
+    """A fault of the engine's, in words, with the address of the code whose fault it is.
+
+    Args:
+        fault: as the engine raised it: signal, address of the instruction, of the caller if the instruction is none
+            of an application's, address that was used, bytes from the stack's lowest to its pointer. Or a text: the
+            last call of the code is at fault then.
+        place_of: where an address of code is: `CASE_Main (case.c:12)`.
+        about: what is at an address of data; empty when that is not known.
+    """
+    if len(fault.args) != 5:
+        return _of_call(fault, place_of, about)
+    number, pc, caller, address, left = fault.args
+    words = _WORDS.get(number, f"signal {number}")
+    if -_NEAR_STACK < left < 512 and number in _BAD_ADDRESSES:
+        words = "stack overflow"
+    at = caller - 1 if caller else pc  # a return address: the call is before it
+    where = place_of(at)
+    if caller:
+        where = f"a call by {where} of what is no function" if pc == address else f"a function that {where} called"
+    used = ""
+    if number in _BAD_ADDRESSES:
+        block = about(address)
+        used = f", address 0x{address:x}" + (f", {block}" if block else "")
+    made = CFault(f"{words} in {where}{used}")
+    made.at = at
+    return made
+
+
+def _of_call(fault: CFault, place_of: Callable[[int], str], about: Callable[[int], str]) -> CFault:
+    """A fault in what a call was given; one that has its place already stays as it is."""
+    if fault.at or not fault.called_from:
+        return fault
+    bad = _BAD_ADDRESS.match(str(fault))
+    block = about(int(bad[1], 16)) if bad is not None else ""
+    made = CFault(", ".join(filter(None, (str(fault), block, f"in {place_of(fault.called_from - 1)}"))))
+    made.at = fault.called_from - 1
+    return made

@@ -1,0 +1,176 @@
+"""What a loaded object is linked with: the API, libraries of the mission, and libraries of the host.
+
+The libraries of the host are those that come with its C++ compiler. They are loaded as any other code is, so they have
+the memory, the files and the clock of the simulation, and exceptions find their way through them. Each application has
+copies of its own, as if they were linked into it: what they remember ends with it.
+"""
+
+from __future__ import annotations
+
+import os
+import sysconfig
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import Protocol
+
+from cfepy.extra.c.calls import DESCRIPTOR, CallTable, Declarations
+from cfepy.extra.c.elf import ElfError, SharedObject, read_shared_object
+from cfepy.extra.c.image import Image
+from cfepy.extra.c.lives import ThreadLocals
+from cfepy.extra.c.memory import CMemory
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import OBJECT_BYTES
+
+LIBRARIES = ("libgcc_s.so.1", "libstdc++.so.6")
+"""In the order in which they are loaded."""
+IN_IT = "__cxa_throw"
+"""What an object has that libstdc++ is linked into."""
+UNUSED = frozenset(
+    (
+        *("__strftime_l", "__wcscoll_l", "__wcsftime_l", "__wcsxfrm_l", "bind_textdomain_codeset"),
+        *("bindtextdomain", "dgettext", "fileno", "fopen64", "fseeko64", "fstat", "fstat64", "ftello64"),
+        *("iconv", "iconv_close", "iconv_open", "ioctl", "lseek64", "mbrtowc", "mbsnrtowcs", "mbsrtowcs"),
+        *("poll", "putwc", "read", "setvbuf", "strdup", "strerror", "strtold_l", "ungetc", "ungetwc"),
+        *("wcrtomb", "wcsnrtombs", "write", "writev"),
+    )
+)
+"""What libstdc++ needs of libc for files, other locales and wide characters: for these parts of it, it is not there."""
+GUARDS = ("__cxa_guard_acquire", "__cxa_guard_release", "__cxa_guard_abort")
+"""What libstdc++ has as well; the API's know how a task waits, and what orders tasks."""
+STATIC = "-static-libstdc++ -static-libgcc"
+FOLDERS = ("/lib", "/usr/lib", "/lib64", "/usr/lib64")
+
+
+def find_library(name: str) -> Path | None:
+    """The file of a library, as the host's loader would find it: LD_LIBRARY_PATH, then the usual folders."""
+    triplet = sysconfig.get_config_var("MULTIARCH") or ""
+    given = [each for each in os.environ.get("LD_LIBRARY_PATH", "").split(":") if each]
+    usual = [f"{folder}/{triplet}" for folder in FOLDERS[:2] if triplet]
+    return next((file for folder in (*given, *usual, *FOLDERS) if (file := Path(folder) / name).is_file()), None)
+
+
+@cache
+def host_library(name: str) -> SharedObject:
+    """A library of the host, read once.
+
+    Raises:
+        ElfError: it is not there, or for another computer.
+    """
+    file = find_library(name)
+    if file is None:
+        raise ElfError(f"{name} is not on this computer; an object that is linked with {STATIC} does not need it")
+    return read_shared_object(read_limited(file, OBJECT_BYTES), file.name)
+
+
+def wanted_names(source: SharedObject) -> list[str]:
+    """Names that an object needs of others than libraries of the host.
+
+    Raises:
+        ElfError: one of those libraries is not there.
+    """
+    names = source.wanted()
+    if any(each.is_defined and each.name == IN_IT for each in source.symbols):
+        names = [name for name in names if name not in UNUSED]
+    for library in LIBRARIES:
+        if library in source.needed:
+            exported = {each.name for each in host_library(library).symbols if each.is_defined}
+            names = [name for name in names if name not in exported]
+    return names
+
+
+class Exports:
+    """Names that all code can see.
+
+    Args:
+        shared: what is loaded and seen by all.
+        calls: the functions of the API.
+        declared: what there is of the API.
+        map_memory: gives memory for so many bytes.
+    """
+
+    def __init__(
+        self,
+        shared: Callable[[], list[Image]],
+        calls: CallTable,
+        declared: Declarations,
+        map_memory: Callable[[int], int],
+    ) -> None:
+        self.shared = shared
+        self.calls = calls
+        self.declared = declared
+        self._map = map_memory
+        self._memory = CMemory()
+        self._variables: dict[str, int] = {}
+
+    def declared_symbol(self, name: str) -> int | None:
+        """A function or variable of the API or of libc; None if it is none."""
+        if name in self.declared.data:
+            return self._variable(name)
+        return self.calls.address(name) if name in self.declared else None
+
+    def symbol(self, name: str, more: tuple[Image, ...] = ()) -> int | None:
+        """The address of a name, in libraries first; None if nobody has it."""
+        if name in GUARDS:
+            return self.declared_symbol(name)
+        for image in (*self.shared(), *more):
+            if name in image.symbols:
+                return image.symbols[name]
+        return self.declared_symbol(name)
+
+    def _variable(self, name: str) -> int:
+        if name not in self._variables:
+            first = self.declared.data[name]
+            at = self._variables[name] = self._map(len(first))
+            self._memory.poke(at, first)
+        return self._variables[name]
+
+
+class _Run(Protocol):
+    def __call__(self, function: int, *args: int) -> int: ...
+
+
+class LinkedWith:
+    """What one object is linked with; see `cfepy.extra.c.image.Linker`.
+
+    Args:
+        exports: what all see.
+        thread_locals: of the processor.
+        own: libraries of the host that belong to it.
+        run: calls a function of C.
+    """
+
+    def __init__(self, exports: Exports, thread_locals: ThreadLocals, own: tuple[Image, ...], run: _Run) -> None:
+        self._exports = exports
+        self._thread_locals = thread_locals
+        self._own = own
+        self.run = run
+
+    def resolve(self, name: str) -> int:
+        """See `Linker`; a function that nobody has is a fault of whoever calls it."""
+        found = self._exports.symbol(name, self._own)
+        return self._exports.calls.address(name) if found is None else found
+
+    def resolve_weak(self, name: str) -> int:
+        return self._exports.symbol(name, self._own) or 0
+
+    def resolve_thread_local(self, name: str) -> tuple[int, int]:
+        """See `Linker`.
+
+        Raises:
+            ElfError: no library has the variable.
+        """
+        for image in self._seen():
+            if name in image.thread_locals:
+                return self.module_of(image), image.thread_locals[name]
+        raise ElfError(f"no library has the thread-local variable {name}")
+
+    def thread_local_function(self) -> int:
+        return self._exports.calls.address(DESCRIPTOR)
+
+    def module_of(self, image: Image) -> int:
+        return self._thread_locals.module_of(image)
+
+    def _seen(self) -> Iterator[Image]:
+        yield from self._exports.shared()
+        yield from self._own

@@ -1,0 +1,148 @@
+"""What begins and ends with tasks and with loaded objects: thread-local variables, and what is called at an end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from cfepy.extra.c.image import Image
+from cfepy.extra.c.memory import CMemory
+from cfepy.rtos import Kernel, Task
+
+_ERRNO = 0
+"""The module that stands for libc: its one variable is errno."""
+_LEAST = 16
+
+
+class ThreadLocals:
+    """The thread-local variables of a processor: a block for each task and object that has any, made when first used.
+
+    Args:
+        kernel: tells the current task.
+        heap: the engine's heap, where blocks are.
+        run: calls a function of C.
+    """
+
+    def __init__(self, kernel: Kernel, heap: Any, run: Callable[..., int]) -> None:
+        self._kernel = kernel
+        self._heap = heap
+        self._run = run
+        self._memory = CMemory()
+        self._images: dict[int, Image] = {}
+        self._numbers: dict[Image, int] = {}
+        self._next = _ERRNO + 1
+        self._blocks: dict[Task, dict[int, tuple[int, int]]] = {}  # (block as the heap gave it, its aligned address)
+        self._at_end: dict[Task, list[tuple[int, int]]] = {}
+        self._running: set[Task] = set()
+
+    def module_of(self, image: Image) -> int:
+        """The number of an image, which the code hands to `address`."""
+        number = self._numbers.get(image)
+        if number is None:
+            number = self._numbers[image] = self._next
+            self._next += 1
+            self._images[number] = image
+        return number
+
+    def forget(self, image: Image) -> None:
+        """An image is unloaded."""
+        number = self._numbers.pop(image, None)
+        if number is not None:
+            del self._images[number]
+
+    def address(self, module: int, offset: int) -> int:
+        """Where a variable is for the current task (__tls_get_addr)."""
+        blocks = self._blocks.setdefault(self._kernel.current, {})
+        block = blocks.get(module)
+        if block is None:
+            block = blocks[module] = self._make(module)
+        return block[1] + offset
+
+    def errno(self) -> int:
+        """Where errno is for the current task."""
+        return self.address(_ERRNO, 0)
+
+    def _make(self, module: int) -> tuple[int, int]:
+        start, size, alignment, first = 0, _LEAST, _LEAST, b""
+        if module != _ERRNO:
+            image = self._images[module]
+            assert image.source.thread_local is not None
+            start, in_file, size, alignment = image.source.thread_local
+            first = image.source.initial(start, in_file)
+        self._heap.owner = 0  # it goes with its task, not with whoever uses it first
+        block = int(self._heap.take(size + alignment))
+        if not block:
+            raise MemoryError(f"no {size} bytes are left for thread-local variables")
+        at = block + (start - block) % max(alignment, 1)
+        self._memory.poke(at, first.ljust(size, b"\0"))
+        return block, at
+
+    # -- lives of tasks ----------------------------------------------------------------------------------------------
+
+    def begin(self) -> bool:
+        """The current task calls C; whether it is in none yet."""
+        task = self._kernel.current
+        if task in self._running:
+            return False
+        self._running.add(task)
+        return True
+
+    def at_end(self, function: int, argument: int) -> None:
+        """Call a function when the current task returns from its entry point (__cxa_thread_atexit_impl)."""
+        self._at_end.setdefault(self._kernel.current, []).append((function, argument))
+
+    def finish(self) -> None:
+        """The current task has returned from its entry point: destroy its variables."""
+        waiting = self._at_end.get(self._kernel.current)
+        while waiting:
+            self._run(*waiting.pop())
+
+    def leave(self, task: Task) -> None:
+        """A task calls C no longer: give its blocks back."""
+        self._running.discard(task)
+        self._at_end.pop(task, None)
+        for block, _ in self._blocks.pop(task, {}).values():
+            self._heap.give(block)
+
+
+class Ends:
+    """The functions that wait for the end of their image.
+
+    Args:
+        run: calls a function of C.
+        image_at: the image that an address is in.
+    """
+
+    def __init__(self, run: Callable[..., int], image_at: Callable[[int], Image | None]) -> None:
+        self._run = run
+        self._image_at = image_at
+        self._waiting: list[tuple[int, int, Image | None]] = []
+
+    def add(self, function: int, argument: int, handle: int) -> None:
+        """Call a function at the end of the image that has the address `handle`, or this function (__cxa_atexit)."""
+        self._waiting.append((function, argument, self._image_at(handle) or self._image_at(function)))
+
+    def finalize(self, handle: int) -> None:
+        """Call the functions of the image that has an address, last in, first out (__cxa_finalize)."""
+        image = self._image_at(handle)
+        for function, argument in self._taken(image):
+            self._run(function, argument)
+
+    def finish(self, image: Image) -> None:
+        """Call all that an image wants at its end."""
+        for function in image.functions_at_end:
+            self._run(function)
+        self.finalize(image.base)
+
+    def forget(self, image: Image) -> None:
+        """An image is unloaded."""
+        self._waiting = [each for each in self._waiting if each[2] is not image]
+
+    def _taken(self, image: Image | None) -> Iterator[tuple[int, int]]:
+        """Those of an image; one that is called may add more."""
+        while True:
+            mine = [each for each in self._waiting if each[2] is image]
+            if not mine:
+                return
+            self._waiting.remove(mine[-1])
+            yield mine[-1][:2]

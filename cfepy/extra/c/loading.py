@@ -1,0 +1,130 @@
+"""Compiled code as ES and OSAL load it: applications, libraries and modules out of shared objects."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from cfepy.console import Console
+from cfepy.es import SymbolError
+from cfepy.extra.c.abi import abi_profile
+from cfepy.extra.c.elf import ElfError, SharedObject, read_shared_object
+from cfepy.extra.c.faults import CFault
+from cfepy.extra.c.image import Image, LoadedCode
+from cfepy.extra.c.runtime import CRuntime
+from cfepy.status import OS_ERROR, OsalError
+
+NO_SYMBOL = "NULL"
+NODE_MARK = "roscfe_node"
+"""The symbol that marks a ROS node: what the convertor wrote around it."""
+
+
+class CompiledLoader:
+    """Loads shared objects for one processor.
+
+    Args:
+        runtime: the C side of the processor.
+        console: for what cannot be loaded, and for what nobody has.
+        on_node: called before an application runs that is a ROS node.
+    """
+
+    def __init__(self, runtime: CRuntime, console: Console, on_node: Callable[[], object]) -> None:
+        self.runtime = runtime
+        self.on_node = on_node
+        self._console = console
+        self._read: dict[bytes, SharedObject] = {}
+
+    def code(self, file: str, data: bytes) -> CompiledCode:
+        """The code in a shared object, not loaded yet.
+
+        Args:
+            file: its virtual path.
+            data: its bytes.
+        """
+        return CompiledCode(self, file, data)
+
+    def read(self, file: str, data: bytes) -> SharedObject:
+        """A shared object; what is wrong with it goes to the console.
+
+        Raises:
+            OsalError: it cannot be loaded.
+        """
+        try:
+            if data not in self._read:
+                self._read[data] = read_shared_object(data, file)
+        except ElfError as error:
+            raise self._failed(error) from error
+        return self._read[data]
+
+    def load(self, file: str, data: bytes) -> Image:
+        """Load a shared object; errors as `read`."""
+        source = self.read(file, data)
+        try:
+            missing = self.runtime.missing(source)
+            if missing:
+                self._console.write(f"OS_ModuleLoad: {file} needs what nobody has: {', '.join(missing)}")
+            profile = abi_profile(source)
+            if profile.contradicts(self.runtime.omit_deprecated):
+                self._console.write(f"OS_ModuleLoad: {file} was built {profile.value}; the mission says otherwise")
+            return self.runtime.load(source)
+        except (ElfError, MemoryError) as error:
+            raise self._failed(error) from error
+        except CFault as error:
+            raise self._failed(CFault(f"{file}: {error}")) from error
+
+    def symbol(self, image: Image, file: str, symbol: str) -> int:
+        """The address of an entry point.
+
+        Raises:
+            SymbolError: there is none of that name.
+        """
+        address = image.symbols.get(symbol)
+        if address is None:
+            self._console.write(f"OS_SymbolLookup: {file} has no function {symbol}")
+            raise SymbolError(OS_ERROR, symbol)
+        return address
+
+    def _failed(self, error: Exception) -> OsalError:
+        self._console.write(f"OS_ModuleLoad: {error}")
+        return OsalError(OS_ERROR, str(error))
+
+
+class CompiledCode:
+    """Compiled code; see `cfepy.mission.loader.Code`.
+
+    Args:
+        loader: what loads it.
+        file: its virtual path.
+        data: its bytes.
+    """
+
+    def __init__(self, loader: CompiledLoader, file: str, data: bytes) -> None:
+        self._loader = loader
+        self._file = file
+        self._data = data
+
+    def main(self, symbol: str, app_name: str) -> Callable[[], object]:
+        runtime = self._loader.runtime
+        image = self._loader.load(self._file, self._data)
+        runtime.applications[app_name] = image
+        function = self._loader.symbol(image, self._file, symbol)
+        if NODE_MARK in image.symbols:
+            self._loader.on_node()
+        return lambda: runtime.run_main(function)
+
+    def library(self, symbol: str) -> tuple[object, Callable[[int], object]]:
+        """The init function gets the LibId."""
+        runtime = self._loader.runtime
+        image = self._loader.load(self._file, self._data)
+        function = 0 if symbol == NO_SYMBOL else self._loader.symbol(image, self._file, symbol)
+
+        def init(lib_id: int) -> int:
+            runtime.libraries[self._file] = image  # its own functions may be wanted while it is initialised
+            status = runtime.status(function, lib_id) if function else 0
+            if status:
+                del runtime.libraries[self._file]
+            return status
+
+        return LoadedCode(image), init
+
+    def module(self, owner: str) -> object:
+        return LoadedCode(self._loader.load(self._file, self._data))

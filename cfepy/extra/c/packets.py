@@ -1,0 +1,136 @@
+"""Messages in memory of C: zero-copy buffers, and the one image that a packet has for all applications that get it.
+
+A packet on the Software Bus is immutable bytes of Python. When an application receives it, it gets an image of these
+bytes; another one that receives the same packet gets the same image, as in C, where both point to one buffer. The image
+is given back when the last pipe that has it asks for its next message and no pipe still holds the packet. A buffer
+that an application filled in place and sent becomes the image of that packet. Receiving is the engine's
+(`engine/images.c`).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cfepy.extra.c.engine import engine
+from cfepy.extra.c.faults import CFault
+from cfepy.extra.c.memory import CMemory
+from cfepy.rtos import Task
+from cfepy.sb import MessageBuffer, SoftwareBus
+from cfepy.status import CFE_SB_BUFFER_INVALID, CfeError
+
+
+class PacketImages:
+    """The images of one processor.
+
+    Args:
+        heap: the engine's heap for them.
+        bus: the Software Bus as applications reach it.
+        core: the Software Bus itself.
+        guard: a buffer that is used after it was sent or released is a fault, not a status.
+
+    Attributes:
+        images: the engine's part.
+    """
+
+    def __init__(self, heap: Any, bus: SoftwareBus, core: SoftwareBus, guard: bool) -> None:
+        self._heap = heap
+        self.images = engine().Images(heap, core.routes, self._waits)
+        self._memory = CMemory()
+        self._bus = bus
+        self._core = core
+        self._buffers: dict[int, MessageBuffer] = {}
+        self._sending: dict[Task, int] = {}
+        self._listens = False
+        self._gone: dict[int, str] | None = {} if guard else None
+
+    def _waits(self, packet: bytes) -> bool:
+        """Whether a packet that had several destinations still waits in a pipe."""
+        route = self._core.routes.get(packet[0] << 8 | packet[1])
+        destinations = () if route is None else route.destinations
+        return any(item[0] is packet for each in destinations for item in each.pipe.items)
+
+    # -- zero copy ---------------------------------------------------------------------------------------------------
+
+    def allocate(self, size: int) -> int:
+        """A buffer to fill in place, of zeros; 0 when the bus gives none (CFE_SB_AllocateMessageBuffer)."""
+        try:
+            buffer = self._bus.allocate_message_buffer(size)
+        except CfeError:
+            return 0
+        address = int(self._heap.take(size))
+        if not address:
+            raise MemoryError(f"no {size} bytes are left for messages of compiled applications")
+        self._buffers[address] = buffer
+        return address
+
+    def release(self, address: int) -> None:
+        """Give a buffer back that was not sent (CFE_SB_ReleaseMessageBuffer)."""
+        buffer = self._buffer(address)
+        self._check(address, "CFE_SB_ReleaseMessageBuffer")
+        self._bus.release_message_buffer(buffer)
+        self._forget(address)
+
+    def transmit(self, address: int, is_origination: bool) -> None:
+        """Send a buffer (CFE_SB_TransmitBuffer): it becomes the packet's image, or is gone if nobody wants that."""
+        buffer = self._buffer(address)
+        self._check(address, "CFE_SB_TransmitBuffer")
+        buffer[:] = self._memory.peek(address, len(buffer))
+        if not self._listens:
+            self._listens = True
+            self._core.listen(self._on_packet)
+        task = self._core.kernel.current
+        self._sending[task] = address
+        try:
+            self._bus.transmit_buffer(buffer, is_origination)
+        except CfeError:
+            self._sending.pop(task, None)
+            raise
+        if self._sending.pop(task, None) is not None:
+            self._forget(address, "sent")  # it had no route
+
+    def _on_packet(self, packet: bytes) -> None:
+        """A packet is on its way, and no pipe has it yet."""
+        if not self._sending:
+            return
+        task = self._core.kernel.current
+        address = self._sending.get(task)
+        if address is not None and self._memory.peek(address, 2) == packet[:2]:  # it may be an event about it
+            del self._sending[task], self._buffers[address]
+            if self._gone is not None:
+                self._gone[address] = "sent"
+            self.images.keep(packet, address)
+
+    def _buffer(self, address: int) -> MessageBuffer:
+        buffer = self._buffers.get(address)
+        if buffer is None:
+            if self._gone is not None and address in self._gone:
+                raise CFault(f"the message buffer 0x{address:x} is used after it was {self._gone[address]}")
+            raise CfeError(CFE_SB_BUFFER_INVALID, f"0x{address:x} is no buffer that an application holds")
+        return buffer
+
+    def _check(self, address: int, function: str) -> None:
+        found = self._heap.damage(address)
+        if found is not None:
+            size = self._heap.size_of(address)
+            raise CFault(f"{function}() of 0x{address:x}, a message buffer of {size} bytes that was written {found}")
+
+    def _forget(self, address: int, why: str = "released") -> None:
+        del self._buffers[address]
+        if self._gone is not None:
+            self._gone[address] = why
+        self._heap.give(address)
+
+    # -- ends --------------------------------------------------------------------------------------------------------
+
+    def forget_pipe(self, pipe_id: int) -> None:
+        """A pipe was deleted: what it had is given back."""
+        self.images.forget_pipe(pipe_id)
+
+    def clean_up(self) -> None:
+        """An application has ended, and with it pipes and buffers: give back what they had."""
+        for pipe_id in self.images.pipes():
+            if self._core.find_pipe(pipe_id) is None:
+                self.images.forget_pipe(pipe_id)
+        for address in [each for each, buffer in self._buffers.items() if not self._core.is_held(buffer)]:
+            self._forget(address)
+        self.images.sweep()

@@ -1,0 +1,415 @@
+"""`CRuntime`: all C code of one processor: its images, its memory, the functions that it calls, and how it is run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, NoReturn
+
+from cfepy.app import Cfe
+from cfepy.console import Console
+from cfepy.extra.c.arena import PAGE, Arena
+from cfepy.extra.c.calls import CallTable, Declarations
+from cfepy.extra.c.elf import SharedObject
+from cfepy.extra.c.engine import engine
+from cfepy.extra.c.faults import CFault, explained
+from cfepy.extra.c.guard import POISON, Guard, GuardedTables
+from cfepy.extra.c.image import Image, LoadedModule
+from cfepy.extra.c.linking import LIBRARIES, Exports, LinkedWith, host_library, wanted_names
+from cfepy.extra.c.lives import Ends, ThreadLocals
+from cfepy.extra.c.memory import CMemory, Constants
+from cfepy.extra.c.packets import PacketImages
+from cfepy.extra.c.places import CallFrames, CodePlace, PreemptedFrames, raise_at
+from cfepy.extra.c.races import CompiledRaceWatch
+from cfepy.extra.c.stacks import LEAST, Stacks
+from cfepy.extra.c.unwinding import Unwinder
+from cfepy.rtos import Kernel
+from cfepy.schedules import ExploringKernel, Race
+from cfepy.status import CfeError, OsalError
+
+if TYPE_CHECKING:
+    from cfepy.extra.c.api.unsent import PublicationWatch
+
+HEAP = 1 << 30
+"""Bytes of address space for malloc, and as many for messages."""
+CALLBACK_STACK = 65536
+SLACK = 64
+"""Bytes behind a message buffer that may be written by mistake: NASA's pool has blocks of a few sizes."""
+
+
+class CRuntime:
+    """The C side of a processor.
+
+    Args:
+        cfe: the services.
+        handle: the services as applications reach them, with their scheduling points.
+        kernel: the processor.
+        polling_ns: what a call costs with which code may wait by asking again and again.
+        console: for printf.
+        stall_s: after how many seconds without progress the stall watch ends a run; 0 for never.
+        omit_deprecated: whether the code was built with OMIT_DEPRECATED, which makes handles of tables ids.
+        guard: blocks of memory end where nobody may write, freed ones are gone, and fresh ones and stacks are not zero.
+        on_race: gets the data races that are found while schedules are explored.
+        on_overwrite: gets the application and a text for what was written past a block, where no call is at fault.
+        on_stack: gets application and task, how many bytes of its stack the task has used, and how many it has.
+        nodes: names of ROS nodes by the names of their applications: what they print shows them.
+        publication_watch: takes the messages of ROS nodes that reach no subscriber; None if there are no such nodes.
+
+    Attributes:
+        arena, memory, constants, packets: the parts of the memory.
+        guard, tables: what looks after blocks, and after images of tables; None without the guard.
+        applications, libraries: what is loaded, by the name of the application or the path of the library.
+        modules: what OS_ModuleLoad loaded.
+        at_app_end: called when an application has ended.
+        at_close: called at the end of the processor, while its memory is still there.
+        on_unload: functions that get each image before it is unloaded.
+    """
+
+    def __init__(
+        self,
+        cfe: Cfe,
+        handle: Cfe,
+        kernel: Kernel,
+        polling_ns: int,
+        console: Console,
+        stall_s: Callable[[], float],
+        omit_deprecated: bool = False,
+        guard: bool = False,
+        on_race: Callable[[Race], object] = lambda race: None,
+        on_overwrite: Callable[[str, str], object] = lambda app, text: None,
+        on_stack: Callable[[str, str, int, int], object] = lambda app, task, used, size: None,
+        nodes: Mapping[str, str] | None = None,
+        publication_watch: PublicationWatch | None = None,
+    ) -> None:
+        from cfepy.extra.c.api import declare
+        from cfepy.extra.c.api.streams import Streams
+
+        made = engine()
+        made.begin(CfeError, CFault)
+        self.cfe = cfe
+        self.handle = handle
+        self.kernel = kernel
+        self.polling_ns = polling_ns
+        self.console = console
+        self.omit_deprecated = omit_deprecated
+        self.publication_watch = publication_watch
+        self._limit_s = stall_s
+        self.arena = Arena()
+        self.memory = CMemory()
+        self.constants = Constants(self.arena)
+        self.at_app_end: list[Callable[[], object]] = []
+        self.at_close: list[Callable[[], object]] = []
+        self._unwinder = Unwinder(self.image_at, self.memory)
+        self._on_stack = on_stack
+        self._stacks = Stacks(self.arena, POISON if guard else b"")
+        self._heap = made.Heap(self.arena.map(HEAP), HEAP, guarded=guard, page=PAGE)
+        messages = made.Heap(self.arena.map(HEAP), HEAP, slack=SLACK, guarded=guard, grain=4, page=PAGE)
+        self.packets = PacketImages(messages, handle.sb, cfe.sb, guard)
+        self._owners: dict[int, str] = {}
+        self.guard = Guard(self.arena, self._heap, messages, self._name_of, on_overwrite) if guard else None
+        self.tables = GuardedTables(self.guard) if self.guard is not None else None
+        config = cfe.es.config
+        self.table = made.Table(
+            heap=self._heap,
+            images=self.packets.images,
+            charge=kernel.charge if polling_ns else None,
+            cost=polling_ns,
+            preempted=PreemptedFrames(self._place, self._watch),
+            highest_msg_id=config.sb_highest_valid_msg_id,
+            largest_message=config.sb_max_msg_size,
+            ctype=self._ctype_tables(),
+        )
+        self.declared = Declarations()
+        self.thread_locals = ThreadLocals(kernel, self._heap, self.run)
+        self.streams = Streams(console.write, lambda: getattr(kernel.current.owner, "name", ""), nodes)
+        self.ends = Ends(self.run, self.image_at)
+        self.libraries: dict[str, Image] = {}
+        self.modules: dict[Image, LoadedModule] = {}
+        self.applications: dict[str, Image] = {}
+        self.on_unload: list[Callable[[Image], None]] = [self.ends.forget, self.thread_locals.forget]
+        self._images: list[Image] = []
+        self._own: dict[Image, tuple[Image, ...]] = {}
+        declare(self.declared, self)
+        self._calls = CallTable(self.arena, self.table, self.declared)
+        self._races = (
+            CompiledRaceWatch(
+                kernel,
+                self.table,
+                self.declared,
+                self.memory,
+                self.place_of,
+                lambda address: str(self._place(address) or ""),
+                self._describe,
+                on_race,
+            )
+            if isinstance(kernel, ExploringKernel)
+            else None
+        )
+        self._exports = Exports(self.shared, self._calls, self.declared, self.arena.map)
+
+    def _ctype_tables(self) -> tuple[int, ...]:
+        """Copies of the tables of <ctype.h>: cells that point to their element 0."""
+        cells = []
+        for raw, width in zip(engine().ctype(), (2, 4, 4), strict=True):
+            at = self.arena.map(len(raw) + 8)
+            self.memory.poke(at + 8, raw)
+            self.memory.put_u64(at, at + 8 + 128 * width)
+            cells.append(at)
+        return tuple(cells)
+
+    # -- code --------------------------------------------------------------------------------------------------------
+
+    def load(self, source: SharedObject) -> Image:
+        """Load a shared object anew and call what it wants to be called at load.
+
+        Raises:
+            CFault: that failed; the object is gone again.
+        """
+        own: tuple[Image, ...] = ()
+        try:
+            for name in LIBRARIES:
+                if name in source.needed:
+                    own += (self._loaded(host_library(name), own),)
+            image = self._loaded(source, own)
+        except BaseException:
+            self._drop(*own[::-1])
+            raise
+        self._own[image] = own
+        return image
+
+    def _loaded(self, source: SharedObject, own: tuple[Image, ...]) -> Image:
+        image = Image(source, self.arena, LinkedWith(self._exports, self.thread_locals, own, self.run))
+        self._images.append(image)
+        try:
+            for function in image.functions_at_load:
+                self.run(function)
+        except BaseException:
+            self._drop(image)
+            raise
+        if self._races is not None:
+            self._races.has_prepared()
+        return image
+
+    def unload(self, app_name: str) -> None:
+        """An application has ended: take its code out of memory, and what it had of malloc and of messages."""
+        image = self.applications.pop(app_name, None)
+        if image is not None:
+            self.cfe.tbl.leave_memory(lambda data: self.memory.address_of(data) in image)
+            with self.streams.ending(app_name):
+                self.unload_image(image)
+        for each, module in list(self.modules.items()):
+            if not self._is_known(module.id):  # it was given back with what else the application had
+                self.unload_module(each)
+        apps = self.cfe.es.apps
+        for owner in [each for each in self._owners if apps.find(each) is None]:
+            self._heap.give_all(owner)
+        self.packets.clean_up()
+        for function in self.at_app_end:
+            function()
+        if self.guard is not None:
+            self.guard.tell()
+        self._owners = {owner: name for owner, name in self._owners.items() if apps.find(owner) is not None}
+
+    def _name_of(self, owner: int) -> str:
+        """The application with an AppId that has called C code."""
+        return self._owners.get(owner, "")
+
+    @property
+    def allocations(self) -> int:
+        """Blocks that all code has taken from malloc so far, operator new and what libstdc++ takes among them."""
+        takes: int = self._heap.takes
+        return takes
+
+    def unload_image(self, image: Image) -> None:
+        """Take code out of memory, after what it wants to be called at its end."""
+        for each in (image, *self._own.pop(image, ())[::-1]):
+            self._finish(each)
+            self._drop(each)
+
+    def _drop(self, *images: Image) -> None:
+        for each in images:
+            for forget in self.on_unload:
+                forget(each)
+            self._images.remove(each)
+            each.unload()
+
+    def core_memory(self, size: int) -> memoryview:
+        """Memory for a pool of the core's, such as that of tables, to whose bytes applications get addresses."""
+        memory: memoryview = self.memory.view(self.arena.map(size, shares=True), size)
+        return memory
+
+    def _finish(self, image: Image) -> None:
+        """Call what an image wants at its end; a fault there ends only that."""
+        try:
+            self.ends.finish(image)
+        except CFault as fault:
+            self.console.write(f"OS_ModuleUnload: {image.source.name}: {fault}")
+
+    def images(self) -> list[Image]:
+        """What is loaded, in this order."""
+        return list(self._images)
+
+    def image_at(self, address: int) -> Image | None:
+        """The image that an address is in."""
+        return next((image for image in self._images if address in image), None)
+
+    def shared(self) -> list[Image]:
+        """The images whose symbols all code sees."""
+        return [*self.libraries.values(), *(image for image, module in self.modules.items() if module.is_global)]
+
+    def unload_module(self, image: Image) -> None:
+        """Take what OS_ModuleLoad loaded out of memory."""
+        self.modules.pop(image, None)
+        self.unload_image(image)
+
+    def _is_known(self, module_id: int) -> bool:
+        try:
+            self.cfe.os.module_code(module_id)
+        except OsalError:
+            return False
+        return True
+
+    def symbol(self, name: str) -> int | None:
+        """Where a function or variable is: of the API, a library, a module or an application, in this order."""
+        found = self._exports.declared_symbol(name)
+        if found is not None:
+            return found
+        images = (*self.shared(), *self.modules, *self.applications.values())
+        return next((image.symbols[name] for image in images if name in image.symbols), None)
+
+    def missing(self, source: SharedObject) -> list[str]:
+        """Names that an object needs and nobody has.
+
+        Raises:
+            ElfError: a library of the host is not there.
+        """
+        variables = {name for image in self.shared() for name in image.thread_locals}
+        return [name for name in wanted_names(source) if self._exports.symbol(name) is None and name not in variables]
+
+    # -- running -----------------------------------------------------------------------------------------------------
+
+    def run(self, function: int, *args: int, stack: int = 0, size: int = 0) -> int:
+        """Call a C function in the current task, on a stack of its own; what it returns, as a uint64.
+
+        Args:
+            function: its address.
+            args: at most six numbers or pointers.
+            stack: the lowest address of a stack that the application brings; 0 for one of the arena.
+            size: its bytes; 0 for a callback, whose stack is no task's.
+
+        Raises:
+            CFault: the code failed.
+        """
+        task = self.kernel.current
+        owner = getattr(task.owner, "app_id", 0)
+        if owner:
+            self._owners[owner] = task.owner.name
+        if self.kernel.frames_wanted and self.table.frames is None:
+            self.table.frames = CallFrames(self._place, self.kernel.call_heard)
+        given, room = (stack, size) if stack else self._stacks.take(size or CALLBACK_STACK)
+        is_outermost = self.thread_locals.begin()
+        number = self._races.begin(self.image_at(function)) if self._races is not None else 0
+        try:
+            result = int(engine().run(self.table, function, args, given, room, owner, number))
+            if is_outermost:
+                self.thread_locals.finish()
+            return result
+        except CFault as fault:
+            calls = self._unwinder.calls(*fault.registers)
+            made = explained(fault, self.place_of, self._about)
+            if fault.is_anywhere:
+                self.console.show(f"stopped in {' > '.join(self.place_of(each) for each in calls)}")
+                calls = []
+            raise_at([place for each in calls or [made.at] if (place := self._place(each)) is not None], made)
+        except _Passing as passing:
+            if not is_outermost:
+                raise
+            raise passing.error from None
+        finally:
+            if is_outermost:
+                self.thread_locals.leave(task)
+                if self._races is not None:
+                    self._races.leave(task)
+            if not stack:
+                if size:
+                    app = getattr(task.owner, "name", "")
+                    self._on_stack(app, task.name, self._stacks.used(given, room), size)
+                self._stacks.give(given, room)
+
+    def raise_through(self, error: CfeError) -> NoReturn:
+        """Raise an error in a function of the API that ends the C code, and is no status for it."""
+        raise _Passing(error)
+
+    def run_main(self, function: int) -> None:
+        """Run the main function of an application, on a stack of the size that its startup line says."""
+        owner = self.kernel.current.owner
+        params = getattr(owner, "params", None)
+        try:
+            self.run(function, size=getattr(params, "stack_size", LEAST))
+        finally:
+            self.streams.finish(getattr(owner, "name", ""))
+
+    def status(self, function: int, *args: int) -> int:
+        """As `run`, for a function that returns an int32."""
+        result = self.run(function, *args) & 0xFFFFFFFF
+        return result - (result >> 31 << 32)
+
+    def _watch(self, computed_s: float, called_from: int) -> None:
+        """Code has computed for a while without a call: Python does here what waits, such as Ctrl-C, or other threads.
+
+        Args:
+            computed_s: for how long.
+            called_from: where the last call returned to, which is the same in each run; where the code is now is not.
+
+        Raises:
+            CFault: it has computed for too long; the virtual clock stands still, so it would never end.
+        """
+        limit = self._limit_s() / 2  # before the stall watch ends the run
+        if limit and computed_s >= limit:
+            fault = CFault(f"runaway loop: no call for {limit:g} s")
+            fault.is_anywhere = True
+            raise fault
+
+    def _place(self, address: int) -> CodePlace | None:
+        image = self.image_at(address)
+        return None if image is None else image.place_at(address)
+
+    def _about(self, address: int) -> str:
+        """The block that an address is in, or next to, in words; empty without the guard."""
+        return "" if self.guard is None else self.guard.about(address)
+
+    def _describe(self, address: int) -> str:
+        """A variable of an object, or just the address."""
+        image = self.image_at(address)
+        return (image.variable_at(address) if image is not None else "") or f"memory at 0x{address:x}"
+
+    def place_of(self, address: int) -> str:
+        """Where an address of code is, in words."""
+        place = self._place(address)
+        if place is not None:
+            return str(place)
+        return self._calls.name_at(address) or f"0x{address:x}"
+
+    def close(self) -> None:
+        """The processor is at its end: give all memory back."""
+        if self._races is not None:
+            self._races.close()
+        for function in self.at_close:
+            function()
+        for image in self._images[::-1]:
+            if image.source.has_coverage:
+                self._finish(image)
+        if self.guard is not None:
+            self.guard.check_all()
+        self.cfe.tbl.leave_memory(lambda data: True)  # what tells of the run may look at tables later
+        self.applications.clear()
+        self.libraries.clear()
+        self.modules.clear()
+        self.arena.close()
+
+
+class _Passing(Exception):
+    """Carries an error through C code, which would get it as a status otherwise."""
+
+    def __init__(self, error: CfeError) -> None:
+        super().__init__(error)
+        self.error = error

@@ -1,0 +1,264 @@
+"""Building an application: from its folder to a shared object and table files, in one go.
+
+A C source with CFE_TBL_FILEDEF becomes a table file, which is elf2cfetbl's work: the compiler has laid out the table's
+object; its bytes are taken from the object file as they stand.
+"""
+
+from __future__ import annotations
+
+import struct
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from io import BytesIO
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cfepy.extra.c.elf import MACHINES, elf_file
+from cfepy.extra.c.toolchain.compiler import CompilerError, compile_file, is_cpp, link
+from cfepy.extra.c.toolchain.headers import CfsTree, headers_folder, read_tree
+from cfepy.extra.c.toolchain.sources import Sources, find_sources
+from cfepy.reading.contained_files import write_contained
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import OBJECT_BYTES
+from cfepy.reading.texts import from_bytes
+from cfepy.status import UsageError
+from cfepy.tbl import TableImage
+from cfepy.tbl import build as table_file
+
+WITHOUT_DEPRECATED = ("CFE_OMIT_DEPRECATED_6_8", "CFE_OMIT_DEPRECATED_6_7", "CFE_OMIT_DEPRECATED_6_6")
+WITHOUT_DEPRECATED_OSAL = "OSAL_OMIT_DEPRECATED"
+COVERAGE_FOLDER = ".coverage"
+"""Behind the name of a shared object: the folder of its object files, where gcov finds its notes."""
+DEFINITION = "CFE_TBL_FileDef"
+LAYOUT = struct.Struct("<64s40s32s20sI")
+"""CFE_TBL_FileDef_t: name of the object, full name of the table, description, name of the file, bytes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How an application is built.
+
+    Attributes:
+        cfs: a cFS tree whose headers are taken; None for cfepy's.
+        definitions: a folder of a mission's headers, which go before the application's own.
+        optimize: the compiler's -O, such as "2" or "g".
+        debug: whether debug data (-g) is there.
+        omit_deprecated: whether deprecated names are left out, as with OMIT_DEPRECATED in a cFS build: table handles
+            and ids of OSAL are other types then.
+        coverage: whether the code counts for gcov what is executed.
+        sanitize_thread: whether accesses to memory are told (-fsanitize=thread), to whom is left to the loader.
+        flags: more flags of the compiler.
+    """
+
+    cfs: Path | None = None
+    definitions: Path | None = None
+    optimize: str = "1"
+    debug: bool = True
+    omit_deprecated: bool = False
+    coverage: bool = False
+    sanitize_thread: bool = False
+    flags: Sequence[str] = ()
+
+
+@dataclass(slots=True)
+class Built:
+    """What was built.
+
+    Attributes:
+        library: the shared object.
+        tables: table files.
+        warnings: what the compiler and the reading of tables warned of.
+    """
+
+    library: Path
+    tables: list[Path] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+
+def build(folder: str | Path, library: str | Path | None = None, options: Options | None = None) -> Built:
+    """Build an application.
+
+    Args:
+        folder: of the application, in the form that cFS has: fsw/src, fsw/inc, fsw/tables, CMakeLists.txt.
+        library: the shared object to write; NAME.so in the folder itself when None. Table files come beside it.
+        options: how; the defaults when None.
+
+    Returns:
+        What was written.
+
+    Raises:
+        UsageError: the folder has nothing to build, or there is no compiler.
+        CompilerError: the compiler refused a file; the text is the compiler's.
+    """
+    options = options or Options()
+    sources = find_sources(Path(folder), options.definitions)
+    built = Built(Path(library) if library is not None else sources.folder / f"{sources.name}.so")
+    built.library.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="cfepy-build-") as scratch:
+        _Builder(sources, options, Path(scratch), built).build()
+    return built
+
+
+class _Builder:
+    """Builds one application.
+
+    Args:
+        sources: what it is made of.
+        options: how.
+        scratch: a folder for what is needed on the way.
+        built: gets what was made.
+    """
+
+    def __init__(self, sources: Sources, options: Options, scratch: Path, built: Built) -> None:
+        self._sources = sources
+        self._options = options
+        self._scratch = scratch
+        self._built = built
+        tree = CfsTree() if options.cfs is None else read_tree(options.cfs)
+        chosen = scratch / "include"
+        chosen.mkdir()
+        for name, file in (tree.chosen | sources.chosen).items():
+            write_contained(chosen, f"/{name}", b"" if file is None else f'#include "{file}"\n'.encode())
+        headers = [headers_folder()] if options.cfs is None else tree.includes
+        self._flags = [f"-I{each}" for each in (*sources.includes, chosen, *headers)]
+        self._flags.append(f"-ffile-prefix-map={scratch}=.")  # so that two builds give the same bytes
+        self._flags += [f"-D{each}" for each in sources.definitions]
+        if options.omit_deprecated:
+            self._flags += [f"-D{each}" for each in (*WITHOUT_DEPRECATED, WITHOUT_DEPRECATED_OSAL)]
+
+    def build(self) -> None:
+        """Build code and tables; nothing is written before all is compiled."""
+        code = self._code()
+        tables = self._tables()
+        flags = [*(["--coverage"] if self._options.coverage else []), *self._options.flags]
+        link(code, self._built.library, flags, with_cpp=any(is_cpp(each) for each in self._sources.code))
+        self._built.tables = [table.write(self._built.library.parent) for table in tables]
+
+    def _code(self) -> list[Path]:
+        options = self._options
+        flags = [*self._flags, f"-O{options.optimize}", *(["-g"] if options.debug else [])]
+        where = self._scratch
+        if options.coverage:  # its notes are written beside the object files, and gcov needs them later
+            flags.append("--coverage")
+            where = self._built.library.with_name(self._built.library.name + COVERAGE_FOLDER)
+            where.mkdir(exist_ok=True)
+        if options.sanitize_thread:
+            flags.append("-fsanitize=thread")
+        flags += options.flags
+        return [self._compile(source, self._object(source, where.resolve()), flags) for source in self._sources.code]
+
+    def _object(self, source: Path, where: Path) -> Path:
+        """The object file of a source, in folders like its own: two of one name may be in different ones."""
+        is_inside = ".." not in source.parts and source.is_relative_to(self._sources.folder)
+        inner = source.relative_to(self._sources.folder) if is_inside else Path(source.name)
+        made = where / inner.with_name(f"{source.name}.o")
+        made.parent.mkdir(parents=True, exist_ok=True)
+        return made
+
+    def _tables(self) -> list[TableObject]:
+        found = []
+        for source in self._sources.tables:
+            made = self._scratch / f"table-{source.name}.o"
+            names = [f'-DCFE_APP_NAME="{self._sources.name}"', f"-DCFE_TABLE_NAME={source.stem}", "-DCFE_CPU_NAME=cpu1"]
+            self._compile(source, made, [*self._flags, *names, *self._options.flags])
+            table = read_table(read_limited(made, OBJECT_BYTES), source)
+            if table.addresses:
+                text = f"{table.addresses} words of the table are addresses, for which its file has 0"
+                self._built.warnings.append(f"{source}: warning: {text}")
+            found.append(table)
+        return found
+
+    def _compile(self, source: Path, made: Path, flags: Sequence[str]) -> Path:
+        try:
+            warnings = compile_file(source, made, flags)
+        except CompilerError as error:
+            hint = ""
+            if self._sources.missing and "No such file" in str(error):
+                missing = ", ".join(self._sources.missing)
+                hint = f"\n(It uses headers of {missing}: have that folder beside this one, or say --flag=-IFOLDER)"
+            raise CompilerError(f"{error}{hint}") from None
+        if warnings:
+            self._built.warnings.append(warnings)
+        return made
+
+
+# -- tables ------------------------------------------------------------------------------------------------------------
+
+
+class TableObject(NamedTuple):
+    """A table out of an object file.
+
+    Attributes:
+        file: the name of the table file.
+        table: its contents.
+        addresses: how many words of it are addresses, which a table file cannot have: 0 is written for them.
+    """
+
+    file: str
+    table: TableImage
+    addresses: int
+
+    def write(self, folder: Path) -> Path:
+        """Write the table file.
+
+        Args:
+            folder: where to.
+
+        Returns:
+            Its path.
+
+        Raises:
+            UsageError: the table's name is none.
+        """
+        write_contained(folder, f"/{self.file}", table_file(self.table))
+        return folder / self.file
+
+
+def read_table(data: bytes, source: Path) -> TableObject:
+    """The table in an object file.
+
+    Args:
+        data: the object file.
+        source: what it was compiled from, for errors.
+
+    Raises:
+        UsageError: it defines no table, or one that it does not have; pyelftools is not installed.
+    """
+    elf = elf_file(BytesIO(data))
+    if elf["e_type"] != "ET_REL" or elf["e_machine"] not in MACHINES or not elf.little_endian:
+        raise UsageError("was not compiled to an object file of this computer; is that a cross compiler?", file=source)
+    symbols = {each.name: each for each in elf.get_section_by_name(".symtab").iter_symbols() if each.name}
+    if DEFINITION not in symbols:
+        raise UsageError("defines no table; end it with CFE_TBL_FILEDEF(OBJECT, APP.Table, text, file)", file=source)
+    definition, _ = _bytes_of(elf, symbols[DEFINITION])
+    if len(definition) != LAYOUT.size:
+        text = f"{DEFINITION} has {len(definition)} bytes in place of {LAYOUT.size}"
+        raise UsageError(f"{text}: it is no CFE_TBL_FileDef_t of these headers", file=source)
+    *texts, size = LAYOUT.unpack(definition)
+    name, table, description, file = map(from_bytes, texts)
+    if name not in symbols or symbols[name]["st_shndx"] == "SHN_UNDEF":
+        raise UsageError(f"CFE_TBL_FILEDEF names {name!r}, which is no object of this file", file=source)
+    if not file or "/" in file:
+        raise UsageError(f"CFE_TBL_FILEDEF names {file!r}, which is no name of a file", file=source)
+    content, addresses = _bytes_of(elf, symbols[name])
+    return TableObject(file, TableImage(table, content[:size], description), addresses)
+
+
+def _bytes_of(elf: Any, symbol: Any) -> tuple[bytes, int]:
+    """An object's bytes, and how many words of it the linker would fill in."""
+    where, at, size = symbol["st_shndx"], symbol["st_value"], symbol["st_size"]
+    if not isinstance(where, int):  # SHN_COMMON: never set
+        return bytes(size), 0
+    section = elf.get_section(where)
+    if section["sh_type"] == "SHT_NOBITS":
+        return bytes(size), 0
+    addresses = sum(at <= offset < at + size for offset in _filled_in(elf, where))
+    return section.data()[at : at + size], addresses
+
+
+def _filled_in(elf: Any, section: int) -> Iterator[int]:
+    """Offsets of words in a section that a linker would fill in."""
+    for each in elf.iter_sections():
+        if each["sh_type"] in ("SHT_RELA", "SHT_REL") and each["sh_info"] == section:
+            yield from (relocation["r_offset"] for relocation in each.iter_relocations())

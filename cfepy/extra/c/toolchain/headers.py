@@ -1,0 +1,128 @@
+"""The headers that compiled applications include: cFE's, OSAL's and the PSP's public interface, under NASA's names.
+
+What they declare is in `cfepy/extra/c/headers`, a file for each part. The compiler is given a folder in the user's
+cache that has them under `cfepy/`, and for each name of NASA's a file that leads there (`headers/names.txt`).
+
+A cFS tree of the user's own can be taken in their place. One that was configured (`make prep`) has the headers that its
+build made in `build/inc` and `build/native/*/inc`. Of one that was not, the defaults of each module stand for them, as
+they would for its build; what only a build can make, such as `osconfig.h`, is cfepy's then.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from cfepy.extra.c.build_cache import cache_folder, writing_cache
+from cfepy.extra.c.toolchain.sources import chosen_headers
+from cfepy.status import UsageError
+
+DECLARATIONS = Path(__file__).parents[1] / "headers"
+NAMES = DECLARATIONS / "names.txt"
+INNER = "cfepy"
+"""The folder of the declarations, seen from the names."""
+
+
+def headers_folder() -> Path:
+    """The folder for the compiler's -I, made before if need be.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    files = _files()
+    digest = hashlib.sha256(repr(sorted(files.items())).encode()).hexdigest()[:16]
+    folder = cache_folder() / f"headers-{digest}"
+    if not folder.is_dir():
+        with writing_cache(folder.parent), tempfile.TemporaryDirectory(dir=folder.parent) as made:
+            _write(files, Path(made) / "all")
+            try:
+                os.rename(Path(made) / "all", folder)
+            except OSError:
+                if not folder.is_dir():  # otherwise another process was quicker
+                    raise
+    return folder
+
+
+def names() -> dict[str, list[str]]:
+    """Which of our headers a name of NASA's stands for; all without `.h`."""
+    found: dict[str, list[str]] = {}
+    ours: list[str] = []
+    for line in NAMES.read_text(encoding="utf-8").splitlines():
+        if line.endswith(":"):
+            ours = line[:-1].split()
+        elif not line.startswith("#"):
+            found.update((name, ours) for name in line.split())
+    return found
+
+
+def _files() -> dict[str, str]:
+    """What the folder holds: path to text."""
+    files = {f"{INNER}/{each.name}": each.read_text(encoding="utf-8") for each in DECLARATIONS.glob("*.h")}
+    for name, ours in names().items():
+        files[f"{name}.h"] = "".join(f'#include "{INNER}/{each}.h"\n' for each in ours)
+    return files
+
+
+def _write(files: dict[str, str], folder: Path) -> None:
+    (folder / INNER).mkdir(parents=True)
+    for name, text in files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+# -- a cFS tree --------------------------------------------------------------------------------------------------------
+
+PUBLIC = ("cfe/modules/*/fsw/inc", "osal/src/os/inc", "psp/fsw/inc", "psp/fsw/modules/iodriver/inc")
+MADE = ("build*/inc", "build*/native/*/inc", "build*/native/*/*/inc", "build*/osal_public_api/inc")
+OPTIONS = {
+    "cfe_msg_hdr.h": "cfe/modules/msg/option_inc/default_cfe_msg_hdr_pri.h",
+    "cfe_msg_sechdr.h": "cfe/modules/msg/option_inc/default_cfe_msg_sechdr.h",
+    "cfe_resourceid_typedef.h": "cfe/modules/resourceid/option_inc/cfe_resourceid_simple.h",
+}
+"""Headers of which a tree has several to choose from; those that it takes when nothing else is said."""
+MADE_BY_BUILDS = {
+    "osconfig.h": "osal_config.h",
+    "pspconfig.h": "osal_config.h",
+    "cfe_config_ids.h": "config_ids.h",
+}
+"""Headers that only a build makes, and cfepy's that stand for them."""
+NEEDED = "cfe/modules/core_api/fsw/inc/cfe.h"
+
+
+@dataclass(slots=True)
+class CfsTree:
+    """Where a tree has its headers.
+
+    Attributes:
+        includes: folders, the first searched first.
+        chosen: headers to be written for the compiler: a name, and the file that stands for it.
+    """
+
+    includes: list[Path] = field(default_factory=list)
+    chosen: dict[str, Path | None] = field(default_factory=dict)
+
+
+def read_tree(folder: Path) -> CfsTree:
+    """Find the headers of a cFS tree.
+
+    Args:
+        folder: that has cfe, osal and psp.
+
+    Raises:
+        UsageError: it is no such tree.
+    """
+    if not (folder / NEEDED).is_file():
+        raise UsageError(f"is no cFS tree of cFE 7: {NEEDED} is not there", file=folder)
+    folder = folder.resolve()
+    tree = CfsTree()
+    for pattern in (*MADE, *PUBLIC):
+        tree.includes += sorted(each for each in folder.glob(pattern) if each.is_dir())
+    if not any((each / "cfe_mission_cfg.h").is_file() for each in tree.includes):
+        definitions = sorted(folder.glob("*_defs"))
+        tree.chosen |= chosen_headers(sorted(folder.glob("cfe/modules/*/config")), definitions)
+        tree.chosen |= {name: folder / file for name, file in OPTIONS.items()}
+        tree.chosen |= {name: DECLARATIONS / file for name, file in MADE_BY_BUILDS.items()}
+        tree.includes += definitions
+    return tree

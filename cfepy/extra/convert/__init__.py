@@ -1,0 +1,56 @@
+"""ROS nodes in C++ as cFE applications: the convertor, `cfepy convert`.
+
+A node's source is compiled as it is, against the interface library in roscfe. What belongs here reads C++ packages
+(`packages`), makes what is generated around a node, such as the headers of its messages (`messages`), its entry point
+and its parameters, and calls the compiler. Running what was built does not belong here: to a mission a shared object is
+a compiled application like any other. The central file is `cfepy/extra/convert/conversion.py`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.interpreter.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.extra.convert.capacities import wrong_capacities
+    from cfepy.extra.convert.check import RULES, CheckReport, Level, check_program, programs_of, sarif_of
+    from cfepy.extra.convert.conversion import converted, task_of
+    from cfepy.extra.convert.flight import build_for_flight
+    from cfepy.extra.convert.messages import Profile
+    from cfepy.extra.convert.output import write_files
+    from cfepy.extra.convert.packages import Program
+    from cfepy.extra.convert.project import project_files, report
+
+__all__ = [
+    "RULES",
+    "CheckReport",
+    "Level",
+    "Profile",
+    "Program",
+    "build_for_flight",
+    "check_program",
+    "converted",
+    "programs_of",
+    "project_files",
+    "report",
+    "sarif_of",
+    "task_of",
+    "write_files",
+    "wrong_capacities",
+]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".capacities": ("wrong_capacities",),
+            ".check": ("RULES", "CheckReport", "Level", "check_program", "programs_of", "sarif_of"),
+            ".conversion": ("converted", "task_of"),
+            ".flight": ("build_for_flight",),
+            ".messages": ("Profile",),
+            ".output": ("write_files",),
+            ".packages": ("Program",),
+            ".project": ("project_files", "report"),
+        },
+    )

@@ -1,0 +1,521 @@
+"""Building a ROS node in C++: from its sources to a shared object that a mission flies.
+
+Sources are compiled as they are against the interface library and the headers of their messages. What was compiled is
+kept in the user's cache folder, by the content of all that went into it, so a launch that was built once starts at
+once. The library is compiled once for each profile.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+
+from cfepy.extra.c import (
+    CompilerError,
+    cache_folder,
+    call_bounded,
+    cpp_compiler,
+    end_bounded,
+    headers_folder,
+    start_bounded,
+    writing_cache,
+)
+from cfepy.extra.convert.capacities import Capacities
+from cfepy.extra.convert.configurations import CONFIGURATION_TYPES, configuration_headers
+from cfepy.extra.convert.entry import NodeEntry, main_header
+from cfepy.extra.convert.messages import Profile, write_headers
+from cfepy.extra.convert.packages import Program
+from cfepy.extra.convert.sources import SourceSet, collect, message_types
+from cfepy.mission import ARENA_BYTES
+from cfepy.reading.contained_files import write_contained
+from cfepy.resources import shipped
+from cfepy.status import UsageError
+from rospy_shim.types.msgs import Library
+
+LANGUAGE = ("-std=c++17", "-fPIC", "-fvisibility=hidden", "-fno-gnu-unique", "-Wall")
+"""What every source needs: nodes side by side share no variables, and leave none behind when they end."""
+PLAIN = ("-O1", "-g", "-fno-stack-protector", "-U_FORTIFY_SOURCE", "-D_LINUX_OS_", "-D_POSIX_OS_")
+WITHOUT_TYPES = ("-fno-rtti",)
+WITHOUT_EXCEPTIONS = ("-fno-exceptions", *WITHOUT_TYPES)
+STRICT_WARNINGS = ("-Wextra", "-Werror")
+RANDOM = ("rand", "srand", "random", "srandom")
+CLOCKS = ("time", "gettimeofday", "clock_gettime")
+WRAPPED = ("exit", "abort", "sleep", "usleep", "nanosleep", "signal", "sigaction", *RANDOM, *CLOCKS)
+"""Functions of libc in whose place the library's are called: they would be about the whole computer."""
+ALLOCATING = (
+    *("malloc", "calloc", "realloc", "reallocarray", "free", "strdup", "strndup"),
+    *("aligned_alloc", "posix_memalign", "memalign"),
+)
+"""Functions of libc in whose place those of the arena are called, in profiles that have one."""
+LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic")
+BOOST_REFUSED = ("config.hpp", "version.hpp")
+"""Headers of the small Boost that stop a header of the real one which was found by chance."""
+BOOST_IN_PART = ("boost/thread.hpp", "boost/thread/thread.hpp", "boost/foreach.hpp", "boost/circular_buffer.hpp")
+"""Headers of which the small Boost has the part that fits one task: a node for the host gets those of the computer."""
+WITH_ARENA = ("-Wl,--wrap=" + ",--wrap=".join(ALLOCATING),)
+OWN_CPP_LIBRARY = ("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL")
+SYSTEM_ROS = ("/opt/ros/", "/usr/include/ros/", "/usr/local/include/ros/")
+HEAP_SOURCE = "heap.cpp"
+"""The source of the interface library in which the arena is."""
+MOST_AT_ONCE = 2
+"""Compilers that run at the same time."""
+
+
+def library_folder() -> Path:
+    """Where the interface library is: its headers and sources.
+
+    Raises:
+        UsageError: this installation has none.
+    """
+    return shipped("roscfe")
+
+
+def library_includes(real_boost: bool = False) -> list[Path]:
+    """Folders of the library's headers.
+
+    Args:
+        real_boost: whether the computer's Boost is taken in place of the small one.
+    """
+    folder = library_folder()
+    return [folder / "include", *([] if real_boost else [folder / "boost"])]
+
+
+def needs_real_boost(sources: SourceSet, profile: Profile) -> bool:
+    """Whether sources include a header of Boost that the small one lacks, refuses, or has not the whole of.
+
+    Args:
+        sources: collected with the small one among the folders.
+        profile: that is built for.
+    """
+    folder = library_folder() / "boost"
+    refused = {folder / "boost" / name for name in BOOST_REFUSED}
+    refused |= {folder / name for name in BOOST_IN_PART if profile is Profile.HOST}
+    return any(each.startswith("boost/") for each in sources.missing) or not refused.isdisjoint(sources.contents)
+
+
+def library_sources(used: Iterable[Path], real_boost: bool = False) -> list[Path]:
+    """The library's sources that a node needs, sorted: the core, and the parts whose headers are used.
+
+    Args:
+        used: all headers that the node includes; those of the library count.
+        real_boost: as of `library_includes`.
+    """
+    folder, included = library_folder(), list(used)
+    every = sorted((folder / "src").rglob("*.cpp"))
+    parts = {each.relative_to(folder / "src").parts[0] for each in every if each.parent.name != "src"}
+    needed = [each for each in every if each.parent.name == "src"]
+    while True:
+        reached = [*included, *collect(needed, library_includes(real_boost)).contents]
+        inside = (each.relative_to(folder / "include") for each in reached if each.is_relative_to(folder / "include"))
+        names = tuple({each.parts[0] for each in inside})
+        wanted = {part for part in parts if any(name.startswith(part) for name in names)}
+        found = [each for each in every if each.parent.name == "src" or each.parent.name in wanted]
+        if found == needed:
+            return needed
+        needed = found
+
+
+def provided_packages() -> set[str]:
+    """Packages whose headers the library has, such as roscpp: their own sources are not compiled."""
+    known = {"roscpp", "rostime", "rosconsole", "roscpp_serialization", "roscpp_traits", "xmlrpcpp", "cpp_common"}
+    return known | {each.name for each in (library_folder() / "include").iterdir() if each.is_dir()}
+
+
+@dataclass(frozen=True, slots=True)
+class BuildOptions:
+    """What a node is built for.
+
+    Attributes:
+        profile: what it may do.
+        capacities: of its messages, in the strict profile.
+        arena_bytes: size of its heap, in the profiles pool and strict.
+    """
+
+    profile: Profile = Profile.HOST
+    capacities: Capacities = field(default_factory=Capacities)
+    arena_bytes: int = ARENA_BYTES
+
+    def flags_of(self, source: Path) -> list[str]:
+        """Flags of one source of the interface library alone."""
+        is_heap = source.name == HEAP_SOURCE and self.profile is not Profile.HOST
+        return [f"-DROSCFE_ARENA_BYTES={self.arena_bytes}"] if is_heap else []
+
+
+@dataclass(slots=True)
+class BuiltNode:
+    """A node that was built.
+
+    Attributes:
+        library: the shared object.
+        entry: its entry point.
+        sources: what it was made of.
+        types: message types whose headers it includes.
+        warnings: what the compiler warned of.
+    """
+
+    library: Path
+    entry: str
+    sources: SourceSet
+    types: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+
+def build_node(program: Program, entry: NodeEntry, library: Library, options: BuildOptions | None = None) -> BuiltNode:
+    """Build a node.
+
+    Args:
+        program: its sources.
+        entry: what is generated around it.
+        library: of message types.
+        options: what it is built for; None for the profile host.
+
+    Returns:
+        What was built, or lay in the cache.
+
+    Raises:
+        UsageError: there is no compiler, or the result would not be fit to fly.
+        CompilerError: the compiler refused a source; the text is the compiler's.
+    """
+    return NodeBuild(program, entry, library, options or BuildOptions()).built()
+
+
+class NodeBuild:
+    """The build of one node; see `build_node`."""
+
+    def __init__(self, program: Program, entry: NodeEntry, library: Library, options: BuildOptions) -> None:
+        self._program = program
+        self._entry = entry
+        self._options = options
+        self._types = library
+        sources = collect(program.sources, [*program.includes, *library_includes()])
+        self._real_boost = needs_real_boost(sources, self._options.profile)
+        if self._real_boost:
+            sources = collect(program.sources, [*program.includes, *library_includes(real_boost=True)])
+        self.sources = sources
+        self._configurations = configuration_headers(sources.missing, program)
+        needed = CONFIGURATION_TYPES if self._configurations else ()
+        self.types = sorted({*message_types(sources.missing, library), *needed})
+
+    def built(self) -> BuiltNode:
+        """Compile what is not in the cache, and link it."""
+        with tempfile.TemporaryDirectory(prefix="cfepy-node-") as scratch:
+            return self._built(Path(scratch))
+
+    def _built(self, scratch: Path) -> BuiltNode:
+        program, entry = self._program, self._entry
+        messages = messages_folder(self.types, self._types, self._options)
+        configurations = configurations_folder(self._configurations)
+        includes = [*program.includes, messages, configurations, *library_includes(self._real_boost)]
+        main = scratch / "roscfe_main.h"
+        main.write_text(main_header(entry.takes_arguments), encoding="utf-8")
+        start = scratch / f"{entry.app.lower()}_entry.cpp"
+        start.write_text(entry.text(), encoding="utf-8")
+        flags = [*LANGUAGE, *PLAIN, *profile_flags(self._options.profile)]
+        own = [*flags, *(f"-D{each}" for each in program.definitions), "-include", str(main)]
+        made_for_it = (messages.name, configurations.name, main_header(entry.takes_arguments))
+        known = _digest(*made_for_it, *self.sources.contents.values())
+        units = [CompileUnit(each, own, includes, _digest(known, _label(each, program))) for each in program.sources]
+        header = library_folder() / "include/roscfe/node.h"
+        around = known if entry.nodelet else _digest(header.read_bytes())
+        units.append(CompileUnit(start, flags, includes, _digest(entry.text(), around)))
+        units += [self._support(each, flags, includes) for each in program.support]
+        core = core_key(self._options, self._real_boost, self._types, self.sources.contents)
+        key = _digest(core, *link_flags(self._options.profile), *(each.key for each in units))
+        made = _folder() / f"{entry.app.lower()}-{key}.so"
+        warnings = made.with_suffix(".warnings")
+        if not made.is_file():
+            archive = built_core(self._options, self._real_boost, self._types, self.sources.contents)
+            told = compile_units(units)
+            _link([*(each.object for each in units), archive], made, link_flags(self._options.profile))
+            with writing_cache(warnings.parent):
+                warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
+        told = [warnings.read_text(encoding="utf-8")] if warnings.is_file() else []
+        return BuiltNode(made, entry.symbol, self.sources, self.types, list(filter(None, told)))
+
+    def _support(self, source: Path, flags: Sequence[str], includes: Sequence[Path]) -> CompileUnit:
+        """A source of a library that is compiled with the program: it stays as it is when the program changes."""
+        known = collect([source], includes).contents
+        defined = [f"-D{each}" for each in self._program.definitions if each.startswith("GTEST_")]
+        return CompileUnit(source, [*flags, *defined], includes, _digest(*known.values()), needs_cfe=True)
+
+
+# -- the library -------------------------------------------------------------------------------------------------------
+
+
+def profile_flags(profile: Profile) -> list[str]:
+    """The flags of a profile."""
+    exceptions = () if profile is Profile.HOST else WITHOUT_EXCEPTIONS
+    return [f"-DROSCFE_PROFILE_{profile.name}", *exceptions]
+
+
+def core_flags(profile: Profile) -> Sequence[str]:
+    """The flags of a profile for the library's own sources: what they throw, nodes of the host profile catch."""
+    return WITHOUT_TYPES if profile is Profile.HOST else WITHOUT_EXCEPTIONS
+
+
+def link_flags(profile: Profile) -> list[str]:
+    """The linker's flags of a profile: where nodes have an arena, the C++ library's own code takes from it, too."""
+    return [*LINK, *(() if profile is Profile.HOST else (*WITH_ARENA, *OWN_CPP_LIBRARY))]
+
+
+def messages_folder(types: Sequence[str], library: Library, options: BuildOptions) -> Path:
+    """A folder with the headers of message types and of all that they need, in the cache.
+
+    Args:
+        types: full names.
+        library: where they are.
+        options: what messages are made of.
+    """
+    folder = _folder()
+    with _scratch() as scratch:
+        made = scratch / "messages"
+        made.mkdir()
+        files = write_headers(types, made, options.profile, library, options.capacities)
+        key = _digest(*(f"{each.relative_to(made)}\0{each.read_text(encoding='utf-8')}" for each in files))
+        kept = folder / f"messages-{key}"
+        if not kept.is_dir():
+            _put(made, kept)
+    return kept
+
+
+def configurations_folder(headers: Mapping[str, str]) -> Path:
+    """A folder with the headers of configurations, in the cache.
+
+    Args:
+        headers: texts, by what is included.
+    """
+    folder = _folder()
+    key = _digest(*(f"{name}\0{text}" for name, text in sorted(headers.items())))
+    kept = folder / f"configurations-{key}"
+    if not kept.is_dir():
+        with _scratch() as scratch:
+            made = scratch / "configurations"
+            made.mkdir()
+            for name, text in headers.items():
+                write_contained(made, f"/{name}", text.encode())
+            _put(made, kept)
+    return kept
+
+
+def core_key(options: BuildOptions, real_boost: bool, library: Library, used: Iterable[Path]) -> str:
+    """What the interface library of a profile is known by."""
+    return _core(options, real_boost, library, used)[0]
+
+
+def built_core(options: BuildOptions, real_boost: bool, library: Library, used: Iterable[Path]) -> Path:
+    """The interface library of a profile as an archive, compiled if it is not in the cache.
+
+    Raises:
+        CompilerError: the compiler refused it.
+    """
+    key, units = _core(options, real_boost, library, used)
+    archive = _folder() / f"libroscfe-{options.profile.value}-{_digest(key, identity())}.a"
+    if not archive.is_file():
+        print("cfepy: compiling the interface library of ROS nodes in C++, once", file=sys.stderr, flush=True)
+        compile_units(units)
+        with _scratch() as scratch:
+            made = scratch / archive.name
+            _call(["ar", "rcs", str(made), *(str(each.object) for each in units)])
+            os.replace(made, archive)
+    return archive
+
+
+def _core(
+    options: BuildOptions, real_boost: bool, library: Library, used: Iterable[Path]
+) -> tuple[str, list[CompileUnit]]:
+    profile = options.profile
+    files, includes = library_sources(used, real_boost), library_includes(real_boost)
+    sources = collect(files, includes)
+    messages = messages_folder(message_types(sources.missing, library), library, options)
+    flags = [*LANGUAGE, *PLAIN, *profile_flags(profile), *core_flags(profile), *STRICT_WARNINGS]
+    known = _digest(messages.name, *sources.contents.values())
+    folder = library_folder()
+    units = [
+        CompileUnit(
+            each,
+            [*flags, *options.flags_of(each)],
+            [messages, *includes],
+            _digest(known, str(each.relative_to(folder))),
+            needs_cfe=True,
+        )
+        for each in files
+    ]
+    return _digest(*(each.key for each in units)), units
+
+
+# -- compiling ---------------------------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class CompileUnit:
+    """A source to be compiled.
+
+    Attributes:
+        source: the file.
+        flags: of the compiler.
+        includes: folders of headers.
+        known: a digest of all that is read.
+        needs_cfe: whether it includes cFE's headers.
+    """
+
+    source: Path
+    flags: Sequence[str]
+    includes: Sequence[Path]
+    known: str
+    needs_cfe: bool = False
+
+    @property
+    def key(self) -> str:
+        """What it is known by, whichever release of the compiler compiles it."""
+        plain = [each for each in self.flags if not each.startswith("/")]
+        return _digest(self.known, *plain, *cpp_compiler(), headers_folder().name if self.needs_cfe else "")
+
+    @property
+    def object(self) -> Path:
+        """Where its object file is, in the cache."""
+        return _folder() / f"{self.source.stem}-{_digest(self.key, identity())}.o"
+
+    def command(self, made: Path) -> list[str]:
+        """The compiler's command."""
+        folders = [f"-I{each}" for each in self.includes]
+        cfe = ["-isystem", str(headers_folder())] if self.needs_cfe else []
+        maps = [f"-ffile-prefix-map={self.source.parent}=."]
+        watch = ["-MMD", "-MF", str(made.with_suffix(".d"))]
+        watch[0] = "-MD"  # those that the compiler takes from the system, too
+        return [*cpp_compiler(), *self.flags, *folders, *cfe, *maps, *watch, "-c", str(self.source), "-o", str(made)]
+
+
+def compile_units(units: Iterable[CompileUnit]) -> list[str]:
+    """Compile the sources whose object files are not in the cache, a few at once; what the compiler warned of.
+
+    Raises:
+        CompilerError: it refused one.
+        UsageError: there is no compiler, or a header of a ROS on this computer was used.
+    """
+    missing = [each for each in units if not each.object.is_file()]
+    warnings: list[str] = []
+    for at in range(0, len(missing), MOST_AT_ONCE):
+        group = missing[at : at + MOST_AT_ONCE]
+        with _scratch() as scratch:
+            running = [_Compiler(each, scratch / str(index)) for index, each in enumerate(group)]
+            try:
+                warnings += [each.finished() for each in running]
+            finally:
+                for each in running:
+                    each.end()
+    return warnings
+
+
+class _Compiler:
+    """A compiler that runs for one source.
+
+    Args:
+        unit: the source.
+        folder: for what it writes.
+    """
+
+    def __init__(self, unit: CompileUnit, folder: Path) -> None:
+        folder.mkdir()
+        self._unit = unit
+        self._made = folder / "made.o"
+        self._log = folder / "log"
+        with self._log.open("wb") as log:
+            self._process = start_bounded(unit.command(self._made), log.fileno())
+
+    def finished(self) -> str:
+        """Wait for it, and keep the object file; what it warned of."""
+        status = end_bounded(self._process)
+        said = self._log.read_text(encoding="utf-8", errors="replace").rstrip()
+        if status:
+            raise CompilerError(said or f"{cpp_compiler()[0]} ended with {status}")
+        used = self._made.with_suffix(".d").read_text(encoding="utf-8", errors="replace").split()
+        wrong = next((each for each in used if each.startswith(SYSTEM_ROS)), None)
+        if wrong is not None:
+            text = f"includes {wrong} of the ROS on this computer, for which there is no cFE [system-ros]"
+            raise UsageError(text, file=self._unit.source)
+        os.replace(self._made, self._unit.object)
+        return said
+
+    def end(self) -> None:
+        """End it, if it is not at its end: another one has failed, and nobody waits for it."""
+        if self._process.poll() is None:
+            self._process.terminate()  # GCC's driver ends what it has started
+            self._process.wait()
+
+
+def _call(command: Sequence[str]) -> str:
+    status, said = call_bounded(command)
+    if status:
+        raise CompilerError(said.rstrip() or f"{command[0]} ended with {status}")
+    return said.rstrip()
+
+
+def _link(parts: Sequence[Path], made: Path, flags: Iterable[str]) -> None:
+    with _scratch() as scratch:
+        linked = scratch / made.name
+        _call([*cpp_compiler(), *flags, "-o", str(linked), *map(str, parts)])
+        shared = unique_symbols(linked)
+        if shared:
+            text = f"has {', '.join(shared[:4])}, which all nodes would share [unique-symbol]"
+            raise UsageError(text, file=made.name)
+        os.replace(linked, made)
+
+
+def unique_symbols(file: Path) -> list[str]:
+    """Symbols of a shared object of which a process has one only, however many objects have them (STB_GNU_UNIQUE).
+
+    Args:
+        file: the shared object.
+    """
+    lines = (line.split() for line in _call(["nm", "-C", str(file)]).splitlines())
+    return [" ".join(words[2:]) for words in lines if len(words) > 2 and words[1] == "u"]
+
+
+@cache
+def identity() -> str:
+    """What the compiler says of itself."""
+    return _call([*cpp_compiler(), "-dumpfullversion", "-dumpmachine"])
+
+
+def _label(source: Path, program: Program) -> str:
+    """The path of a source in its package, which is the same on each computer."""
+    folder = program.package.folder
+    return str(source.relative_to(folder)) if source.is_relative_to(folder) else source.name
+
+
+def _digest(*parts: str | bytes) -> str:
+    whole = hashlib.sha256()
+    for each in parts:
+        data = each.encode() if isinstance(each, str) else each
+        whole.update(len(data).to_bytes(8, "big") + data)
+    return whole.hexdigest()[:16]
+
+
+def _folder() -> Path:
+    folder = cache_folder() / "roscfe"
+    with writing_cache(folder):
+        folder.mkdir(exist_ok=True)
+    return folder
+
+
+@contextmanager
+def _scratch() -> Iterator[Path]:
+    """A folder in the cache for what is not finished yet; what cannot be written there is the user's to mend."""
+    folder = _folder()
+    with writing_cache(folder), tempfile.TemporaryDirectory(dir=folder) as scratch:
+        yield Path(scratch)
+
+
+def _put(made: Path, kept: Path) -> None:
+    try:
+        os.rename(made, kept)
+    except OSError:
+        if not kept.is_dir():  # otherwise another process was quicker
+            raise

@@ -1,0 +1,83 @@
+"""`cfepy convert`: applications of cFE out of the ROS nodes in C++ of a launch file or a package."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from cfepy.cli.failures import tell, writing
+from cfepy.cli.json_output import check_json, write_json
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.extra.convert import (
+    Level,
+    Profile,
+    Program,
+    check_program,
+    converted,
+    project_files,
+    report,
+    task_of,
+    write_files,
+)
+from cfepy.extra.convert.commands import check, cpp_nodes_config
+from cfepy.mission import LOCK_FILE, CppNodesConfig, read_lock, read_mission
+from cfepy.nodes import RosConfig
+from cfepy.status import UsageError
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Convert what the command line names, or check it, if the first word is `check`.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: there is nothing to convert, or a file cannot be written.
+    """
+    if arguments.words[0] == "check":
+        return check.run(arguments)
+    if arguments.sarif is not None:
+        raise UsageError("is what check finds: `cfepy convert check WORD --sarif FILE`", field="--sarif")
+    check_json(arguments)
+    config = cpp_nodes_config(arguments)
+    task = task_of(arguments.words, dict(os.environ))
+    folder = Path(arguments.output or task.made_from.stem).resolve()
+    made = converted(task, _ids(arguments, folder), (lambda program: "") if arguments.no_check else _Judge(config))
+    if not made.nodes:
+        raise UsageError(f"has nothing to convert: {'; '.join(made.refused.values())}", file=task.made_from)
+    files = project_files(made, config, folder)
+    with writing(folder, "--output"):
+        written = write_files(folder, files, arguments.force)
+    tell([*task.notes, *(f"{name} is not converted: {why}" for name, why in made.refused.items())])
+    write_json(arguments, report(made))
+    print(f"{folder}: {len(made.nodes)} nodes, {len(files)} files, {len(written)} of them new", file=sys.stdout)
+    return FOUND_PROBLEMS if made.refused else ENDED_WELL
+
+
+class _Judge:
+    """Checks programs before they are converted, and prints what keeps them from it.
+
+    Args:
+        config: what nodes are built for.
+    """
+
+    def __init__(self, config: CppNodesConfig) -> None:
+        self._config = config
+
+    def __call__(self, program: Program) -> str:
+        """Why it is not to be converted; empty when nothing speaks against it."""
+        report = check_program(program, Profile(self._config.profile), dict(os.environ), self._config)
+        errors = report.at(Level.ERROR)
+        tell([each.line(Level.ERROR) for each in errors])
+        count = f"{len(errors)} error{'s' if len(errors) > 1 else ''}"
+        return f"{count}, see above; --no-check converts it all the same" if errors else ""
+
+
+def _ids(arguments: argparse.Namespace, folder: Path) -> RosConfig:
+    """MsgIds that are given: of a mission, or those of the last time."""
+    if arguments.ids is not None:
+        return read_mission(arguments.ids).ros
+    lock = folder / "mission" / LOCK_FILE
+    return read_lock(lock, RosConfig()) if lock.is_file() else RosConfig()

@@ -1,0 +1,185 @@
+"""The entry point of a converted node: the source file that tells the interface library all about the node.
+
+It has the node's names, arguments, remaps, MsgIds and the first contents of its table of parameters as constants
+(`roscfe::NodeDescription` in roscfe/include/roscfe/node.h), and the function that ES calls.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from rospy_shim.parameters.table import FREE, NAME_BYTES, VALUE_BYTES, Row, rows_for
+from rospy_shim.parameters.values import leaves_of
+from rospy_shim.types.names import SEP
+
+LONGEST_SYMBOL = 19
+"""Characters of a symbol and of an application's name that OSAL keeps (OS_MAX_API_NAME without its end)."""
+ENTRY_SUFFIX = "_AppMain"
+MAIN_SYMBOL = "roscfe_node_main"
+LONGEST_QUEUE, PIPE_DEPTH = 64, 50
+FREE_ROWS = 16
+"""Rows of a table of parameters that a node has for what it sets itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class NodeEntry:
+    """What is generated around a node.
+
+    Attributes:
+        app: name of the application.
+        name: of the node, without its namespace; empty for what ros::init says.
+        namespace: of the node, such as "/".
+        args: of main, after the program's name.
+        topics: MsgId, and whether it is raw, by resolved name.
+        services: MsgId of the answers, by resolved name.
+        remaps: resolved names, and what takes their place.
+        rows: of its table of parameters.
+        takes_arguments: whether main has parameters.
+        nodelet: the class of C++ that the node is, if it is a nodelet.
+        params_are_given: cfepy's parameter server has the parameters before the node starts.
+    """
+
+    app: str
+    name: str
+    namespace: str = SEP
+    args: tuple[str, ...] = ()
+    topics: Mapping[str, tuple[int, bool]] = field(default_factory=dict)
+    services: Mapping[str, int] = field(default_factory=dict)
+    remaps: Mapping[str, str] = field(default_factory=dict)
+    rows: Sequence[Row] = ()
+    takes_arguments: bool = True
+    nodelet: str = ""
+    params_are_given: bool = False
+
+    @property
+    def symbol(self) -> str:
+        """The entry point's name: APP_AppMain, or a short one where OSAL would cut that."""
+        return entry_symbol(self.app)
+
+    def text(self) -> str:
+        """The source file."""
+        return "\n".join(_lines(self))
+
+
+def entry_symbol(app: str) -> str:
+    """The entry point of an application, no longer than OSAL allows.
+
+    Args:
+        app: its name.
+    """
+    symbol = f"{app}{ENTRY_SUFFIX}"
+    if len(symbol) <= LONGEST_SYMBOL:
+        return symbol
+    return f"RN_{hashlib.blake2b(app.encode(), digest_size=4).hexdigest()}_Main"
+
+
+def main_header(takes_arguments: bool) -> str:
+    """What is included before each source of a node: its main function gets a symbol of its own, and stays main."""
+    parameters = "int, char **" if takes_arguments else ""
+    return f'int main({parameters}) __asm__("{MAIN_SYMBOL}");\n'
+
+
+def parameter_rows(params: Mapping[str, Any], node: str, others: Iterable[str] = ()) -> list[Row]:
+    """The rows of a node's table: its own parameters and those that no other node has as its own, then free ones.
+
+    Args:
+        params: the tree of all parameters.
+        node: full name of the node.
+        others: full names of the other nodes.
+    """
+    theirs = tuple(f"{each}{SEP}" for each in others if not f"{node}{SEP}".startswith(f"{each}{SEP}"))
+    rows: list[Row] = []
+    for name, text in leaves_of("", dict(params)):
+        if not name.startswith(theirs):
+            rows += rows_for(name, text)
+    return rows + [FREE] * FREE_ROWS
+
+
+def quoted(text: str) -> str:
+    """A text as C has it."""
+    return '"' + "".join(_escaped(byte) for byte in text.encode()) + '"'
+
+
+def _field(text: str, size: int) -> str:
+    """A text in an array of so many characters: C++ takes no literal for an array that has no room for its end."""
+    if len(text) < size:
+        return quoted(text)
+    return f"{{{', '.join(_character(byte) for byte in text.encode())}}}"
+
+
+def _character(byte: int) -> str:
+    return "'\\''" if byte == ord("'") else f"'{_escaped(byte)}'"
+
+
+def _escaped(byte: int) -> str:
+    if byte in b'"\\':
+        return f"\\{byte:c}"
+    return f"{byte:c}" if 0x20 <= byte < 0x7F and byte != ord("?") else f"\\{byte:03o}"
+
+
+def _lines(node: NodeEntry) -> Iterator[str]:
+    parameters = "int, char **" if node.takes_arguments else ""
+    yield f"// The entry point of the ROS node {quoted(node.name)}, made by cfepy convert."
+    if node.nodelet:
+        yield "#include <nodelet/nodelet.h>"
+    yield '#include "roscfe/node.h"'
+    yield ""
+    if node.nodelet:
+        yield "static int roscfe_main(int argc, char **argv)"
+        yield "{"
+        yield f"    return roscfe::run_nodelet({quoted(node.nodelet)}, argc, argv);"
+        yield "}"
+    else:
+        yield f'int roscfe_main({parameters}) __asm__("{MAIN_SYMBOL}");'
+    yield ""
+    yield "namespace"
+    yield "{"
+    yield ""
+    topics = [f"{{{quoted(name)}, 0x{id_:04X}, {str(raw).lower()}}}" for name, (id_, raw) in node.topics.items()]
+    services = [f"{{{quoted(name)}, 0x{id_:04X}}}" for name, id_ in node.services.items()]
+    remaps = [f"{{{quoted(one)}, {quoted(other)}}}" for one, other in node.remaps.items()]
+    rows = [
+        f"{{{_field(name, NAME_BYTES)}, {_field(value, VALUE_BYTES)}}}" if name or value else "{}"
+        for name, value in node.rows
+    ]
+    yield from _table("const char *const", "kArguments", [quoted(each) for each in node.args])
+    yield from _table("const roscfe::TopicId", "kTopics", topics)
+    yield from _table("const roscfe::ServiceId", "kServices", services)
+    yield from _table("const roscfe::Remap", "kRemaps", remaps)
+    yield from _table("const roscfe::ParamRow", "kParams", rows)
+    yield "} // namespace"
+    yield ""
+    yield 'extern "C"'
+    yield "{"
+    yield "// Its name marks the shared object as a ROS node."
+    yield '__attribute__((visibility("default"))) extern const roscfe::NodeDescription roscfe_node;'
+    yield "const roscfe::NodeDescription roscfe_node = {"
+    yield f"    {quoted(node.app)}, {quoted(node.name)}, {quoted(node.namespace)},"
+    for name, table in (
+        ("kArguments", node.args),
+        ("kTopics", topics),
+        ("kServices", services),
+        ("kRemaps", remaps),
+        ("kParams", rows),
+    ):
+        yield f"    {name if table else 'nullptr'}, {len(table)},"
+    yield f"    {LONGEST_QUEUE}, {PIPE_DEPTH}, {str(node.params_are_given).lower()}}};"
+    yield ""
+    yield f'__attribute__((visibility("default"))) void {node.symbol}(void)'
+    yield "{"
+    yield "    roscfe::run(roscfe_node, roscfe_main);"
+    yield "}"
+    yield "}"
+    yield ""
+
+
+def _table(kind: str, name: str, rows: Sequence[str]) -> Iterator[str]:
+    if not rows:
+        return
+    yield f"{kind} {name}[] = {{"
+    yield from (f"    {row}," for row in rows)
+    yield "};"
+    yield ""

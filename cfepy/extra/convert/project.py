@@ -1,0 +1,409 @@
+"""The folder that a conversion becomes: applications for a cFS mission tree, and a mission for cfepy.
+
+roscfe/        the interface library, the headers of messages, and roscfe.cmake, which builds both
+packages/      the nodes' own sources and headers, as they are
+APP/           an application: CMakeLists.txt and its entry point
+tables/        the tables of parameters as files that the ground can load
+mission/       a mission of cfepy with the same nodes and MsgIds, those in Python beside them
+targets.cmake, startup_lines.scr, README.md, report.md, report.json
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from cfepy.extra.convert.build import (
+    HEAP_SOURCE,
+    LANGUAGE,
+    WITHOUT_EXCEPTIONS,
+    BuildOptions,
+    core_flags,
+    library_folder,
+    library_includes,
+    library_sources,
+    link_flags,
+)
+from cfepy.extra.convert.capacities import capacities_of
+from cfepy.extra.convert.conversion import Conversion, ConvertedNode
+from cfepy.extra.convert.entry import main_header
+from cfepy.extra.convert.messages import Profile, write_headers
+from cfepy.extra.convert.sources import collect, message_types
+from cfepy.mission import COMPILED_STACK_BYTES, LOCK_FILE, STARTUP_SCRIPT, CppNodesConfig
+from cfepy.status import UsageError
+from cfepy.tbl import TableImage
+from cfepy.tbl import build as table_file
+from rospy_shim.parameters.table import pack
+
+PRIORITY = 60
+MADE = "made by cfepy convert"
+MAIN_HEADERS = {True: "main_with_arguments.h", False: "main_without_arguments.h"}
+EXPORTS = "exports.map"
+EXPORTED = "{ global: *_AppMain; RN_*_Main; roscfe_node; local: *; };\n"
+"""What a node exports. A copy of a function of the C++ library would be used by that library, too, when the node is the
+first one that needs it; the node then stays in memory, and is started again with what it left there."""
+C_ONLY = ("-std=c99", "-pedantic", "-Wstrict-prototypes", "-Wmissing-prototypes", "-Werror")
+"""Options that a cFS mission gives all languages, and that C++ sources cannot have."""
+
+
+def project_files(made: Conversion, config: CppNodesConfig, folder: Path) -> dict[str, bytes]:
+    """All files of the folder, by path.
+
+    Args:
+        made: what was converted.
+        config: what the nodes are built for.
+        folder: where it will be, for paths that lead out of it.
+
+    Raises:
+        CppNodesError: a capacity of a type or field that is not there, or has none.
+        UsageError: a field without a capacity.
+    """
+    files: dict[str, bytes] = {}
+    options = BuildOptions(Profile(config.profile), capacities_of(config, made.library), config.arena_bytes)
+    files |= _library(made, options)
+    for node in made.nodes:
+        files |= _application(node)
+    texts = {
+        "targets.cmake": _targets(made, folder),
+        "startup_lines.scr": "".join(startup_line(node) for node in made.nodes),
+        "README.md": _readme(made, folder),
+        "report.md": report_text(made),
+        "report.json": json.dumps(report(made), indent=1) + "\n",
+        **{f"mission/{name}": text for name, text in _mission(made, config, folder).items()},
+    }
+    return files | {name: text.encode() for name, text in texts.items()}
+
+
+def startup_line(node: ConvertedNode) -> str:
+    """The line of a startup script that starts a node."""
+    app = node.node.app
+    return f"CFE_APP, {node.file}, {node.entry.symbol}, {app}, {PRIORITY}, {COMPILED_STACK_BYTES}, 0x0, 0;\n"
+
+
+def origin(node: ConvertedNode) -> str:
+    """Where a node comes from: package and type."""
+    return node.node.type if node.entry.nodelet else f"{node.node.package}/{node.node.type}"
+
+
+# -- what is built -----------------------------------------------------------------------------------------------------
+
+
+def _library(made: Conversion, options: BuildOptions) -> dict[str, bytes]:
+    """The interface library with the headers of all messages."""
+    root = library_folder()
+    found = {
+        f"roscfe/{each.relative_to(root)}": each.read_bytes() for each in sorted(root.rglob("*")) if each.is_file()
+    }
+    used = library_sources(header for node in made.nodes for header in node.headers)
+    needed = collect(used, library_includes())
+    types = {*message_types(needed.missing, made.library), *(name for node in made.nodes for name in node.types)}
+    with tempfile.TemporaryDirectory(prefix="cfepy-convert-") as scratch:
+        said = (sorted(types), Path(scratch), options.profile, made.library)
+        for header in write_headers(*said, options.capacities):
+            found[f"roscfe/msg/{header.relative_to(scratch)}"] = header.read_bytes()
+    for node in made.nodes:
+        found |= {f"roscfe/msg/{name}": text.encode() for name, text in node.configurations.items()}
+    for with_arguments, name in MAIN_HEADERS.items():
+        found[f"roscfe/{name}"] = main_header(with_arguments).encode()
+    sources = [f"src/{each.relative_to(root / 'src')}" for each in used]
+    found[f"roscfe/{EXPORTS}"] = EXPORTED.encode()
+    found["roscfe/roscfe.cmake"] = _cmake_of_library(sources, options).encode()
+    return found
+
+
+def _cmake_of_library(sources: Iterable[str], options: BuildOptions) -> str:
+    profile = options.profile
+    arena = options.flags_of(Path(HEAP_SOURCE))
+    words = " ".join(each[2:] for each in arena)
+    definitions = f"\n    target_compile_definitions(${{ROSCFE_LIBRARY}} PRIVATE {words})" if arena else ""
+    exceptions = () if profile is Profile.HOST else WITHOUT_EXCEPTIONS
+    flags = [*LANGUAGE, f"-DROSCFE_PROFILE_{profile.name}"]
+    linked = " ".join(link_flags(profile)[1:])  # -shared is CMake's
+    listed = "".join(f"\n      ${{ROSCFE_DIR}}/{each}" for each in sources)
+    return f"""# The interface library for ROS nodes, and how a node is built with it; {MADE}.
+# A CMakeLists.txt includes this file before anything else.
+
+enable_language(CXX)
+set(ROSCFE_DIR ${{CMAKE_CURRENT_LIST_DIR}})
+# A mission may have several such folders, with other messages and another profile: each has a library of its own.
+get_filename_component(ROSCFE_FOLDER ${{ROSCFE_DIR}} DIRECTORY)
+get_filename_component(ROSCFE_FOLDER ${{ROSCFE_FOLDER}} NAME)
+set(ROSCFE_LIBRARY roscfe_${{ROSCFE_FOLDER}})
+set(ROSCFE_FLAGS {" ".join(flags)})
+set(ROSCFE_NODE_FLAGS {" ".join(exceptions)})
+
+# Options that a mission gives all languages, though they are of C alone.
+get_property(ROSCFE_OPTIONS DIRECTORY PROPERTY COMPILE_OPTIONS)
+list(REMOVE_ITEM ROSCFE_OPTIONS {" ".join(C_ONLY)})
+set_property(DIRECTORY PROPERTY COMPILE_OPTIONS "${{ROSCFE_OPTIONS}}")
+
+# One library for all nodes of the folder. It is linked into each of them, for nodes share no variables.
+if(NOT TARGET ${{ROSCFE_LIBRARY}})
+    add_library(${{ROSCFE_LIBRARY}} STATIC{listed}
+    )
+    target_include_directories(${{ROSCFE_LIBRARY}}
+        PUBLIC ${{ROSCFE_DIR}}/include ${{ROSCFE_DIR}}/boost ${{ROSCFE_DIR}}/msg)
+    target_include_directories(${{ROSCFE_LIBRARY}}
+        SYSTEM PRIVATE $<TARGET_PROPERTY:core_api,INTERFACE_INCLUDE_DIRECTORIES>)
+    target_compile_definitions(${{ROSCFE_LIBRARY}} PRIVATE $<TARGET_PROPERTY:core_api,INTERFACE_COMPILE_DEFINITIONS>)
+    target_compile_options(${{ROSCFE_LIBRARY}} PRIVATE ${{ROSCFE_FLAGS}} {" ".join(core_flags(profile))}){definitions}
+endif()
+
+# roscfe_node(NAME MAIN_HEADER ENTRY SOURCE...): a node that is an application of cFE.
+function(roscfe_node NAME MAIN_HEADER ENTRY)
+    add_cfe_app(${{NAME}} ${{ENTRY}} ${{ARGN}})
+    target_compile_options(${{NAME}} PRIVATE ${{ROSCFE_FLAGS}} ${{ROSCFE_NODE_FLAGS}})
+    set_source_files_properties(${{ARGN}} PROPERTIES COMPILE_OPTIONS "-include;${{ROSCFE_DIR}}/${{MAIN_HEADER}}")
+    target_link_libraries(${{NAME}} ${{ROSCFE_LIBRARY}})
+    target_link_options(${{NAME}} PRIVATE {linked} -Wl,--version-script=${{ROSCFE_DIR}}/{EXPORTS})
+endfunction()
+"""
+
+
+def _application(node: ConvertedNode) -> dict[str, bytes]:
+    files = {f"packages/{_place(node, each)}": node.sources.contents[each] for each in node.sources.contents}
+    program = node.program
+    sources = "".join(f"\n    {cmake_word(f'../packages/{_place(node, each)}', each)}" for each in program.sources)
+    includes = _include_folders(node)
+    text = f"""# The ROS node {_line(node.node.full_name)}, {_line(origin(node))}; {MADE}.
+include(${{CMAKE_CURRENT_LIST_DIR}}/../roscfe/roscfe.cmake)
+
+roscfe_node({node.file} {MAIN_HEADERS[node.entry.takes_arguments]} fsw/src/{node.file}_entry.cpp{sources}
+)
+"""
+    if includes:
+        text += f"target_include_directories({node.file} BEFORE PRIVATE\n    {chr(10).join(includes)}\n)\n"
+    if program.definitions:
+        definitions = " ".join(cmake_word(each, program.package.folder) for each in program.definitions)
+        text += f"target_compile_definitions({node.file} PRIVATE {definitions})\n"
+    files[f"{node.file}/CMakeLists.txt"] = text.encode()
+    files[f"{node.file}/fsw/src/{node.file}_entry.cpp"] = node.entry.text().encode()
+    rows = b"".join(pack(row) for row in node.entry.rows)
+    image = TableImage(f"{node.node.app}.Params", rows, f"parameters of {node.node.full_name}"[:31])
+    files[f"tables/{node.file}_params.tbl"] = table_file(image)
+    return files
+
+
+def _place(node: ConvertedNode, file: Path) -> str:
+    """Where a file of a node's goes below packages/: in the folder of its package, at the place that it has there."""
+    file = Path(os.path.abspath(file))
+    roots = [(node.program.package.name, node.program.package.folder)]
+    roots += [(each.name, each.parent if each.name == "include" else each) for each in node.program.includes]
+    for name, root in roots:
+        if file.is_relative_to(root):
+            inner = root.name if name == "include" else name
+            return f"{inner}/{file.relative_to(root)}"
+    return f"others/{file.name}"
+
+
+def _include_folders(node: ConvertedNode) -> list[str]:
+    """The include folders of a node's packages that have files here."""
+    found: dict[str, None] = {}
+    for folder in node.program.includes:
+        inside = next((each for each in node.sources.contents if each.is_relative_to(folder)), None)
+        if inside is not None:
+            depth = len(inside.relative_to(folder).parts)
+            found["/".join(Path(_place(node, inside)).parts[:-depth])] = None
+    where = node.program.package.folder
+    return [cmake_word(each, where, "${CMAKE_CURRENT_LIST_DIR}/../packages/") for each in found]
+
+
+# -- what is beside it -------------------------------------------------------------------------------------------------
+
+
+def cmake_word(text: str, of: Path, before: str = "") -> str:
+    """A text as one argument of a command of CMake.
+
+    Args:
+        text: such as the path of a source, or a definition.
+        of: what it belongs to, for errors.
+        before: what stands before it in the argument, as CMake has it.
+
+    Returns:
+        The text itself where it needs no quotes, else in quotes, in which nothing has a meaning of its own.
+
+    Raises:
+        UsageError: CMake would take it apart all the same: lists are divided at semicolons, and paths are lists.
+    """
+    if _PLAIN_WORD.fullmatch(text):
+        return before + text
+    if not text.isprintable() or text.endswith("\\") or any(each in text for each in _DIVIDING):
+        raise UsageError(f"{text!r} has a character that CMake does not take in a word; give it another name", file=of)
+    return f'"{before}' + re.sub(r'([\\"$])', r"\\\1", text) + '"'
+
+
+_PLAIN_WORD = re.compile(r'[\w./+@~=,:%-]+("[\w./+@~=,:%-]*")?')
+_DIVIDING = (";", "[", "]", "$<")
+
+
+def _line(text: str) -> str:
+    """A text in a comment, which ends with its line."""
+    return "".join(each if each.isprintable() else "?" for each in text)
+
+
+def _targets(made: Conversion, folder: Path) -> str:
+    names = " ".join(node.file for node in made.nodes)
+    where = cmake_word(f"apps/{folder.name}", folder)
+    places = "".join(f"set({node.file}_SEARCH_PATH {where})\n" for node in made.nodes)
+    name = _line(folder.name)
+    return f"""# What a mission's targets.cmake needs, with this folder as apps/{name} of the mission; {MADE}.
+list(APPEND MISSION_GLOBAL_APPLIST {names})
+{places}"""
+
+
+def _mission(made: Conversion, config: CppNodesConfig, folder: Path) -> dict[str, str]:
+    """A mission of cfepy: the launch file with the MsgIds, the profile and the capacities that are compiled in."""
+    launch = made.task.launch
+    if launch is None:
+        return {}
+    file, args = launch
+    said: dict[str, Any] = {"file": os.path.relpath(file, folder / "mission")}
+    if args:
+        said["args"] = dict(args)
+    text = f"# {_line(made.task.title)} as a mission of cfepy; {MADE}.\nlaunch:\n  - {json.dumps(said)}\n"
+    text += "".join(_cpp_nodes(config))
+    pins = dict(made.ids.topics)
+    if pins:
+        text += "topics:\n"
+        text += "".join(
+            f"  {json.dumps(name)}: {{msg_id: 0x{each.msg_id:04X}, raw: {str(each.raw).lower()}}}\n"
+            for name, each in sorted(pins.items())
+        )
+    return {STARTUP_SCRIPT: "!\n", "mission.yaml": text, LOCK_FILE: _lock(made)}
+
+
+def _cpp_nodes(config: CppNodesConfig) -> Iterator[str]:
+    """The section `cpp_nodes:`, without what goes without saying."""
+    usual = CppNodesConfig()
+    if config.profile == usual.profile:
+        return
+    yield f"cpp_nodes:\n  profile: {config.profile}\n  arena_bytes: {config.arena_bytes}\n"
+    by_type: dict[str, dict[str, int]] = {}
+    for place, number in sorted(config.capacities.items()):
+        kind, _, name = place.partition(".")
+        by_type.setdefault(kind, {})[name] = number
+    sizes = {name: getattr(config, name) for name in ("text", "array") if getattr(config, name) != getattr(usual, name)}
+    if by_type or sizes:
+        yield "  capacities:\n"
+        yield from (f"    {name}: {json.dumps(said)}\n" for name, said in {**sizes, **by_type}.items())
+
+
+def _lock(made: Conversion) -> str:
+    lines = [f"# MsgIds of topics, and of the answers of services; {MADE}."]
+    for title, ids in (("topics", made.ids.locked_topics), ("services", made.ids.locked_services)):
+        lines += [f"{title}:"] if ids else []
+        lines += [f"  {json.dumps(name)}: 0x{ids[name]:04X}" for name in sorted(ids)]
+    return "\n".join(lines) + "\n"
+
+
+def _readme(made: Conversion, folder: Path) -> str:
+    mission = """
+Or fly it on cfepy, which builds it by itself:
+
+    cfepy run mission
+"""
+    return f"""# {_line(made.task.title)} on cFE
+
+ROS nodes in C++, unmodified, as applications of cFE 7.0.0; {MADE}. `report.md` says what became of what.
+
+1. Put this folder into a cFS mission tree as `apps/{folder.name}`.
+2. Add what `targets.cmake` says to the mission's `targets.cmake`, such as
+   `include(${{MISSION_SOURCE_DIR}}/apps/{folder.name}/targets.cmake)`.
+3. Add the lines of `startup_lines.scr` to the startup script of the processor, before its first `!`.
+4. Build as ever: `make SIMULATION=native prep && make && make install`.
+
+`tables/` has the parameters of each node as a table file: put it into `/cf`, and load and activate it to change them.
+Convert again after a change of the launch file, of the nodes or of MsgIds, which are compiled in.
+{mission if made.task.launch is not None else ""}"""
+
+
+# -- the report --------------------------------------------------------------------------------------------------------
+
+
+def report(made: Conversion) -> dict[str, Any]:
+    """What was mapped to what, as plain values."""
+    return {
+        "made_from": made.task.title,
+        "nodes": [_row(node) for node in made.nodes],
+        "refused": [{"node": name, "why": why} for name, why in sorted(made.refused.items())],
+        "python_nodes": sorted(made.task.scripts),
+        "notes": [str(each).replace(f"{made.task.made_from.parent}{os.sep}", "") for each in made.task.notes],
+        "topics": {name: f"0x{id_:04X}" for name, id_ in sorted(_topic_ids(made).items())},
+        "services": {name: f"0x{id_:04X}" for name, id_ in sorted(made.ids.locked_services.items())},
+    }
+
+
+def _topic_ids(made: Conversion) -> dict[str, int]:
+    return {**made.ids.locked_topics, **{name: each.msg_id for name, each in made.ids.topics.items()}}
+
+
+def _row(node: ConvertedNode) -> dict[str, Any]:
+    used = [name for name, _ in node.entry.rows if name and not name.startswith("+")]
+    return {
+        "node": node.node.full_name,
+        "from": origin(node),
+        "app": node.node.app,
+        "entry": node.entry.symbol,
+        "sources": [_place(node, each) for each in node.program.sources],
+        "topics": sorted(node.entry.topics),
+        "services": sorted(node.entry.services),
+        "guessed": sorted(name for name, sure in (node.names.topics | node.names.services).items() if not sure),
+        "unknown_names": node.names.open,
+        "remaps": dict(sorted(node.entry.remaps.items())),
+        "parameters": len(used),
+        "parameter_rows": len(node.entry.rows),
+        "message_types": node.types,
+        "libraries_from_outside": node.program.outside,
+    }
+
+
+def report_text(made: Conversion) -> str:
+    """The report for a reader."""
+    return "\n".join(_report_lines(report(made))) + "\n"
+
+
+def _report_lines(said: Mapping[str, Any]) -> Iterator[str]:
+    yield f"# What became of {said['made_from']}"
+    yield ""
+    yield "| node | from | application | entry point | parameters |"
+    yield "|---|---|---|---|---|"
+    for row in said["nodes"]:
+        count = f"{row['parameters']} in {row['parameter_rows']} rows"
+        yield f"| {row['node']} | {row['from']} | {row['app']} | {row['entry']} | {count} |"
+    yield ""
+    for row in said["nodes"]:
+        yield from _node_lines(row)
+    for title, key in (("Topics", "topics"), ("Services, by the MsgId of their answers", "services")):
+        if said[key]:
+            yield f"## {title}"
+            yield ""
+            yield from (f"- `{name}`: {msg_id}" for name, msg_id in said[key].items())
+            yield ""
+    if said["python_nodes"]:
+        yield f"Nodes in Python, which fly on cfepy only: {', '.join(said['python_nodes'])}."
+        yield ""
+    yield from (f"- **not converted**: {each['node']}: {each['why']}" for each in said["refused"])
+    yield from (f"- note: {each}" for each in said["notes"])
+
+
+def _node_lines(row: Mapping[str, Any]) -> Iterator[str]:
+    yield f"## {row['node']}"
+    yield ""
+    yield f"- sources: {', '.join(row['sources'])}"
+    for title, key in (
+        ("topics", "topics"),
+        ("services", "services"),
+        ("names that a variable holds", "guessed"),
+        ("names that are computed, and have no MsgId: write them under `topics:` of a mission file", "unknown_names"),
+        ("message types", "message_types"),
+        ("libraries from outside, which must be built for cFE", "libraries_from_outside"),
+    ):
+        if row[key]:
+            yield f"- {title}: {', '.join(row[key])}"
+    yield from (f"- remap: {one} is {other}" for one, other in row["remaps"].items())
+    yield ""

@@ -1,0 +1,165 @@
+"""Exploring schedules: a mission is flown under many, failures are told apart, and a failing schedule is made short.
+
+What belongs here works with many runs of one mission that differ in which task goes first: the choice of schedules
+(`search`), the processes that fly them (`campaign`, `crews`, `workers`), what counts as a failure (`trial`, `failures`,
+`stuck`, `result_watch`), and how a failing schedule is made short and shown (`shrink`, `timeline`). The same processes
+fly runs that differ in their plans, such as rates and boards (`lot`, `sweep`). The policies that decide within one run
+belong to `cfepy.rtos`; what must hold of every run belongs to `cfepy.monitors`. The central file is
+`cfepy/extra/exploration/expedition.py`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cfepy.interpreter.faces import face
+
+if TYPE_CHECKING:
+    from cfepy.extra.exploration.crews import make_crew
+    from cfepy.extra.exploration.expedition import DEFAULT_SEEDS, Expedition, Report, Told
+    from cfepy.extra.exploration.lot import Lot, answers
+    from cfepy.extra.exploration.moves import MadeMove
+    from cfepy.extra.exploration.progress import make_progress
+    from cfepy.extra.exploration.replays import GONE, NOT_POSSIBLE, STILL_THERE, ReplayedFailure, replay_all
+    from cfepy.extra.exploration.search import SeededSearch, seeded_kinds
+    from cfepy.extra.exploration.shipment import files_read, ship
+    from cfepy.extra.exploration.shrink import Shrinkable, Shrinker, Shrunk, budget_of
+    from cfepy.extra.exploration.sweep import (
+        Knee,
+        Point,
+        PointNumbers,
+        Sweep,
+        SweepRow,
+        TopicNumbers,
+        knees,
+        seconds_text,
+        sweep_table,
+    )
+    from cfepy.extra.exploration.sweep_picture import SweepLine, picture_of_sweep
+    from cfepy.extra.exploration.sweep_points import numbers_of, points_of, seeds_of, values_of
+    from cfepy.extra.exploration.task_look import TaskLook
+    from cfepy.extra.exploration.timeline import WIDTH, Story, important, story_of_run
+    from cfepy.extra.exploration.trial import Trial, Tried
+    from cfepy.extra.exploration.verdict import Failure, Finding, Verdict
+    from cfepy.extra.exploration.worst import Worst
+
+__all__ = [
+    "DEFAULT_SEEDS",
+    "GONE",
+    "NOT_POSSIBLE",
+    "STILL_THERE",
+    "WIDTH",
+    "Expedition",
+    "Failure",
+    "Finding",
+    "Knee",
+    "Lot",
+    "MadeMove",
+    "Point",
+    "PointNumbers",
+    "ReplayedFailure",
+    "Report",
+    "SeededSearch",
+    "Shrinkable",
+    "Shrinker",
+    "Shrunk",
+    "Story",
+    "Sweep",
+    "SweepLine",
+    "SweepRow",
+    "TaskLook",
+    "Told",
+    "TopicNumbers",
+    "Trial",
+    "Tried",
+    "Verdict",
+    "Worst",
+    "answers",
+    "budget_of",
+    "files_read",
+    "important",
+    "knees",
+    "make_crew",
+    "make_progress",
+    "numbers_of",
+    "picture_of_sweep",
+    "points_of",
+    "replay_all",
+    "seconds_text",
+    "seeded_kinds",
+    "seeds_of",
+    "ship",
+    "story_of_run",
+    "sweep_table",
+    "values_of",
+]
+
+if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+    __getattr__, __dir__ = face(
+        __name__,
+        {
+            ".crews": ("make_crew",),
+            ".lot": (
+                "Lot",
+                "answers",
+            ),
+            ".progress": ("make_progress",),
+            ".search": (
+                "SeededSearch",
+                "seeded_kinds",
+            ),
+            ".shipment": (
+                "files_read",
+                "ship",
+            ),
+            ".sweep": (
+                "Knee",
+                "Point",
+                "PointNumbers",
+                "SweepRow",
+                "Sweep",
+                "TopicNumbers",
+                "knees",
+                "seconds_text",
+                "sweep_table",
+            ),
+            ".sweep_picture": ("SweepLine", "picture_of_sweep"),
+            ".sweep_points": (
+                "numbers_of",
+                "points_of",
+                "seeds_of",
+                "values_of",
+            ),
+            ".expedition": (
+                "DEFAULT_SEEDS",
+                "Expedition",
+                "Report",
+                "Told",
+            ),
+            ".moves": ("MadeMove",),
+            ".replays": ("GONE", "NOT_POSSIBLE", "STILL_THERE", "ReplayedFailure", "replay_all"),
+            ".shrink": (
+                "Shrinkable",
+                "Shrinker",
+                "Shrunk",
+                "budget_of",
+            ),
+            ".task_look": ("TaskLook",),
+            ".timeline": (
+                "WIDTH",
+                "Story",
+                "important",
+                "story_of_run",
+            ),
+            ".trial": (
+                "Trial",
+                "Tried",
+            ),
+            ".verdict": (
+                "Failure",
+                "Finding",
+                "Verdict",
+            ),
+            ".worst": ("Worst",),
+        },
+    )

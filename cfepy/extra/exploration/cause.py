@@ -1,0 +1,458 @@
+"""The cause of a failure in one sentence, where what was observed says it.
+
+The deeds of the failing run are held against those of the run under fifo, in which the failure is not. A sentence
+states what happened in the one and not in the other; where none of the patterns below is there, nothing is said.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from cfepy.extra.exploration import deeds as do
+from cfepy.extra.exploration.deeds import Deed, keys_of
+from cfepy.extra.exploration.moves import MadeMove
+from cfepy.extra.exploration.run_times import longest_more
+from cfepy.extra.exploration.task_look import AT, ORDERED, PREEMPTED, Row
+from cfepy.extra.exploration.things import is_made_of
+from cfepy.extra.exploration.verdict import DEADLOCK, DIED, RAISED, Failure
+from cfepy.monitors import time_text
+from cfepy.rtos import HOLD
+from cfepy.schedules import plain_name
+
+_PLACE = re.compile(r"\(([\w.-]+:\d+)\)$")  # of an exception, at the end of its text
+NOTHING: Counter[str] = Counter()
+NOBODY = "0"  # waits for what is notified
+_HELD = re.compile(r"(?P<task>\S+) waits for (?P<what>[^;]+), held by (?P<holder>[^;,]+)")
+
+
+class Evidence:
+    """What is known of a failure.
+
+    Args:
+        failure: itself.
+        moves: what the schedule does.
+        rows: of the failing run, up to the failure.
+        deeds: of the failing run, up to the failure.
+        usual: those of the run under fifo.
+        names: what locks are called that the failure tells by their numbers.
+        ran: by task, for how many ns it ran in the span of a deadline that was missed; empty for other failures.
+        usually_ran: the same under fifo.
+    """
+
+    def __init__(
+        self,
+        failure: Failure,
+        moves: Sequence[MadeMove],
+        rows: Sequence[Row],
+        deeds: Sequence[Deed],
+        usual: Sequence[Deed],
+        names: Mapping[str, str],
+        ran: Counter[str] = NOTHING,
+        usually_ran: Counter[str] = NOTHING,
+    ) -> None:
+        self.failure = failure
+        self.moves = moves
+        self.rows = rows
+        self.deeds = deeds
+        self.usual = usual
+        self.names = names
+        self.ran = ran
+        self.usually_ran = usually_ran
+        self._keys = list(keys_of(self.deeds))
+        self._usual_at = {key: at for at, key in enumerate(keys_of(self.usual))}
+
+    def is_flipped(self, first: int, second: int) -> bool:
+        """Whether two deeds of the failing run came in the other order under fifo."""
+        one, other = (self._usual_at.get(self._keys[at]) for at in (first, second))
+        return one is not None and other is not None and other < one
+
+
+def cause_of(evidence: Evidence) -> str:
+    """The sentence; empty where there is none."""
+    sentences: tuple[Callable[[Evidence], str], ...] = (
+        _deadlock,
+        _late,
+        _lost_update,
+        _lost_wake_up,
+        _overflow,
+        _late_subscription,
+        _deleted,
+        _message_order,
+        _torn,
+        _raised,
+        _order,
+        _one_switch,
+    )
+    return next((text for text in (sentence(evidence) for sentence in sentences) if text), "")
+
+
+# -- deadlock --------------------------------------------------------------------------------------------------------
+
+
+def _deadlock(evidence: Evidence) -> str:
+    """Each of the tasks in a circle has what the one before it wants."""
+    if evidence.failure.kind != DEADLOCK:
+        return ""
+    waits = [(found["task"], found["what"], found["holder"]) for found in _HELD.finditer(evidence.failure.text)]
+    wanted = {task: evidence.names.get(what, what) for task, what, _ in waits}
+    held = {holder: evidence.names.get(what, what) for _, what, holder in waits}
+    if len(waits) < 2 or wanted.keys() != held.keys():
+        return ""
+    return "; ".join(f"{task} has {held[task]} and wants {wanted[task]}" for task in wanted)
+
+
+# -- time ------------------------------------------------------------------------------------------------------------
+
+
+def _late(evidence: Evidence) -> str:
+    """Another task ran for longer than usual while something should have come."""
+    span_ns = evidence.failure.span_ns
+    task = "" if span_ns is None else longest_more(evidence.ran, evidence.usually_ran, span_ns)
+    if span_ns is None or not task:
+        return ""
+    ran, usual, span = (time_text(each) for each in (evidence.ran[task], evidence.usually_ran[task], span_ns))
+    return f"{task} ran for {ran} of the {span} before it, under fifo for {usual}"
+
+
+# -- accesses --------------------------------------------------------------------------------------------------------
+
+
+class Torn(NamedTuple):
+    """Two accesses of a task, and one of another task between them that does not go together with both.
+
+    These are the interleavings that no order of the two tasks as wholes gives (Lu, Tucek, Qin, Zhou: AVIO, ASPLOS
+    2006).
+
+    Attributes:
+        first: what the task did.
+        other: what another task did then.
+        last: what the first one did next to the same.
+        switch: how many switches of the schedule there were when the other task did it; 0 where none of them let it in.
+    """
+
+    first: Deed
+    other: Deed
+    last: Deed
+    switch: int
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it has in common with the same in another run."""
+        places = (self.first.place, self.other.place, self.last.place)
+        return (plain_name(self.first.task), plain_name(self.other.task), self.other.thing, *places)
+
+
+_DO_NOT_GO_TOGETHER = {
+    (do.READS, do.WRITES, do.READS),
+    (do.WRITES, do.WRITES, do.READS),
+    (do.READS, do.WRITES, do.WRITES),
+    (do.WRITES, do.READS, do.WRITES),
+}
+
+
+def _lost_update(evidence: Evidence) -> str:
+    """Another task writes what a task has read, and this one writes over that without having read it."""
+    return _told(evidence, _is_lost_update, _update_text)
+
+
+def _torn(evidence: Evidence) -> str:
+    """Another task accesses a variable between two accesses of a task."""
+    return _told(evidence, lambda torn: True, _torn_text)
+
+
+def _told(evidence: Evidence, is_meant: Callable[[Torn], bool], text: Callable[[Torn], str]) -> str:
+    """The first one after the last switch that let any in, and that is not there under fifo."""
+    usual = {torn.key for torn in _torn_in(evidence.usual)}
+    found = [each for each in _torn_in(evidence.deeds) if each.switch and each.key not in usual and is_meant(each)]
+    last = max((torn.switch for torn in found), default=0)
+    return next((text(torn) for torn in found if torn.switch == last), "")
+
+
+@dataclass(slots=True)
+class _Own:
+    """What a task did to an object, and what others did to it since then.
+
+    Attributes:
+        epoch: of the task: it is another one with each message that the task goes for.
+        own: its accesses, each with the number of the last switch.
+        others: those of others since, each with the switch by which the task gave way; 0 for none.
+    """
+
+    epoch: int
+    own: list[tuple[Deed, int]] = field(default_factory=list)
+    others: list[tuple[Deed, int]] = field(default_factory=list)
+
+
+def _torn_in(deeds: Sequence[Deed]) -> Iterator[Torn]:
+    """All of a run, in the order of their ends; a task that went for another message has begun anew."""
+    seen: dict[int | str, dict[str, _Own]] = {}  # by object, by task
+    epochs: dict[str, int] = {}
+    gave_way: dict[str, int] = {}
+    switches = 0
+    for deed in deeds:
+        if deed.verb == do.GIVES_WAY:
+            switches += 1
+            gave_way[deed.task] = switches
+        elif deed.verb == do.RECEIVES:
+            epochs[deed.task] = epochs.get(deed.task, 0) + 1
+        elif deed.verb in (do.READS, do.WRITES):
+            by_task = seen.setdefault(deed.ident or deed.thing, {})
+            epoch = epochs.get(deed.task, 0)
+            mine = by_task.get(deed.task)
+            if mine is None or mine.epoch != epoch:
+                mine = by_task[deed.task] = _Own(epoch)
+            yield from _ended_by(deed, mine)
+            mine.own = [each for each in mine.own if not each[0].is_of_same(deed)] + [(deed, switches)]
+            mine.others = [each for each in mine.others if not each[0].is_of_same(deed)]
+            for task, its in by_task.items():
+                if task != deed.task and not any(_is_like(each, deed) for each, _ in its.others):
+                    its.others.append((deed, gave_way.get(task, 0)))
+
+
+def _is_like(one: Deed, other: Deed) -> bool:
+    """Whether an access tells no more than one before it."""
+    return (one.task, one.verb, one.key) == (other.task, other.verb, other.key)
+
+
+def _ended_by(last: Deed, mine: _Own) -> Iterator[Torn]:
+    for first, since in mine.own:
+        for other, switch in mine.others:
+            kinds = (first.verb, other.verb, last.verb)
+            if first.is_of_same(last) and other.is_of_same(last) and kinds in _DO_NOT_GO_TOGETHER:
+                yield Torn(first, other, last, switch if switch > since else 0)
+
+
+def _is_lost_update(torn: Torn) -> bool:
+    if (torn.first.verb, torn.other.verb, torn.last.verb) != (do.READS, do.WRITES, do.WRITES):
+        return False
+    return not torn.first.ident or is_made_of(torn.last.note, torn.first.place, torn.last.place, torn.last.key)
+
+
+def _update_text(torn: Torn) -> str:
+    first, other, last, _ = torn
+    return (
+        f"an update of {other.thing} is lost: {other.task} wrote it at {other.place}, between {first.task}'s read at "
+        f"{first.place} and {last.task}'s write at {last.place}"
+    )
+
+
+def _torn_text(torn: Torn) -> str:
+    first, other, last, _ = torn
+    words = {do.READS: "read", do.WRITES: "change" if other.key == do.ALL else "write"}
+    one, two = words[first.verb], words[last.verb]
+    between = f"{one}s at {first.place} and {last.place}"
+    if one != two:
+        between = f"{one} at {first.place} and {first.task}'s {two} at {last.place}"
+    return f"{other.task} {_did(other)} {other.thing} at {other.place}, between {first.task}'s {between}"
+
+
+def _raised(evidence: Evidence) -> str:
+    """What a line has read was changed by another task when the line raised an exception."""
+    place = _PLACE.search(evidence.failure.text)
+    if evidence.failure.kind not in (RAISED, DIED) or place is None:
+        return ""
+    task = evidence.failure.task
+    begun = max(
+        (at for at, deed in _of(evidence.deeds, do.GIVES_WAY) if deed.task == task), default=len(evidence.deeds)
+    )
+    read = [deed for deed in evidence.deeds[:begun] if (deed.task, deed.place, deed.verb) == (task, place[1], do.READS)]
+    for deed in evidence.deeds[begun:]:
+        if deed.verb == do.WRITES and deed.task != task and any(each.is_of_same(deed) for each in read[-1:]):
+            return (
+                f"{deed.task} {_did(deed)} {deed.thing} at {deed.place}, between {task}'s read at {place[1]} and the "
+                "exception there"
+            )
+    return ""
+
+
+def _order(evidence: Evidence) -> str:
+    """A read and a write come in another order than under fifo, of this one variable and of no other."""
+    found = list(_flipped_accesses(evidence))
+    if len({later.thing for _, later in found}) != 1:
+        return ""
+    earlier, later = found[0]
+    return (
+        f"{earlier.task} {_did(earlier)} {later.thing} at {earlier.place} before {later.task} {_did(later)} it at "
+        f"{later.place}; under fifo after that"
+    )
+
+
+def _flipped_accesses(evidence: Evidence) -> Iterator[tuple[Deed, Deed]]:
+    """Accesses of two tasks in another order than under fifo, where a switch kept the second one back."""
+    gave_way: dict[str, int] = {}
+    seen: dict[int, list[int]] = {}
+    for at, deed in enumerate(evidence.deeds):
+        if deed.verb == do.GIVES_WAY:
+            gave_way[deed.task] = at
+        elif deed.verb in (do.READS, do.WRITES) and deed.ident:
+            for earlier_at in seen.setdefault(deed.ident, []):
+                earlier = evidence.deeds[earlier_at]
+                is_kept_back = earlier_at > gave_way.get(deed.task, at) and earlier.task != deed.task
+                if is_kept_back and _is_order_seen(earlier, deed) and evidence.is_flipped(earlier_at, at):
+                    yield earlier, deed
+            seen[deed.ident].append(at)
+
+
+def _is_order_seen(one: Deed, other: Deed) -> bool:
+    """Whether it matters which of two accesses comes first; who changes all of a container also looks at it."""
+    both = (one, other)
+    reads = any(each.verb == do.READS or each.key == do.ALL for each in both)
+    return one.is_of_same(other) and reads and any(each.verb == do.WRITES for each in both)
+
+
+def _did(deed: Deed) -> str:
+    return "read" if deed.verb == do.READS else "changed" if deed.key == do.ALL else "wrote"
+
+
+# -- wake-ups --------------------------------------------------------------------------------------------------------
+
+
+def _lost_wake_up(evidence: Evidence) -> str:
+    """A task waits in vain for what was set or notified before it waited."""
+    for at in _vain_waits(evidence.deeds):
+        text = _notified_early(evidence, at) or _set_and_cleared(evidence, at)
+        if text:
+            return text
+    return ""
+
+
+def _notified_early(evidence: Evidence, at: int) -> str:
+    wait = evidence.deeds[at]
+    last = _last(evidence.deeds[:at], wait, do.NOTIFIES)
+    if last is None or evidence.deeds[last].note != NOBODY or not evidence.is_flipped(last, at):
+        return ""
+    deed = evidence.deeds[last]
+    return f"{deed.task}'s notify at {deed.place} came before {wait.task}'s wait at {wait.place}: nobody waited then"
+
+
+def _set_and_cleared(evidence: Evidence, at: int) -> str:
+    """An event was set while the one that clears it was kept from doing so."""
+    wait = evidence.deeds[at]
+    cleared_at = _last(evidence.deeds[:at], wait, do.CLEARS)
+    set_at = None if cleared_at is None else _last(evidence.deeds[:cleared_at], wait, do.SETS)
+    if cleared_at is None or set_at is None:
+        return ""
+    cleared, was_set = evidence.deeds[cleared_at], evidence.deeds[set_at]
+    own = (each for each in reversed(range(cleared_at)) if evidence.deeds[each].task == cleared.task)
+    before = next(own, cleared_at)
+    gave_way = evidence.deeds[before].verb == do.GIVES_WAY and before < set_at
+    if was_set.task == cleared.task or not (gave_way or evidence.is_flipped(set_at, cleared_at)):
+        return ""
+    return (
+        f"{was_set.task} set {wait.thing} at {was_set.place}, then {cleared.task} cleared it at {cleared.place}; "
+        f"{wait.task} waits for it at {wait.place} in vain"
+    )
+
+
+def _vain_waits(deeds: Sequence[Deed]) -> list[int]:
+    """The waits that no wake-up ended before the failure, the last in front."""
+    begun: dict[tuple[str, str], int] = {}
+    vain: list[int] = []
+    for at, deed in enumerate(deeds):
+        key = (deed.task, deed.thing)
+        if deed.verb == do.AWAITS:
+            begun[key] = at
+        elif deed.verb == do.WAKES:
+            begun.pop(key, None)
+        elif deed.verb == do.GIVES_UP and key in begun:
+            vain.append(begun.pop(key))
+    return sorted([*vain, *begun.values()], reverse=True)
+
+
+def _last(deeds: Sequence[Deed], like: Deed, verb: str) -> int | None:
+    """Where something of this kind was done last to the same thing."""
+    found = (at for at in reversed(range(len(deeds))) if deeds[at].verb == verb and deeds[at].thing == like.thing)
+    return next(found, None)
+
+
+# -- messages --------------------------------------------------------------------------------------------------------
+
+
+def _overflow(evidence: Evidence) -> str:
+    """A message did not fit into a pipe, and under fifo all fit."""
+    usual = {(deed.thing, deed.note) for deed in evidence.usual if deed.verb == do.LOSES}
+    for deed in evidence.deeds:
+        if deed.verb == do.LOSES and (deed.thing, deed.note) not in usual:
+            app, _, depth = deed.note.partition(", ")
+            where = f" at {deed.place}" if deed.place else ""
+            full = f"full, with {depth} {'message' if depth == '1' else 'messages'}"
+            return (
+                f"a message {deed.thing} was lost that {deed.task} sent{where}: the pipe of {app} was {full}; "
+                "under fifo none is lost there"
+            )
+    return ""
+
+
+def _late_subscription(evidence: Evidence) -> str:
+    """A message was sent before somebody subscribed to it."""
+    for at, subscription in _of(evidence.deeds, do.SUBSCRIBES):
+        for sent_at, sending in _of(evidence.deeds[:at], do.SENDS):
+            if sending.thing == subscription.thing and evidence.is_flipped(sent_at, at):
+                return (
+                    f"{sending.task} sent {sending.thing} at {sending.place} before {subscription.task} subscribed to "
+                    f"it at {subscription.place}; under fifo after that"
+                )
+    return ""
+
+
+def _deleted(evidence: Evidence) -> str:
+    """A task went to receive from a pipe that was deleted."""
+    usual = {deed.thing for _, deed in _received_late(evidence.usual)}
+    for deletion, receiving in _received_late(evidence.deeds):
+        if receiving.thing not in usual:
+            return (
+                f"{deletion.task} deleted {deletion.thing} at {deletion.place}, and {receiving.task} went to receive "
+                f"from it after that, at {receiving.place}; under fifo nobody does"
+            )
+    return ""
+
+
+def _received_late(deeds: Sequence[Deed]) -> Iterator[tuple[Deed, Deed]]:
+    """The deletion of a pipe, and who would receive from it."""
+    deleted: dict[str, Deed] = {}
+    for deed in deeds:
+        if deed.verb == do.DELETES:
+            deleted[deed.thing] = deed
+        elif deed.verb == do.RECEIVES and deed.thing in deleted:
+            yield deleted[deed.thing], deed
+        elif deed.verb == do.SUBSCRIBES:  # one of that name was made anew
+            deleted.pop(f"pipe {deed.note}", None)
+
+
+def _message_order(evidence: Evidence) -> str:
+    """An application that the schedule meddles with got two messages in another order."""
+    apps = {deed.app for deed in evidence.deeds for move in evidence.moves if deed.task in (move.task, move.chosen)}
+    got = [(at, deed) for at, deed in _of(evidence.deeds, do.GETS) if deed.app in apps]
+    for number, (at, later) in enumerate(got):
+        for earlier_at, earlier in reversed(got[:number]):
+            if earlier.app == later.app and earlier.thing != later.thing and evidence.is_flipped(earlier_at, at):
+                return f"{earlier.app} got {earlier.thing} before {later.thing}; under fifo it gets {later.thing} first"
+    return ""
+
+
+# -- what else there is ------------------------------------------------------------------------------------------------
+
+
+def _one_switch(evidence: Evidence) -> str:
+    """A single switch, without which the run is that of fifo."""
+    moves = [at for at, row in enumerate(evidence.rows) if row.kind in (PREEMPTED, ORDERED)]
+    if len(evidence.moves) != 1 or evidence.moves[0].question or len(moves) != 1:
+        return ""
+    row = evidence.rows[moves[0]]
+    before = (each.text for each in reversed(evidence.rows[: moves[0]]) if each.task == row.task and each.kind == AT)
+    place = ":".join(next(before, "").split(":")[:2])
+    if row.kind == ORDERED:
+        return f"{row.text} went on before {row.task}, which was ready first; without that one change it does not fail"
+    if not place:
+        return ""
+    if row.text == HOLD:
+        return f"{row.task} was held up at {place}; without that it does not fail"
+    return f"{row.text} got in while {row.task} was at {place}; without that one switch it does not fail"
+
+
+def _of(deeds: Sequence[Deed], verb: str) -> Iterator[tuple[int, Deed]]:
+    return ((at, deed) for at, deed in enumerate(deeds) if deed.verb == verb)

@@ -1,0 +1,202 @@
+"""`cfepy explore`: run a mission under many schedules, and report what fails under some of them.
+
+Each failure is told once, with the command that replays it and its timeline.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any, TextIO
+
+from cfepy.cli.failures import tell
+from cfepy.cli.json_output import check_json, write_json
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.options import plan_of_mission
+from cfepy.extra.exploration import WIDTH, Expedition, Finding, Report, Shrunk, Told, Worst
+from cfepy.extra.exploration.commands import DEFAULT_SEEDS
+from cfepy.monitors import time_text
+from cfepy.pilot import RunPlan
+from cfepy.schedules import Schedule
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+RUNS_THAT_ARE_COMPARED = 2
+INDENT = 2  # of what is told of a failure
+
+
+def show(report: Report, stream: TextIO) -> None:
+    """Print it."""
+    for number, told in enumerate(report.findings, 1):
+        seen = "failure" if told.repeats else "seen once and not again: failure"
+        print(f"{seen} {number}: {told.finding.failure.title}", file=stream)
+        for line in _about(report, told, _width_of(stream)):
+            print(f"{' ' * INDENT}{line}".rstrip(), file=stream)
+        print(file=stream)
+    if report.worst is not None:
+        for line in _longest(report, report.worst, _width_of(stream)):
+            print(line.rstrip(), file=stream)
+        print(file=stream)
+    for trouble in report.troubles[:1]:
+        print(f"an error in cfepy itself, under {trouble.schedule}; please report it:", file=stream)
+        print(trouble.trouble, file=stream)
+    print(summary(report), file=stream)
+    for note in report.notes:
+        print(f"  {note}", file=stream)
+    if report.is_steady and (not report.findings or report.breadth.seen is not None):
+        for line in report.breadth.lines():
+            print(f"  {line}", file=stream)
+
+
+def summary(report: Report) -> str:
+    """The last line: how many schedules, how many failed, of how many kinds."""
+    tally = report.tally
+    if not report.is_steady:
+        return "no schedules: two runs under fifo differ"
+    parts = [f"{tally.done} schedules", f"{tally.failed} failed"]
+    if tally.troubled:
+        parts.append(f"{tally.troubled} with an error in cfepy itself")
+    if tally.resumed:
+        parts.append(f"{tally.resumed} from the results file")
+    if tally.interrupted:
+        parts.append("ended by Ctrl-C")
+    kinds = len(report.findings)
+    found = "no failure" if not kinds else "1 distinct failure" if kinds == 1 else f"{kinds} distinct failures"
+    return f"{', '.join(parts)}: {found}"
+
+
+def _width_of(stream: TextIO) -> int:
+    """Characters of a line of a story: as many as a terminal has, if that is wide; anywhere else always the same."""
+    return max(WIDTH, shutil.get_terminal_size().columns - INDENT) if stream.isatty() else WIDTH
+
+
+def _about(report: Report, told: Told, width: int) -> Iterator[str]:
+    finding, shrunk = told.finding, told.shrunk
+    failure = finding.failure
+    if failure.at_ns is not None:
+        yield f"at {failure.at_ns / NS_PER_S:.6f} s"
+    yield from failure.detail.splitlines()
+    for other in finding.others:
+        yield f"and in the same run: {other}"
+    for inversion in told.inversions:
+        yield f"priority inversion before that: {inversion}"
+    yield from _how_often(report, finding)
+    yield f"replay: {report.trial.command(report.schedule_of(told))}"
+    if shrunk is not None:
+        yield f"shrunk: {shrunk.trial.command(shrunk.verdict.schedule)}"
+        yield f"        {_moves_text(shrunk)}, found in {shrunk.probes} runs"
+        for move in shrunk.moves:
+            if move.question:
+                yield f"        {move.task}: {move.chosen}"
+    lines = told.story.lines(width)
+    if lines:
+        yield ""
+        yield from lines
+
+
+def _longest(report: Report, worst: Worst, width: int) -> Iterator[str]:
+    """What took longest, how long it took otherwise, and the command that shows it."""
+    found, longest = worst.distribution, worst.distribution.longest
+    if longest is None or worst.schedule is None:
+        yield f"worst {found.measure.text}: nothing was measured; is the name right?"
+        return
+    fifo = "not measured" if found.under_fifo is None else time_text(found.under_fifo)
+    yield f"worst {found.measure.text}: {time_text(longest.longest[0])}, under fifo {fifo}"
+    shown = longest if worst.shrunk is None else worst.shrunk.verdict
+    yield f"  ends at {shown.longest[1] / NS_PER_S:.6f} s"
+    for inversion in worst.inversions:
+        yield f"  priority inversion before that: {inversion}"
+    if found.times:
+        names = {"min": "shortest", "median": "median", "p99": "99 %", "max": "longest"}
+        listed = ", ".join(f"{names[name]} {time_text(each)}" for name, each in found.quantiles().items())
+        yield f"  {len(found.times)} schedules: {listed}"
+    if found.number is not None:
+        yield f"  number {found.number}: {report.trial.command(longest.schedule)}"
+    if worst.shrunk is not None:
+        yield f"  shrunk: {worst.shrunk.trial.command(worst.shrunk.verdict.schedule)}"
+        yield f"          {_moves_text(worst.shrunk)}, found in {worst.shrunk.probes} runs"
+    lines = worst.story.lines(width)
+    if lines:
+        yield ""
+        yield from (f"  {line}" for line in lines)
+
+
+def _how_often(report: Report, finding: Finding) -> Iterator[str]:
+    if finding.in_reference:
+        yield "under the default schedule, fifo, already"
+    if finding.numbers:
+        median = finding.median_schedules
+        count = f"{len(finding.numbers)} of {report.tally.done} schedules"
+        yield f"{count}, first number {finding.numbers[0]}; one in {median:g} in the median"
+
+
+def _moves_text(shrunk: Shrunk[Any]) -> str:
+    preemptions = shrunk.verdict.preemptions
+    answers = Counter(move.question for move in shrunk.moves if move.question)
+    others = len(shrunk.verdict.deviations) - preemptions - answers.total()
+    parts = [f"{preemptions} {'preemption' if preemptions == 1 else 'preemptions'}"]
+    if others:
+        parts.append(f"{others} {'change' if others == 1 else 'changes'} of order")
+    parts += [f"{count} {kind if count == 1 else f'{kind}s'}" for kind, count in answers.items()]
+    return " and ".join(parts)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Explore the mission that the command line names.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: it cannot be explored like this.
+    """
+    if arguments.replay_all is not None:
+        from cfepy.extra.exploration.commands.replay_all import run as replay
+
+        return replay(arguments)
+    if arguments.mission is None:
+        raise UsageError("say which mission is to be explored", field="MISSION")
+    check_json(arguments)
+    report = _expedition(arguments).run(tell)
+    show(report, sys.stdout)
+    write_json(arguments, report.to_dict())
+    if report.unsteady is not None and not report.tally.interrupted:
+        _show_leak(report.trial.plan, report.unsteady)
+        return FOUND_PROBLEMS
+    if report.tally.interrupted:
+        return INTERRUPTED
+    return FOUND_PROBLEMS if report.findings or report.troubles else ENDED_WELL
+
+
+def _show_leak(plan: RunPlan, schedule: Schedule) -> None:
+    """Two runs under one schedule differed: say where, as far as it can be found."""
+    from cfepy.cli.run.check_determinism import compare
+
+    print(f"\nnot deterministic: two runs under {schedule} differ, so not the schedule alone decides", flush=True)
+    if compare(replace(plan, schedule=schedule), RUNS_THAT_ARE_COMPARED) is not None:
+        print("in processes of their own such runs do not differ: addresses of objects decide, or what a run leaves")
+        print("behind in its process")
+
+
+def _expedition(arguments: argparse.Namespace) -> Expedition:
+    """What the command line asks for."""
+    names = ("policy", "depth", "first_seed", "any_priority", "fair", "until_failure", "events", "jobs", "cluster")
+    more = ("worst", "results", "shrink", "points")
+    return Expedition(
+        plan_of_mission(arguments),
+        seeds=arguments.seeds or (DEFAULT_SEEDS if arguments.budget is None else None),
+        budget_s=arguments.budget,
+        **{name: getattr(arguments, name) for name in (*names, *more)},
+        hold_s=arguments.hold,
+        starved_s=arguments.starved,
+        livelock_s=arguments.livelock,
+        connect_s=arguments.connect,
+        from_s=getattr(arguments, "from"),
+        stuck=not arguments.no_stuck,
+        longest_s=arguments.longest,
+        progress=None if arguments.quiet else sys.stderr,
+    )

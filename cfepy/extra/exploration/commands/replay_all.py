@@ -1,0 +1,62 @@
+"""`cfepy explore --replay-all`: the failures of a results file in the mission as it now is."""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter
+from collections.abc import Iterator
+
+from cfepy.cli.json_output import check_json, write_json
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.options import refuse_run_options
+from cfepy.extra.exploration import GONE, NOT_POSSIBLE, STILL_THERE, ReplayedFailure, replay_all
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Fly them, and tell which are gone.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: it is no results file, the mission cannot be flown, or an option is for a search.
+    """
+    path = arguments.replay_all
+    refuse_run_options(arguments, "comes from the results file; leave it out")
+    check_json(arguments)
+    found = []
+    for each in replay_all(path, arguments.mission, arguments.jobs, arguments.longest):
+        found.append(each)
+        print("\n".join(_lines(each)), flush=True)
+    print(_summary(found))
+    write_json(arguments, {"failures": [each.to_dict() for each in found]})
+    is_wrong = any(each.state == STILL_THERE or each.verdict.trouble for each in found)
+    return FOUND_PROBLEMS if is_wrong else ENDED_WELL
+
+
+def _lines(each: ReplayedFailure) -> Iterator[str]:
+    yield f"{each.state}: {each.title if each.same is None else each.same.title}"
+    if each.verdict.trouble:
+        yield f"  an error in cfepy itself; please report it: {each.verdict.trouble.splitlines()[-1]}"
+    if each.state == NOT_POSSIBLE:
+        count, missed = len(each.verdict.schedule.moves), each.verdict.missed
+        yield f"  {count - len(missed)} of its {count} moves were possible; not possible: {', '.join(missed)}"
+    for other in each.others:
+        yield f"  but under its schedule: {other}"
+    if each.state == STILL_THERE or each.others:
+        yield f"  replay: {each.command}"
+
+
+def _summary(found: list[ReplayedFailure]) -> str:
+    counts = Counter(each.state for each in found)
+    told = [
+        f"{counts[state]} {text}"
+        for state, text in (
+            (STILL_THERE, "still there"),
+            (GONE, "gone"),
+            (NOT_POSSIBLE, "whose schedule no longer applies"),
+        )
+        if counts[state]
+    ]
+    failures = "1 failure" if len(found) == 1 else f"{len(found)} failures"
+    return f"{failures}: {', '.join(told)}" if found else "no failure in the results file"

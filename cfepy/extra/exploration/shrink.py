@@ -1,0 +1,412 @@
+"""Shrinking: the shortest schedule that still gives the same failure, found by flying shorter ones.
+
+First moves are left out, in halves, quarters, and one by one (Zeller's delta debugging), of each of the shortest
+failing schedules that are known. With the best of them, one move is tried in the place of all and of several, also one
+to another task, and those that are left are moved towards the failure; connections that must be slow get the shortest
+delay. In the end each subset of what is left is flown, if it is few. The result is a schedule of moves.
+
+A run is flown only when what is known of others does not tell how it ends (`KnownRuns`), and goes no further than the
+failure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations, islice
+from typing import Generic, NamedTuple, Protocol, Self, TypeVar
+
+from cfepy.extra.exploration.moves import Choice, KnownRuns, MadeMove, MoveNotingPolicy
+from cfepy.extra.exploration.trial import Tried
+from cfepy.extra.exploration.verdict import RESULTS, Verdict
+from cfepy.rtos import Policy
+from cfepy.schedules import Move, Schedule
+from cfepy.units import NS_PER_MS, NS_PER_S
+
+LEAST_PROBES, MOST_PROBES = 300, 800
+STARTS = 3  # failing schedules that are shrunk, the shortest ones
+SUBSETS_OF = 6  # moves of which all subsets are flown
+REACH = 64  # how many decisions a move is tried later
+FEW, SINGLES = 10, 200  # how many single moves are tried, at first and in the end
+MERGED = (3, 2)  # how many moves are replaced by one
+AROUND = 30  # how many decisions before and after them that is looked for
+CANDIDATES = 15  # how many such moves are tried
+TENTH_NS = NS_PER_S // 10
+
+Moves = tuple[Move, ...]
+
+
+def budget_of(schedules: int) -> int:
+    """How many runs it may take to shrink a failure, where nobody says: as many as the search took.
+
+    Args:
+        schedules: how many were flown in search of failures.
+    """
+    return min(max(schedules, LEAST_PROBES), MOST_PROBES)
+
+
+class Shrinkable(Protocol):
+    """What is flown again and again, such as a `Trial`."""
+
+    def fly(self, schedule: Schedule, *, policy: Policy | None = None) -> Tried:
+        """Fly it.
+
+        Args:
+            schedule: who runs when.
+            policy: decides in the place of the schedule's own.
+        """
+
+    def until(self, end_ns: int) -> Self | None:
+        """The same in a run that ends at this virtual time; None where its length cannot be chosen."""
+
+
+T = TypeVar("T", bound=Shrinkable)
+
+
+class NotedFlight(NamedTuple):
+    """A flight with its moves.
+
+    Attributes:
+        verdict: what became of it.
+        made: the moves that it made.
+        choices: all its decisions.
+    """
+
+    verdict: Verdict
+    made: tuple[MadeMove, ...]
+    choices: tuple[Choice, ...]
+
+    @classmethod
+    def of(cls, verdict: Verdict, recorder: MoveNotingPolicy) -> Self:
+        """What a policy has noted of a flight."""
+        return cls(verdict, recorder.made, tuple(recorder.choices))
+
+
+def fly_noting(trial: Shrinkable, schedule: Schedule) -> NotedFlight:
+    """Fly something in this process, and note its moves."""
+    recorder = MoveNotingPolicy(schedule.policy() or Policy())
+    return NotedFlight.of(trial.fly(schedule, policy=recorder).verdict, recorder)
+
+
+@dataclass(frozen=True, slots=True)
+class Shrunk(Generic[T]):
+    """The end of it.
+
+    Attributes:
+        trial: with a shorter run, if that still fails.
+        verdict: of the shortest schedule, one of moves.
+        moves: what that does.
+        probes: how many runs it took.
+    """
+
+    trial: T
+    verdict: Verdict
+    moves: tuple[MadeMove, ...]
+    probes: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Flight:
+    """A run; `fails` says that it failed in the way that is looked for, `options` is a schedule with its options."""
+
+    options: Schedule
+    fails: bool
+    verdict: Verdict
+    made: tuple[MadeMove, ...]
+    choices: tuple[Choice, ...]
+
+    @property
+    def moves(self) -> Moves:
+        """The moves that it made, which give it again."""
+        return tuple(each.move for each in self.made)
+
+    @property
+    def cost(self) -> tuple[int, int, int]:
+        """What is to become small: preemptions first, then other moves."""
+        preemptions = sum(each.preempts for each in self.made)
+        return preemptions, len(self.made), sum(each.choice for each in self.made)
+
+
+class Shrinker(Generic[T]):
+    """Shrinks one failure.
+
+    Args:
+        trial: what is flown.
+        schedules: under which it fails, the shortest first.
+        group: of the failure.
+        most_probes: how many runs it may take; that none of what is left can be left out is looked at in any case.
+        fly: how; `fly_noting` gives the same.
+    """
+
+    def __init__(
+        self,
+        trial: T,
+        schedules: Sequence[Schedule],
+        group: str,
+        most_probes: int = MOST_PROBES,
+        fly: Callable[[T, Schedule], NotedFlight] = fly_noting,
+    ) -> None:
+        self._trial = trial
+        self._fly_noting = fly
+        self._schedules = schedules
+        self._group = group
+        self._most = most_probes
+        self._known: dict[Schedule, KnownRuns[_Flight]] = {}
+        self._limit = most_probes
+        self.probes = 0
+
+    def run(self) -> Shrunk[T] | None:
+        """Shrink; None when the first schedule does not fail in this way."""
+        first = self._fly(self._schedules[0])
+        if not first.fails:
+            return None
+        first = self._cut(first)
+        self._limit = self._most // 2
+        best = self._with_one(self._with_less(self._without_tail(first)), FEW)
+        for schedule in self._schedules[1:STARTS]:
+            if len(best.made) > 1 and self.probes < self._limit:
+                other = self._fly(schedule)
+                if other.fails:
+                    best = min(best, self._with_less(self._without_tail(other)), key=lambda flight: flight.cost)
+        self._limit = self._most
+        best = self._with_one(self._merged(self._redirected(best)), SINGLES)
+        best = self._sooner(self._later(best))
+        return self._finish(self._fewest(best))
+
+    # -- steps -------------------------------------------------------------------------------------------------------
+
+    def _cut(self, first: _Flight) -> _Flight:
+        """Let all runs end behind the failure, if it comes in one that does; what was known is of longer ones."""
+        failure = first.verdict.failure(self._group)
+        assert failure is not None
+        if failure.at_ns is None or failure.kind == RESULTS:
+            return first
+        whole, end_ns = self._trial, _end_of(failure.at_ns)
+        short = whole.until(end_ns) if end_ns < first.verdict.end_ns else None
+        if short is None:
+            return first
+        known, self._known, self._trial = self._known, {}, short
+        again = self._fly(first.options.by_moves(first.moves))
+        if again.fails:
+            return again
+        self._known, self._trial = known, whole
+        return first
+
+    def _without_tail(self, best: _Flight) -> _Flight:
+        """Leave out what comes after the failure: the shortest beginning that fails, by bisection."""
+        least, most = 0, len(best.moves)
+        while least < most:
+            middle = (least + most) // 2
+            found = self._try(best.moves[:middle], best)
+            if found is not None:
+                best, most = found, min(middle, len(found.moves))
+            else:
+                least = middle + 1
+        return best
+
+    def _with_less(self, best: _Flight) -> _Flight:
+        """Leave out pieces, smaller and smaller ones, until no single move can be left out."""
+        size = max(len(best.moves) // 2, 1)
+        while best.moves:
+            found = next(self._tries(_without_pieces(best.moves, size), best), None)
+            if found is not None:
+                best = found
+                size = max(min(size, len(best.moves) // 2), 1)
+            elif size == 1:
+                break
+            else:
+                size //= 2
+        return best
+
+    def _with_one(self, best: _Flight, count: int) -> _Flight:
+        """One move in the place of all, tried in the run of fifo: at like places, closest to the failure first."""
+        if len(best.made) < 2 or self.probes >= self._limit:
+            return best
+        fifo = self._flight((), best.options)
+        at_ns = best.verdict.end_ns if (failure := best.verdict.failure(self._group)) is None else failure.at_ns
+        ones = islice(_single_moves(best, fifo, at_ns), count)
+        return next(self._tries(((move,) for move in ones), best), best)
+
+    def _merged(self, best: _Flight) -> _Flight:
+        """One move in the place of three or two that follow each other."""
+        pieces = [(at, size) for size in MERGED for at in range(len(best.made) - size + 1)]
+        for at, size in pieces:
+            kept = (*best.moves[:at], *best.moves[at + size :])
+            if self.probes >= self._limit:
+                break
+            without = self._flight(kept, best.options)
+            near = islice(_between(best, without, at, size), CANDIDATES)
+            candidates = ((*kept[:at], move, *kept[at:]) for move in near)
+            found = without if without.fails else next(self._tries(candidates, best), None)
+            if found is not None:
+                return self._merged(self._with_less(found))
+        return best
+
+    def _redirected(self, best: _Flight) -> _Flight:
+        """A move to another task in the place of one and its neighbours, which got there by a detour.
+
+        Without these the same place in the task's own work may be a decision earlier or later.
+        """
+        if len(best.made) < 2:
+            return best
+        moves, names = best.moves, sorted(_names(best))
+        for at, made in enumerate(best.made):
+            if made.question:
+                continue
+            near = [move for choice in _near(best, made) for move in choice.moves if move.chosen in names]
+            candidates = (
+                (*moves[: at - before], move, *moves[at + 1 + behind :])
+                for before, behind in ((1, 1), (1, 0), (0, 1))
+                if before <= at
+                for move in near
+                if move.chosen != made.move.chosen
+            )
+            found = next(self._tries(candidates, best), None)
+            if found is not None:
+                return self._redirected(self._with_less(found))
+        return best
+
+    def _later(self, best: _Flight) -> _Flight:
+        """Move each towards the failure, as far as it still fails: what is left happens close together."""
+        for at in range(len(best.made)):
+            step = 1
+            while step <= REACH and at < len(best.made) and not best.made[at].question:
+                move = next(islice(_same_later(best, best.made[at]), step - 1, None), None)
+                if move is None:
+                    break
+                found = self._try((*best.moves[:at], move, *best.moves[at + 1 :]), best)
+                if found is None or found.cost > best.cost:
+                    break
+                best, step = found, step * 2
+        return best
+
+    def _sooner(self, best: _Flight) -> _Flight:
+        """Of what has answers in an order, such as how long a connection takes, the first one with which it fails."""
+        for at, made in enumerate(best.made):
+            if not made.question:
+                continue
+            sooner = best.choices[made.decision].moves[: made.choice - 1]
+            candidates = ((*best.moves[:at], move, *best.moves[at + 1 :]) for move in sooner)
+            found = next(self._tries(candidates, best), None)
+            if found is not None and len(found.made) == len(best.made):
+                best = found
+        return best
+
+    def _fewest(self, best: _Flight) -> _Flight:
+        """The smallest subset of the moves that fails, or, of many moves, one of which none can be left out."""
+        self._limit = self.probes + 2**SUBSETS_OF
+        count = len(best.made)
+        if count > SUBSETS_OF:
+            return self._with_less(best)
+        subsets = (subset for size in range(count) for subset in combinations(best.moves, size))
+        return next(self._tries(subsets, best), best)
+
+    def _finish(self, best: _Flight) -> Shrunk[T] | None:
+        """The result as a schedule of moves; flown once more to be sure."""
+        self.probes += 1
+        verdict = self._trial.fly(best.options.by_moves(best.moves)).verdict
+        return None if verdict.failure(self._group) is None else Shrunk(self._trial, verdict, best.made, self.probes)
+
+    # -- probes ------------------------------------------------------------------------------------------------------
+
+    def _tries(self, candidates: Iterable[Moves], best: _Flight) -> Iterator[_Flight]:
+        """Those that fail and cost less than the best so far."""
+        for moves in candidates:
+            found = self._try(moves, best)
+            if found is not None and found.cost < best.cost:
+                yield found
+
+    def _try(self, moves: Moves, like: _Flight) -> _Flight | None:
+        """A flight with the options of another, if it fails and there may be one."""
+        found = self._runs(like.options).find(moves)
+        if found is None:
+            if self.probes >= self._limit:
+                return None
+            found = self._fly(like.options.by_moves(moves))
+        return found if found.fails else None
+
+    def _flight(self, moves: Moves, options: Schedule) -> _Flight:
+        """A flight, whether it fails or not."""
+        return self._runs(options).find(moves) or self._fly(options.by_moves(moves))
+
+    def _runs(self, options: Schedule) -> KnownRuns[_Flight]:
+        return self._known.setdefault(options, KnownRuns())
+
+    def _fly(self, schedule: Schedule) -> _Flight:
+        self.probes += 1
+        noted = self._fly_noting(self._trial, schedule)
+        fails = noted.verdict.failure(self._group) is not None
+        flight = _Flight(schedule.by_moves(()), fails, *noted)
+        self._runs(flight.options).add(flight)
+        return flight
+
+
+def _without_pieces(moves: Moves, size: int) -> Iterator[Moves]:
+    """All but so many moves in a row; the last ones are left out first."""
+    for start in reversed(range(0, len(moves), size)):
+        yield (*moves[:start], *moves[start + size :])
+
+
+def _single_moves(best: _Flight, fifo: _Flight, at_ns: int | None) -> list[Move]:
+    """All that there are between the tasks that matter, before the failure: those at like places and the last first."""
+    like = _places(best)
+    choices = [choice for choice in reversed(fifo.choices) if at_ns is None or choice.now <= at_ns]
+    moves = [move for choice in choices for move in _among(choice, _names(best))]
+    return sorted(moves, key=lambda move: (move.subject, move.place) not in like)
+
+
+def _between(best: _Flight, without: _Flight, at: int, size: int) -> list[Move]:
+    """Moves that might do what some do, near their places, in a run without these; those at like places first."""
+    least = 0 if not at else best.made[at - 1].decision + 1
+    replaced = [made.decision for made in best.made[at : at + size]]
+    places = range(max(least, replaced[0] - AROUND), min(replaced[-1] + AROUND, len(without.choices)))
+    moves = [(move, place) for place in places for move in _among(without.choices[place], _names(best))]
+    like = _places(best)
+
+    def rank(found: tuple[Move, int]) -> tuple[bool, int]:
+        move, place = found
+        return (move.subject, move.place) not in like, min(abs(place - each) for each in replaced)
+
+    return [move for move, _ in sorted(moves, key=rank)]
+
+
+def _among(choice: Choice, names: set[str]) -> Iterator[Move]:
+    """The moves that a decision offers between some tasks."""
+    return (move for move in choice.moves if move.subject in names and move.chosen in names)
+
+
+def _near(best: _Flight, made: MadeMove) -> Iterator[Choice]:
+    """The decision of a move, and those before and after it that are about the same task."""
+    same = [choice for choice in best.choices if choice.moves and choice.moves[0].subject == made.move.subject]
+    at = same.index(best.choices[made.decision])
+    for each in (at, at + 1, at - 1, at + 2):
+        if 0 <= each < len(same):
+            yield same[each]
+
+
+def _same_later(best: _Flight, made: MadeMove) -> Iterator[Move]:
+    """The moves that are between the same tasks, later in the same millisecond."""
+    for choice in best.choices[made.decision + 1 :]:
+        if choice.now // NS_PER_MS > made.move.from_ms:
+            return
+        for move in choice.moves:
+            if (move.subject, move.chosen) == (
+                made.move.subject,
+                made.move.chosen,
+            ) and choice.preempts == made.preempts:
+                yield move
+
+
+def _places(best: _Flight) -> set[tuple[str, str]]:
+    """Where the moves are made."""
+    return {(move.subject, move.place) for move in best.moves}
+
+
+def _names(best: _Flight) -> set[str]:
+    """The tasks that matter."""
+    return {name for made in best.made for name in (made.move.subject, made.move.chosen)}
+
+
+def _end_of(at_ns: int) -> int:
+    """A round time at which a failure has happened."""
+    return (at_ns // TENTH_NS + 1) * TENTH_NS

@@ -1,0 +1,278 @@
+"""A sweep: a mission flown at many points, which differ in board, rate, parameters and seed, and what each came to.
+
+A point is a change of a `RunPlan`, so each has a command that flies it alone. What it came to is virtual time and
+counts, so a sweep gives the same numbers on any number of processes. The knee is the highest rate up to which all that
+was sent came, as often as it was asked for.
+"""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+from cfepy.extra.exploration.lot import Lot
+from cfepy.extra.exploration.shipment import PlanElsewhere
+from cfepy.monitors import Arrivals, TrafficWatch
+from cfepy.pilot import BootError, Results, RunPlan, SentNames, fly
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+RATE_TOLERANCE = 0.01  # of the rate asked for: what a run of some seconds can tell
+_US = 1000.0  # ns
+
+
+class Point(NamedTuple):
+    """One run of a sweep.
+
+    Attributes:
+        board: name or file; None for the mission's own.
+        rate_hz: that `--rate` asks for; None without it.
+        settings: parameters and their values, those of the rate among them.
+        launch_args: arguments of the launch file.
+        seed: of everything random.
+    """
+
+    board: str | None = None
+    rate_hz: float | None = None
+    settings: tuple[tuple[str, str], ...] = ()
+    launch_args: tuple[tuple[str, str], ...] = ()
+    seed: int = 0
+
+    def plan(self, base: RunPlan) -> RunPlan:
+        """The run."""
+        board = self.board
+        if board is not None and board.startswith("/") and isinstance(base, PlanElsewhere):
+            board = base.root + board
+        return replace(
+            base,
+            board=board,
+            seed=self.seed,
+            settings=(*base.settings, *self.settings),
+            launch_args=(*base.launch_args, *self.launch_args),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class TopicNumbers:
+    """What became of the messages of a topic; of several subscribers, the worst off.
+
+    Attributes:
+        name: of the topic or packet.
+        sent, lost, received: messages, from half a second after the mission was OPERATIONAL; `lost` did not get into a
+            pipe, or had to leave it for a newer one.
+        held_back: messages that a publisher could send only later, over the whole run.
+        delivered_hz: at which rate it took those.
+        latency_mean_us, latency_max_us: virtual time from the sending of a message to its taking.
+        hint: the end of a sentence that says that no message came.
+    """
+
+    name: str
+    sent: int
+    received: int
+    lost: int
+    held_back: int
+    delivered_hz: float
+    latency_mean_us: float
+    latency_max_us: float
+    hint: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class PointNumbers:
+    """What a point came to.
+
+    Attributes:
+        board: the board's name.
+        cpu: share of the virtual time that applications used, 0 to 1.
+        ram_peak, ram: bytes that were in use at most, and that there are; None without a limit.
+        topics: those that are measured, in their order.
+        problem: what went wrong in the run first; empty when nothing did.
+        trace: digest of the run.
+        trouble: traceback of an error of cfepy itself, which says nothing about the mission.
+    """
+
+    board: str = ""
+    cpu: float = 0.0
+    ram_peak: int = 0
+    ram: int | None = None
+    topics: tuple[TopicNumbers, ...] = ()
+    problem: str = ""
+    trace: str = ""
+    trouble: str = ""
+
+    def why_not_clean(self, rate_hz: float | None) -> str:
+        """What keeps a rate from being carried: empty when nothing does.
+
+        Args:
+            rate_hz: that was asked for; None when there was none, and only losses count.
+        """
+        if self.problem or self.trouble:
+            return self.problem or self.trouble.splitlines()[-1]
+        for topic in self.topics:
+            if not topic.sent:
+                return f"no message was measured of {topic.name}{topic.hint}"
+            if topic.lost:
+                return f"{topic.name} lost {topic.lost} of {topic.sent}"
+            if rate_hz is not None and topic.delivered_hz < rate_hz * (1 - RATE_TOLERANCE):
+                held = f", {topic.held_back} were held back" if topic.held_back else ""
+                return f"{topic.name} came at {topic.delivered_hz:.1f} Hz{held}"
+        return "" if self.topics else "no message came"
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep(Lot[Point, PointNumbers]):
+    """Flies points.
+
+    Attributes:
+        plan: what all of them have in common.
+        topics: names of the topics that are measured; none for all of ROS that came.
+    """
+
+    plan: RunPlan
+    topics: tuple[str, ...] = ()
+
+    def judge(self, subject: Point) -> PointNumbers:
+        watch = TrafficWatch()
+        try:
+            flown = fly(subject.plan(self.plan), attachments=[watch])
+        except (BootError, UsageError) as error:
+            return PointNumbers(board=subject.board or "", problem=str(error).splitlines()[0])
+        except Exception:
+            return PointNumbers(board=subject.board or "", trouble=traceback.format_exc())
+        results = flown.results
+        return PointNumbers(
+            results.board,
+            round(sum(app.cpu_share for app in results.apps), 9),
+            results.memory.peak,
+            results.memory.limit,
+            tuple(self._numbers(results, watch, SentNames(flown.mission))),
+            _first_problem(results),
+            flown.trace,
+        )
+
+    def died(self, subject: Point, fate: str, words: str) -> PointNumbers:
+        return PointNumbers(board=subject.board or "", problem=f"the process died: {fate}")
+
+    def _numbers(self, results: Results, watch: TrafficWatch, sent: SentNames) -> Iterator[TopicNumbers]:
+        by_name = {topic.name: topic for topic in results.topics}
+        if self.topics:
+            names = list(self.topics)
+        else:
+            names = [each.name for each in results.topics if "/" in each.type and watch.arrivals.get(each.msg_id)]
+        for name in names:
+            topic = by_name.get(name)
+            if topic is None:
+                yield TopicNumbers(name, 0, 0, 0, 0, 0.0, 0.0, 0.0, sent.why_not([name]))
+                continue
+            pipes = list(watch.arrivals.get(topic.msg_id, {}).values()) or [Arrivals()]
+            count = sum(each.count for each in pipes)
+            yield TopicNumbers(
+                name,
+                watch.sent[topic.msg_id],
+                min(each.count for each in pipes),
+                watch.lost[topic.msg_id] + topic.dropped_segment,
+                topic.held_back,
+                round(min(each.rate_hz(watch.end_ns) for each in pipes), 3),
+                round(sum(each.latency_ns for each in pipes) / count / _US, 3) if count else 0.0,
+                round(max(each.longest_ns for each in pipes) / _US, 3),
+            )
+
+
+def _first_problem(results: Results) -> str:
+    return next(iter(results.problems), "")
+
+
+class Knee(NamedTuple):
+    """Up to which rate a board carries a mission.
+
+    Attributes:
+        board: its name.
+        varied: what else distinguishes the points, such as a parameter's value.
+        clean_hz: the highest rate with all lower ones clean; None when not even the lowest is.
+        broken_hz: the first rate that is not clean; None when all are.
+        why: what is wrong there.
+    """
+
+    board: str
+    varied: tuple[tuple[str, str], ...]
+    clean_hz: float | None
+    broken_hz: float | None
+    why: str
+
+    @property
+    def text(self) -> str:
+        """A sentence."""
+        where = ", ".join([self.board, *(f"{name}={value}" for name, value in self.varied)])
+        clean = "not clean at any rate" if self.clean_hz is None else f"clean up to {self.clean_hz:g} Hz"
+        if self.broken_hz is None:
+            return f"{where}: {clean}, the highest rate that was flown"
+        return f"{where}: {clean}; at {self.broken_hz:g} Hz {self.why}"
+
+
+class SweepRow(NamedTuple):
+    """A point, what it came to, and what else was varied than board, rate and seed."""
+
+    point: Point
+    numbers: PointNumbers
+    varied: tuple[tuple[str, str], ...]
+
+    @property
+    def why_not_clean(self) -> str:
+        """See `PointNumbers.why_not_clean`."""
+        return self.numbers.why_not_clean(self.point.rate_hz)
+
+
+def knees(rows: Sequence[SweepRow]) -> list[Knee]:
+    """The knee of each board and each value of what else was varied; a rate is clean when it is under all seeds.
+
+    Args:
+        rows: of a sweep; those without a rate have no knee.
+    """
+    groups: dict[tuple[str, tuple[tuple[str, str], ...]], dict[float, str]] = {}
+    for row in rows:
+        if row.point.rate_hz is not None:
+            by_rate = groups.setdefault((row.numbers.board, row.varied), {})
+            by_rate[row.point.rate_hz] = by_rate.get(row.point.rate_hz, "") or row.why_not_clean
+    return [_knee(board, varied, by_rate) for (board, varied), by_rate in groups.items()]
+
+
+def _knee(board: str, varied: tuple[tuple[str, str], ...], by_rate: dict[float, str]) -> Knee:
+    clean: float | None = None
+    for rate, why in sorted(by_rate.items()):
+        if why:
+            return Knee(board, varied, clean, rate, why)
+        clean = rate
+    return Knee(board, varied, clean, None, "")
+
+
+COLUMNS = (
+    *("board", "rate_hz", "seed", "topic", "sent", "received", "lost", "held_back", "delivered_hz"),
+    *("latency_mean_us", "latency_max_us", "cpu", "ram_peak_bytes", "clean", "problem", "trace"),
+)
+"""The columns of a table of points, a row for each topic of each; what else was varied comes after `seed`."""
+
+
+def sweep_table(rows: Sequence[SweepRow]) -> tuple[list[str], list[list[Any]]]:
+    """A sweep as a table: heads, and a row for each topic of each point, in the order of the points."""
+    names = list(dict.fromkeys(name for row in rows for name, _ in row.varied))
+    heads = [*COLUMNS[:3], *names, *COLUMNS[3:]]
+    return heads, [_cells(row, topic, names) for row in rows for topic in row.numbers.topics or (None,)]
+
+
+def _cells(row: SweepRow, topic: TopicNumbers | None, names: Sequence[str]) -> list[Any]:
+    point, numbers, varied = row.point, row.numbers, dict(row.varied)
+    of_topic: list[Any] = [""] * 8
+    if topic is not None:
+        of_topic = [topic.name, topic.sent, topic.received, topic.lost, topic.held_back, topic.delivered_hz]
+        of_topic += [topic.latency_mean_us, topic.latency_max_us]
+    rate = "" if point.rate_hz is None else f"{point.rate_hz:g}"
+    why = row.why_not_clean
+    of_run = [f"{numbers.cpu:.9f}", numbers.ram_peak, "no" if why else "yes", why, numbers.trace]
+    return [numbers.board, rate, point.seed, *(varied.get(name, "") for name in names), *of_topic, *of_run]
+
+
+def seconds_text(time_us: float) -> str:
+    """A time for a person: in us, or in ms from 1 ms on."""
+    return f"{time_us:.0f} us" if time_us < _US else f"{time_us * _US / NS_PER_S * 1000:.2f} ms"

@@ -1,0 +1,141 @@
+"""The points of a sweep, from what a command line says: ranges of rates, boards, seeds, values of parameters.
+
+10..1000        the preferred numbers of ISO 3, ten to the decade: 10 12.5 16 20 25 31.5 40 50 63 80 100 ...
+10..50:10       10 20 30 40 50
+5,10,fast       these values
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import product
+
+from cfepy.extra.exploration.sweep import Point
+from cfepy.mission import MissionSpec
+from cfepy.status import UsageError
+
+MOST_POINTS = 100_000
+_PREFERRED = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
+_NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
+_RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})(?::({_NUMBER}))?", re.ASCII | re.IGNORECASE)
+
+
+def values_of(text: str, option: str) -> list[str]:
+    """The values that a text means, in its order, each once.
+
+    Args:
+        text: values and ranges, with commas between.
+        option: that has it.
+
+    Raises:
+        UsageError: a range without end or in the wrong direction, or none at all.
+    """
+    found: list[str] = []
+    for part in text.split(","):
+        match = _RANGE.fullmatch(part.strip())
+        if match is None:
+            if not part.strip() or ".." in part:
+                raise UsageError(f"{part!r} is no value and no range such as 10..1000 or 10..50:10", field=option)
+            found.append(part.strip())
+        else:
+            found += _range(part, match, option)
+    return list(dict.fromkeys(found))
+
+
+def _range(part: str, match: re.Match[str], option: str) -> list[str]:
+    first, last = float(match[1]), float(match[2])
+    if match[3] is None:
+        if not 0 < first <= last:
+            raise UsageError(f"{part!r} does not go up from more than 0; give a step, as in 0..50:10", field=option)
+        return [f"{each:.12g}" for each in _preferred(first, last)]
+    step = float(match[3])
+    if step <= 0 or first > last or (last - first) / step > MOST_POINTS:
+        raise UsageError(f"{part!r} does not go up in steps to an end; write it like 10..50:10", field=option)
+    count = int((last - first) / step + 1e-9) + 1
+    return [f"{first + number * step:.12g}" for number in range(count)]
+
+
+def _preferred(first: float, last: float) -> list[float]:
+    """The ends, and the preferred numbers between them."""
+    found = [first]
+    decade = 10.0**-12
+    while decade <= last:
+        found += [each * decade for each in _PREFERRED if first < float(f"{each * decade:.12g}") < last]
+        decade = float(f"{decade * 10:.12g}")
+    return [*found, last] if last > first else found
+
+
+def numbers_of(text: str, option: str) -> list[float]:
+    """As `values_of`, of rates in Hz.
+
+    Raises:
+        UsageError: one is no number above 0.
+    """
+    found = []
+    for value in values_of(text, option):
+        try:
+            number = float(value)
+        except ValueError:
+            number = 0.0
+        if not 0 < number < float("inf"):
+            raise UsageError(f"{value!r} is no rate in Hz; give more than 0", field=option)
+        found.append(number)
+    return found
+
+
+def seeds_of(text: str, option: str) -> list[int]:
+    """Seeds: whole numbers, of a range all of them.
+
+    Raises:
+        UsageError: one is no whole number.
+    """
+    steps = ",".join(f"{part}:1" if ".." in part and ":" not in part else part for part in text.split(","))
+    values = values_of(steps, option)
+    try:
+        return [int(value) for value in values]
+    except ValueError:
+        raise UsageError(f"{text!r} are no seeds; write numbers, or a range such as 0..9", field=option) from None
+
+
+def points_of(
+    spec: MissionSpec,
+    boards: Sequence[str | None],
+    rates: Sequence[float],
+    varied: Sequence[tuple[str, Sequence[str]]],
+    seeds: Sequence[int],
+) -> list[tuple[Point, tuple[tuple[str, str], ...]]]:
+    """All points, boards outermost and seeds innermost, each with what is varied besides.
+
+    Args:
+        spec: the mission.
+        boards: names or files; None is the mission's own.
+        rates: in Hz; none flies the mission at its own.
+        varied: names of parameters (with a slash) and arguments of the launch file, each with its values.
+        seeds: of everything random.
+
+    Raises:
+        UsageError: the mission does not say what a rate sets, or that is to be varied as well, or there are too many
+            points.
+    """
+    sets = spec.sweep.rate
+    if rates and not sets:
+        text = "does not say what a rate sets; add `sweep: {rate: [/node/rate]}` to its mission file, or use --set"
+        raise UsageError(text, file=spec.mission_file or spec.script, field="--rate")
+    both = next((name for name, _ in varied if rates and name in sets), None)
+    if both is not None:
+        raise UsageError(f"{both} is what the rate sets; leave --rate or this out", field="--set")
+    axes = [[(name, value) for value in values] for name, values in varied]
+    count = len(boards) * max(1, len(rates)) * len(seeds)
+    for axis in axes:
+        count *= len(axis)
+    if count > MOST_POINTS:
+        raise UsageError(f"are {count:,} points, more than {MOST_POINTS:,}; take fewer values", field="--set")
+    found = []
+    asked: Sequence[float | None] = rates or [None]
+    for board, chosen, rate, seed in product(boards, product(*axes), asked, seeds):
+        said = [*chosen, *((name, f"{rate:g}") for name in sets if rate is not None)]
+        settings = tuple((name, value) for name, value in said if name.startswith("/"))
+        args = tuple((name, value) for name, value in said if not name.startswith("/"))
+        found.append((Point(board, rate, settings, args, seed), chosen))
+    return found

@@ -1,0 +1,372 @@
+"""A failing run as a story: its cause in a sentence, and a column for each task that matters, up to the failure.
+
+The run is flown once more with a `TaskLook`, which notes where in its source each task was whenever another could
+have got in, and what it did to locks, messages and the like. So is the run under fifo, for what was otherwise there.
+What was noted is drawn as plain text.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from textwrap import wrap
+
+from cfepy.extra.exploration.cause import Evidence, cause_of
+from cfepy.extra.exploration.failures import FailureWatch
+from cfepy.extra.exploration.moves import MadeMove, MoveNotingPolicy
+from cfepy.extra.exploration.run_times import RunTimes
+from cfepy.extra.exploration.task_look import (
+    ANSWERS,
+    AT,
+    DOES,
+    ORDERED,
+    PREEMPTED,
+    SENDS,
+    TOUCHES,
+    WAITS,
+    Row,
+    TaskLook,
+)
+from cfepy.extra.exploration.trial import Trial
+from cfepy.extra.exploration.verdict import INVARIANT, LONGEST, Failure, Verdict
+from cfepy.pilot import RunPlan
+from cfepy.rtos import HOLD, Policy
+from cfepy.units import NS_PER_S
+
+WIDTH = 100
+"""Of a story in a file, a pipe, a test: always the same, so that it can be compared."""
+
+TIME_WIDTH = 12
+LEAST_COLUMN = 26  # characters: there are as many columns as fit
+AROUND = 5  # rows that are shown before and after each move
+LAST = 10  # rows that are shown before the failure
+BEFORE = 50  # decisions before the first move, from which on rows are kept
+GAP = 2
+MOST_ROWS = 16  # rows of a group
+FEW = 2  # rows: a group of so few is folded only when it comes three times
+BETWEEN = " ... "  # stands between the first and the last message of those that are told once
+CAUSE = "cause: "
+MOST_OF_A_PAGE = 6  # tasks that have a column where there is as much room as one wants
+MOVES = (PREEMPTED, ORDERED, ANSWERS)
+_MADE_AT = re.compile(r" \((?:line |[\w.]+:)\d+\)")  # behind the name of a lock; the first to go where there is no room
+
+
+@dataclass(frozen=True, slots=True)
+class Story:
+    """What happened in a run, to be drawn.
+
+    Attributes:
+        rows: what the tasks did.
+        tasks: those that matter, the most important first.
+        cause: of the failure, a sentence; empty where it is not known.
+        end: what failed, a line; empty for nothing.
+        end_ns: virtual time at which it failed; None for the end of the run.
+    """
+
+    rows: tuple[Row, ...] = ()
+    tasks: tuple[str, ...] = ()
+    cause: str = ""
+    end: str = ""
+    end_ns: int | None = None
+
+    def lines(self, width: int = WIDTH) -> list[str]:
+        """It as text.
+
+        Args:
+            width: characters of a line.
+        """
+        most = max(1, (width - TIME_WIDTH) // (LEAST_COLUMN + GAP))
+        tasks = self._tasks(most)
+        cause = wrap(CAUSE + self.cause, width, subsequent_indent=" " * len(CAUSE)) if self.cause else []
+        return [*cause, *([""] if cause else []), *drawn(self.rows, tasks, width), *self._last_lines(width)]
+
+    def table(self) -> tuple[tuple[str, ...], list[tuple[int | None, str, str, bool]]]:
+        """It as a table: the tasks that have a column, and the rows.
+
+        A row has its virtual time in ns, its task, what it did, and whether the schedule did that; time and task are
+        None and empty where it stands for others.
+        """
+        tasks = self._tasks(MOST_OF_A_PAGE)
+        groups = _folded(_moving([row for row in self.rows if row.task in tasks]))
+        rows: list[tuple[int | None, str, str, bool]] = []
+        before = -1
+        for at in _shown(groups):
+            rows += [] if at == before + 1 else [(None, "", "...", False)]
+            before = at
+            rows += [(row.at_ns, row.task, _forms(row)[0], row.kind in MOVES) for row in groups[at].rows]
+            rows += [] if groups[at].times == 1 else [(None, "", f"x {groups[at].times}: {_until(groups[at])}", False)]
+        return tasks, rows
+
+    def _tasks(self, most: int) -> tuple[str, ...]:
+        """Those that have a column, in the order in which they appear."""
+        chosen = set(self.tasks[:most])
+        named = (row.task for row in self.rows if row.task in chosen)
+        return tuple(dict.fromkeys([*named, *(task for task in self.tasks if task in chosen)]))
+
+    def _last_lines(self, width: int) -> list[str]:
+        if not self.end:
+            return []
+        at = "at the end" if self.end_ns is None else f"{self.end_ns / NS_PER_S:.6f}"
+        lines = wrap(self.end, width - TIME_WIDTH)
+        return [(at if not number else "").ljust(TIME_WIDTH) + line for number, line in enumerate(lines)]
+
+
+def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[MadeMove]) -> Story:
+    """What happened; the run is flown once more, and the one under fifo.
+
+    Args:
+        trial: what is flown.
+        verdict: of the shrunk schedule.
+        failure: the one that it is about.
+        moves: what the schedule does.
+    """
+    schedule = verdict.schedule
+    first = min((decision for decision, _ in verdict.deviations), default=0)
+    watch = FailureWatch(trial.events)
+    look = TaskLook(trial.plan.spec(), first - BEFORE, lambda: watch.saw(failure.group))
+    times, usual_times = RunTimes(), RunTimes()
+    timed = failure.span_ns is not None
+    trial.fly(schedule, [watch, look, *([times] if timed else [])], look.policy(schedule.policy() or Policy()))
+    fifo, usual = schedule.at({}), TaskLook(trial.plan.spec())
+    watching = [usual, *([usual_times] if timed else [])]
+    known = trial.fly(fifo, watching, usual.policy(fifo.policy() or Policy())).verdict.failure(failure.group)
+    end_ns = verdict.end_ns if failure.at_ns is None else failure.at_ns
+    rows = tuple(row for row in look.rows if row.at_ns <= end_ns)
+    sender = rows[-1].task if rows and failure.kind == INVARIANT and rows[-1].kind == SENDS else ""
+    culprit = failure.task or sender
+    ran, usually_ran = (each.between(end_ns - (failure.span_ns or 0), end_ns) for each in (times, usual_times))
+    evidence = Evidence(failure, moves, rows, look.deeds, usual.deeds, look.names, ran, usually_ran)
+    cause = "" if known is not None or failure.kind == LONGEST else cause_of(evidence)
+    rows = tuple(_without_touches(rows, {deed.thing for deed in look.deeds if deed.ident and deed.thing in cause}))
+    title, text = (_named(each, look.names) for each in (failure.title, failure.text))
+    what, title = ("LONGEST", f"{failure.who} {text}") if failure.kind == LONGEST else ("FAILURE", title)
+    end = f"{what}{f' in {culprit}:' if culprit else ''} {title}"
+    return Story(rows, important(rows, moves, culprit, f"{cause} {text}"), cause, end, failure.at_ns)
+
+
+def story_of_run(plan: RunPlan) -> Story | None:
+    """What happened in a run under a schedule with some deviations from fifo.
+
+    Args:
+        plan: the run; it is flown again, and the one under fifo.
+
+    Returns:
+        The story of the first failure that the run under fifo does not have; None when there is none.
+    """
+    fifo = Trial(plan).fly(plan.schedule.at({}))
+    trial = Trial(plan).against(fifo.results)
+    noting = MoveNotingPolicy(plan.schedule.policy() or Policy())
+    verdict = trial.fly(plan.schedule, policy=noting).verdict
+    failure = next((each for each in verdict.failures if each.group not in fifo.verdict.groups), None)
+    return None if failure is None else story_of(trial, verdict, failure, noting.made)
+
+
+def _named(text: str, names: Mapping[str, str]) -> str:
+    """A text with the names of locks in the place of their numbers."""
+    for told, name in names.items():
+        text = text.replace(told, name)
+    return text
+
+
+def important(rows: Sequence[Row], moves: Sequence[MadeMove], culprit: str = "", text: str = "") -> tuple[str, ...]:
+    """The tasks that may have a column, those that matter most first.
+
+    These are the one in which the failure showed, those of the moves, the last one first, those that a question was
+    about, and those that the failure and its cause name. When these are not two, or a task was held up and others ran
+    in the meantime, it is also who did something last.
+
+    Args:
+        rows: what all tasks did.
+        moves: what the schedule does.
+        culprit: the task in which the failure showed; empty when that is not known.
+        text: of the failure and its cause.
+    """
+    words = set(text.replace(",", " ").replace(";", " ").replace("'", " ").split())
+    moved = [name for move in moves if not move.question for name in (move.task, move.chosen)]
+    moved += [row.task for row in rows if row.kind == ANSWERS]
+    acting = list(dict.fromkeys(row.task for row in reversed(rows)))
+    wanted = dict.fromkeys([culprit, *reversed(moved), *(task for task in reversed(acting) if task in words)])
+    for no_task in ("", HOLD):
+        wanted.pop(no_task, None)
+    at_least = 3 if HOLD in moved else 2
+    return (*wanted, *[task for task in acting if task not in wanted][: max(0, at_least - len(wanted))])
+
+
+def drawn(rows: Sequence[Row], tasks: Sequence[str], width: int = WIDTH) -> list[str]:
+    """A line a row, in the column of its task; rows that are far from every move and from the end are left out."""
+    if not tasks:
+        return []
+    file, rows = _without_file(_moving([row for row in rows if row.task in tasks]))
+    groups = _folded(rows)
+    shown = _shown(groups)
+    widths = _widths([_need(task, [groups[at] for at in shown]) for task in tasks], width - TIME_WIDTH)
+    lines = [f"lines of {file}", ""] if file else []
+    lines += [_line("time, s", tasks, widths), _line("", ["-" * each for each in widths], widths)]
+    before = -1
+    for at in shown:
+        if at != before + 1:
+            lines.append("...")
+        before = at
+        lines += [_row_line(row, tasks, widths) for row in groups[at].rows]
+        if groups[at].times > 1:
+            until = _until(groups[at])
+            lines.append(_line(f"x {groups[at].times}", [until], [len(until)]))
+    return lines
+
+
+def _without_touches(rows: Sequence[Row], but: Collection[str]) -> Iterator[Row]:
+    """The rows without accesses to variables, but for those to some."""
+    for row in rows:
+        place, _, text = row.text.partition("\n")
+        if row.kind != TOUCHES:
+            yield row
+        elif text.partition(" ")[2] in but:
+            yield replace(row, kind=AT, text=place)
+            yield replace(row, kind=DOES, text=text)
+
+
+def _until(group: _Group) -> str:
+    what = "row" if len(group.rows) == 1 else f"{len(group.rows)} rows"
+    return f"the {what} above, until {group.until_ns / NS_PER_S:.6f}"
+
+
+def _moving(rows: Sequence[Row]) -> list[Row]:
+    """The rows without lines at which a task was already, and went on with only what other rows tell."""
+    kept: list[Row] = []
+    at: dict[str, str] = {}
+    for row in rows:
+        if kept and kept[-1].task != row.task:
+            at.clear()
+        if row.kind != AT or at.get(row.task) != row.text:
+            kept.append(row)
+        if row.kind == AT:
+            at[row.task] = row.text
+    return kept
+
+
+def _without_file(rows: Sequence[Row]) -> tuple[str, Sequence[Row]]:
+    """The name of the file that all places are in, and the rows without it; "" when there are several, or none."""
+    files = {row.text.partition(":")[0] for row in rows if row.kind == AT}
+    if len(files) != 1:
+        return "", rows
+    file = files.pop()
+    return file, [replace(row, text=_short(row, file)) for row in rows]
+
+
+def _short(row: Row, file: str) -> str:
+    if row.kind == AT:
+        return row.text[len(file) + 1 :]
+    return row.text.replace(f" ({file}:", " (line ") if row.kind in (DOES, WAITS) else row.text
+
+
+def _shown(groups: Sequence[_Group]) -> list[int]:
+    """The groups of rows that are shown."""
+    moves = [at for at, group in enumerate(groups) if any(row.kind in MOVES for row in group.rows)]
+    near = {each for at in moves for each in range(at - AROUND, at + AROUND + 1)}
+    return [at for at in range(len(groups)) if at in near or at >= len(groups) - LAST]
+
+
+def _need(task: str, groups: Sequence[_Group]) -> int:
+    """How wide a column must be for all that is in it."""
+    texts = (_forms(row)[0] for group in groups for row in group.rows if row.task == task)
+    return max(len(task), *map(len, texts), LEAST_COLUMN)
+
+
+def _widths(needs: Sequence[int], width: int) -> list[int]:
+    """How wide each column is: what it needs, while there is room; the room is shared out evenly among the others."""
+    widths = [0] * len(needs)
+    left = width - GAP * len(needs)
+    for place, at in enumerate(sorted(range(len(needs)), key=lambda at: needs[at])):
+        widths[at] = min(needs[at], left // (len(needs) - place))
+        left -= widths[at]
+    return widths
+
+
+def _row_line(row: Row, tasks: Sequence[str], widths: Sequence[int]) -> str:
+    cells = ["" if row.task != task else _cell(row, width) for task, width in zip(tasks, widths, strict=True)]
+    return _line(f"{row.at_ns / NS_PER_S:.6f}", cells, widths)
+
+
+def _cell(row: Row, width: int) -> str:
+    forms = _forms(row)
+    return next((text for text in forms if len(text) <= width), _cut(forms[-1], width))
+
+
+def _forms(row: Row) -> tuple[str, ...]:
+    """What a row says, the longest form first."""
+    if row.kind == ANSWERS:
+        return (f"=== {row.text} ===",)
+    if row.kind not in (PREEMPTED, ORDERED):
+        return row.text, _MADE_AT.sub("", row.text)
+    if row.text == HOLD:
+        return ("=== HELD UP ===",)
+    short, whole = ("PREEMPTED", "PREEMPTED by") if row.kind == PREEMPTED else ("NOT FIRST", "AFTER")
+    return f"=== {whole} {row.text} ===", f"{whole} {row.text}", f"=== {short} ==="
+
+
+def _line(time: str, cells: Sequence[str], widths: Sequence[int]) -> str:
+    texts = (_cut(cell, width).ljust(width) for cell, width in zip(cells, widths, strict=True))
+    return (time.ljust(TIME_WIDTH) + (" " * GAP).join(texts)).rstrip()
+
+
+def _cut(text: str, width: int) -> str:
+    return text if len(text) <= width else f"{text[: width - 3]}..."
+
+
+@dataclass(frozen=True, slots=True)
+class _Group:
+    """Rows that come one after the other.
+
+    Attributes:
+        rows: as they came the first time.
+        times: how often they came.
+        until_ns: virtual time at which they were over.
+    """
+
+    rows: tuple[Row, ...]
+    times: int
+    until_ns: int
+
+
+def _folded(rows: Sequence[Row]) -> list[_Group]:
+    """The same rows, in which what comes again at once is told once; most groups are a single row."""
+    groups: list[_Group] = []
+    kinds = [_kind(row) for row in rows]
+    at = 0
+    while at < len(rows):
+        length, times = max(((each, _times(kinds, at, each)) for each in range(1, MOST_ROWS + 1)), key=_saved)
+        if _saved((length, times)) == 0:
+            length, times = 1, 1
+        end = at + length * times
+        last = rows[end - length : end]
+        both = zip(rows[at : at + length], last, strict=True)
+        groups.append(_Group(tuple(_merged(*each) for each in both), times, rows[end - 1].at_ns))
+        at = end
+    return groups
+
+
+def _kind(row: Row) -> tuple[str, str, str]:
+    """What rows that are told once have in common: of messages the topic, of all others everything but the time."""
+    text = row.text.partition(":")[0] if row.kind == SENDS else row.text
+    return row.task, row.kind, text
+
+
+def _times(kinds: Sequence[tuple[str, str, str]], at: int, length: int) -> int:
+    """How often so many rows come one after the other."""
+    group, times = kinds[at : at + length], 1
+    while len(group) == length and kinds[at + times * length : at + (times + 1) * length] == group:
+        times += 1
+    return times
+
+
+def _saved(folding: tuple[int, int]) -> int:
+    """How many rows it saves to fold; 0 where that is not worth a line that says so."""
+    length, times = folding
+    return length * (times - 1) if times > 2 or (times == 2 and length > FEW) else 0
+
+
+def _merged(first: Row, last: Row) -> Row:
+    if first.text == last.text:
+        return first
+    return replace(first, text=first.text + BETWEEN + last.text.partition(": ")[2])

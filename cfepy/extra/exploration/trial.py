@@ -1,0 +1,208 @@
+"""A trial: one run of a mission under one schedule, and the verdict on it.
+
+A trial is plain data, so it goes to other processes; a verdict comes back.
+"""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple, Self
+
+from cfepy.attachment import Attachment
+from cfepy.extra.exploration import verdict
+from cfepy.extra.exploration.failures import FailureWatch
+from cfepy.extra.exploration.footprints import Footprints
+from cfepy.extra.exploration.result_watch import Result, ResultWatch, differences, digest_of
+from cfepy.extra.exploration.stuck import Waits, WaitWatch, stuck_for_good
+from cfepy.extra.exploration.verdict import Failure, Verdict
+from cfepy.monitors import InversionWatch, Lack, Limits, LivenessWatch
+from cfepy.pilot import LEAVES_OTHERS_WAITING, BootError, RunPlan, fly
+from cfepy.rtos import NotingPolicy, Policy
+from cfepy.schedules import ORDER, Schedule
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+MOST_INVERSIONS = 3  # that are told of one failure
+PROBE_S = 1.0  # wall time that a task gets at least, which is known to spin
+
+
+FOR_EVER = Limits()
+
+
+def told_as(schedule: Schedule, deviations: Mapping[int, int]) -> Schedule:
+    """A schedule that a command can be given: for one that is made as a run goes on, what that run did."""
+    return schedule.at(deviations) if schedule.kind == ORDER else schedule
+
+
+class Tried(NamedTuple):
+    """A trial that was flown.
+
+    Attributes:
+        verdict: what became of it.
+        results: the results themselves.
+        notes: what the user of the plan should know.
+        booted_ns: virtual time at which the mission became OPERATIONAL; None when it did not.
+        tick_ns: of the board's clock; 0 for none.
+        tasks: how many there have been.
+    """
+
+    verdict: Verdict
+    results: tuple[Result, ...] = ()
+    notes: tuple[str, ...] = ()
+    booted_ns: int | None = None
+    tick_ns: int = 0
+    tasks: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What is flown, and what counts as a failure.
+
+    Attributes:
+        plan: the run; its own schedule does not matter.
+        events: which events are failures: "error" (ERROR and CRITICAL), "critical" or "none".
+        reference: the results of the run that others are held against; None holds them against nothing.
+        keep_widths: verdicts have the widths of decisions, which a systematic search needs.
+        steps_from_ns: verdicts have the steps of the run from this virtual time on, as a search of orders needs; None
+            keeps none.
+        waits: of the default schedule (`cfepy.extra.exploration.stuck`), against which tasks that wait for ever are
+            found; None lets them wait.
+        liveness: how long a task may be ready without running, and an application run without a message.
+    """
+
+    plan: RunPlan
+    events: str = "error"
+    reference: tuple[Result, ...] | None = None
+    keep_widths: bool = False
+    steps_from_ns: int | None = None
+    waits: Waits | None = None
+    liveness: Limits = FOR_EVER
+
+    def run(self, schedule: Schedule, attachments: Sequence[Attachment] = ()) -> Verdict:
+        """Fly the mission in this process.
+
+        Args:
+            schedule: which task runs when.
+            attachments: what else watches the run.
+
+        Returns:
+            What became of it. An error of cfepy itself is told as `trouble` and is no failure of the mission.
+
+        Raises:
+            UsageError: the mission, its script or its faults cannot be read.
+            KeyboardInterrupt: the user pressed Ctrl-C.
+        """
+        return self.fly(schedule, attachments).verdict
+
+    def fly(self, schedule: Schedule, attachments: Sequence[Attachment] = (), policy: Policy | None = None) -> Tried:
+        """As `run`, with what else is known of the flight.
+
+        Args:
+            schedule: which task runs when.
+            attachments: what else watches the run.
+            policy: decides in the place of the schedule's own, of which the options count nevertheless.
+        """
+        recorded = NotingPolicy(schedule.policy() if policy is None else policy)
+        watch = FailureWatch(self.events)
+        spec = self.plan.spec()
+        results = ResultWatch(spec)
+        waits = [WaitWatch()] if self.waits is not None else []
+        steps = [Footprints(self.steps_from_ns)] if self.steps_from_ns is not None else []
+        alive = [LivenessWatch(self.liveness)] if any(self.liveness) else []
+        watching = [*attachments, watch, results, *waits, *steps, *alive]
+        failed: tuple[Failure, ...]
+        try:
+            flown = fly(self.plan, spec=spec, attachments=watching, policy=recorded)
+        except BootError as error:
+            return Tried(self._verdict(schedule, recorded, (Failure(verdict.PROBLEM, "", error.text),)))
+        except (UsageError, KeyboardInterrupt):
+            raise
+        except Exception:
+            return Tried(replace(self._verdict(schedule, recorded, ()), trouble=traceback.format_exc()))
+        if flown.stall is not None:
+            told = self._verdict(schedule, recorded, watch.failures(flown.problems))
+            return Tried(replace(told, end_ns=watch.end_ns), (), flown.notes)  # results and digest there are none
+        found = results.results()
+        failed = (*watch.failures(flown.problems), *self._differences(found))
+        failed += tuple(_lack(each) for watched in alive for each in watched.found)
+        if waits and not any(failure.kind in LEAVES_OTHERS_WAITING for failure in failed):
+            lost = {failure.task for failure in failed if failure.kind == verdict.STUCK}
+            found_stuck = self._stuck(waits[0].waits, schedule, recorded, watch.end_ns)
+            failed += tuple(failure for failure in found_stuck if failure.task not in lost)
+        told = self._verdict(schedule, recorded, failed)
+        trouble = "\n".join(watch.trouble)
+        told = replace(told, results=digest_of(found), trace=flown.trace, end_ns=watch.end_ns, trouble=trouble)
+        told = replace(told, steps=steps[0].steps if steps else ())
+        kernel = flown.mission.kernel
+        return Tried(told, found, flown.notes, flown.mission.booted, kernel.tick_ns, kernel.tasks_made)
+
+    def _stuck(self, found: Waits, schedule: Schedule, policy: NotingPolicy, end_ns: int) -> Iterator[Failure]:
+        assert self.waits is not None
+        return stuck_for_good(found, self.waits, self.plan, end_ns, schedule.at(policy.deviations).policy)
+
+    def against(self, reference: tuple[Result, ...]) -> Trial:
+        """The same trial, in which results that differ from these are failures."""
+        return replace(self, reference=reference)
+
+    def probe(self) -> Trial:
+        """The same trial for a stall that is known: a task that spins there again is not watched for as long."""
+        limit = self.plan.stall
+        return replace(self, plan=replace(self.plan, stall=min(limit, max(PROBE_S, limit / 10))))
+
+    def inversions_before(self, schedule: Schedule, at_ns: int | None, task: str = "") -> list[str]:
+        """The priority inversions that came before something went wrong: its run is flown once more.
+
+        Args:
+            schedule: under which it went wrong.
+            at_ns: when, in virtual ns; None is the end.
+            task: in which task; if that was held up like this itself, only its own are told.
+
+        Returns:
+            A sentence for each, the longest first; of each victim and lock only the longest.
+        """
+        watch = InversionWatch()
+        self.fly(schedule, [watch])
+        before = [each for each in watch.found if at_ns is None or each.at_ns <= at_ns]
+        longest = {each.group: each for each in sorted(before, key=lambda each: each.lost_ns)}
+        told = [each for each in longest.values() if each.victim == task] or list(longest.values())
+        return [each.text for each in reversed(told)][:MOST_INVERSIONS]
+
+    def until(self, end_ns: int) -> Self | None:
+        """The same trial in a run that ends at this virtual time; None for a run that ends with its script."""
+        if self.plan.script is not None:
+            return None
+        return replace(self, plan=replace(self.plan, seconds=end_ns / NS_PER_S))
+
+    def command(self, schedule: Schedule) -> str:
+        """The command that flies this mission under a schedule."""
+        return self.plan.command_line(schedule=schedule)
+
+    def _verdict(self, schedule: Schedule, policy: NotingPolicy, failed: tuple[Failure, ...]) -> Verdict:
+        is_kept = failed or self.steps_from_ns is not None
+        deviations = tuple(sorted(policy.deviations.items())) if is_kept else ()
+        schedule = told_as(schedule, policy.deviations)
+        pairs = zip(policy.widths, policy.running, strict=True)
+        return Verdict(
+            schedule,
+            failed,
+            decisions=policy.decisions,
+            deviations=deviations,
+            preemptions=policy.preemptions,
+            missed=policy.missed,
+            widths=tuple(-width if running else width for width, running in pairs) if self.keep_widths else (),
+        )
+
+    def _differences(self, found: tuple[Result, ...]) -> tuple[Failure, ...]:
+        if self.reference is None:
+            return ()
+        return tuple(
+            Failure(verdict.RESULTS, name, text, cause=name) for name, text in differences(self.reference, found)
+        )
+
+
+def _lack(found: Lack) -> Failure:
+    """A task that starved, or an application that got nowhere."""
+    kind = verdict.LIVELOCK if found.is_livelock else verdict.STARVED
+    return Failure(kind, found.app, found.text, found.at_ns, task=found.task, cause=found.task)

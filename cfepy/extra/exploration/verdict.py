@@ -1,0 +1,249 @@
+"""The verdict on a mission under one schedule, and the findings from the verdicts on many.
+
+A verdict has the failures, and the digests that say what was computed: plain data that goes between processes and into
+files. A finding is a distinct failure, with how often it came and where it came first. The failures of a run follow
+from each other more often than not, so a run counts for the first of them that the reference run does not have.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field, fields
+from itertools import pairwise
+from statistics import median
+from typing import Any
+
+from cfepy.extra.exploration.steps import TaskStep
+from cfepy.pilot import Failure, FailureKind
+from cfepy.schedules import Schedule
+from cfepy.status import UsageError
+
+__all__ = [
+    "DEADLINE",
+    "DEADLOCK",
+    "DIED",
+    "ENDED",
+    "EVENT",
+    "EXPECTATION",
+    "INVARIANT",
+    "LIVELOCK",
+    "LONGEST",
+    "OVERWRITE",
+    "PROBLEM",
+    "RACE",
+    "RAISED",
+    "RESET",
+    "RESULTS",
+    "STALLED",
+    "STARVED",
+    "STUCK",
+    "Failure",
+    "Finding",
+    "Findings",
+    "Verdict",
+]
+
+DIED = FailureKind.DIED
+RAISED = FailureKind.RAISED
+ENDED = FailureKind.ENDED
+RESET = FailureKind.RESET
+DEADLINE = FailureKind.DEADLINE
+DEADLOCK = FailureKind.DEADLOCK
+RACE = FailureKind.RACE
+OVERWRITE = FailureKind.OVERWRITE
+STUCK = FailureKind.STUCK
+STALLED = FailureKind.STALLED
+EXPECTATION = FailureKind.EXPECTATION
+INVARIANT = FailureKind.INVARIANT
+EVENT = FailureKind.EVENT
+PROBLEM = FailureKind.PROBLEM
+RESULTS = FailureKind.RESULTS
+LONGEST = FailureKind.LONGEST
+STARVED = FailureKind.STARVED
+LIVELOCK = FailureKind.LIVELOCK
+SIMPLEST = 3  # runs that are kept of each finding, to be shrunk
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What became of one schedule.
+
+    Attributes:
+        schedule: which one; in plain data its text.
+        failures: in the order of their times; none for a run that went well.
+        results: digest of the results that must not depend on the schedule; empty when none are selected.
+        trace: digest of the whole run.
+        decisions: how often the policy had a choice: those that `from` leaves to fifo are none.
+        deviations: (decision, candidate) where it did not choose as fifo would; kept for runs with failures, and where
+            steps are.
+        preemptions: how many of them took the processor from a task that could have gone on.
+        widths: how many answers each decision had, negative where the running task could have gone on; kept only for a
+            systematic search.
+        steps: what the tasks did, and what they touched; kept only for a search of orders.
+        end_ns: virtual time at the end of the run, before the nodes were asked to shut down.
+        longest: of a run in which something was measured: how long it took at most, when that ended, in virtual ns, and
+            how many decisions there had been by then; empty when nothing was.
+        trouble: traceback of an error of cfepy itself, which says nothing about the mission; empty otherwise.
+        missed: the moves of the schedule that were not possible, as text.
+    """
+
+    schedule: Schedule
+    failures: tuple[Failure, ...] = ()
+    results: str = ""
+    trace: str = ""
+    decisions: int = 0
+    deviations: tuple[tuple[int, int], ...] = ()
+    preemptions: int = 0
+    widths: tuple[int, ...] = ()
+    steps: tuple[TaskStep, ...] = ()
+    end_ns: int = 0
+    longest: tuple[int, ...] = ()
+    trouble: str = ""
+    missed: tuple[str, ...] = ()
+
+    @property
+    def failed(self) -> bool:
+        """Whether the mission failed under this schedule."""
+        return bool(self.failures)
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """The groups of its failures, each once, in order."""
+        return tuple(dict.fromkeys(failure.group for failure in self.failures))
+
+    def failure(self, group: str) -> Failure | None:
+        """Its first failure of a group; None when it has none."""
+        return next((each for each in self.failures if each.group == group), None)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, for JSON and msgpack."""
+        same = {each.name: getattr(self, each.name) for each in fields(self)}
+        return same | {"schedule": self.schedule.text(), "failures": tuple(map(asdict, self.failures))}
+
+    @classmethod
+    def from_dict(cls, plain: dict[str, Any]) -> Verdict:
+        """The other way round.
+
+        Raises:
+            UsageError: it is no verdict.
+        """
+        try:
+            return cls._of(plain)
+        except UsageError:
+            raise
+        except (KeyError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
+            raise UsageError(f"is no verdict: {type(error).__name__}: {error}") from None
+
+    @classmethod
+    def _of(cls, plain: dict[str, Any]) -> Verdict:
+        schedule = Schedule.parse(plain["schedule"])
+        failures = tuple(Failure(**each) for each in plain["failures"])
+        deviations = tuple((int(at), int(candidate)) for at, candidate in plain["deviations"])
+        missed = tuple(plain.get("missed", ()))
+        steps = tuple(TaskStep.of(each) for each in plain.get("steps", ()))
+        own = {"schedule": schedule, "failures": failures, "deviations": deviations, "missed": missed, "steps": steps}
+        longest = tuple(map(int, plain.get("longest", ())))
+        found = cls(**{**plain, **own, "widths": tuple(map(int, plain["widths"])), "longest": longest})
+        texts = [found.results, found.trace, found.trouble, *found.missed]
+        for each in failures:
+            texts += [each.kind, each.who, each.text, each.detail, each.task, each.cause]
+        numbers = [found.decisions, found.preemptions, found.end_ns, *(each.at_ns or 0 for each in failures)]
+        if not all(isinstance(each, str) for each in texts) or not all(isinstance(each, int) for each in numbers):
+            raise TypeError("a text or a number is of another kind")
+        return found
+
+
+@dataclass(slots=True)
+class Finding:
+    """A failure.
+
+    Attributes:
+        failure: as it was the first time.
+        number: of the first schedule that showed it, from 0; None for the reference run.
+        verdict: on that.
+        numbers: of all schedules that showed it.
+        others: titles of the other failures in the first run.
+        simplest: the verdicts of the runs that showed it with the fewest preemptions: the best ones to shrink.
+    """
+
+    failure: Failure
+    number: int | None
+    verdict: Verdict
+    numbers: list[int] = field(default_factory=list)
+    others: tuple[str, ...] = ()
+    simplest: list[Verdict] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.simplest = [self.verdict]
+
+    def again(self, number: int, verdict: Verdict) -> None:
+        """Another run showed it."""
+        self.numbers.append(number)
+        if verdict is not self.verdict:
+            self.simplest = sorted([*self.simplest, verdict], key=_moves)[:SIMPLEST]
+
+    @property
+    def in_reference(self) -> bool:
+        """Whether the default schedule shows it as well."""
+        return self.number is None
+
+    @property
+    def median_schedules(self) -> float | None:
+        """How many schedules it took to come, and to come again, in the median; None when none of them showed it."""
+        starts = [-1, *self.numbers]
+        return median(b - a for a, b in pairwise(starts)) if self.numbers else None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data; times in ns."""
+        return {
+            "kind": self.failure.kind,
+            "who": self.failure.who,
+            "text": self.failure.text,
+            "at_ns": self.failure.at_ns,
+            "detail": self.failure.detail,
+            "others": list(self.others),
+            "under_fifo": self.in_reference,
+            "schedules": len(self.numbers),
+            "first_number": self.number,
+            "first_schedule": self.verdict.schedule.text(),
+            "median_schedules": self.median_schedules,
+        }
+
+
+def _moves(verdict: Verdict) -> tuple[int, int]:
+    """How much a schedule differs from the default one."""
+    return verdict.preemptions, len(verdict.deviations)
+
+
+class Findings:
+    """Collects findings.
+
+    Args:
+        reference: the verdict on the default schedule.
+
+    Attributes:
+        troubles: verdicts that ended in an error of cfepy.
+    """
+
+    def __init__(self, reference: Verdict) -> None:
+        self.troubles: list[Verdict] = [reference] if reference.trouble else []
+        self._found: dict[str, Finding] = {}
+        self._expected = frozenset(reference.groups)
+        for failure in reference.failures:
+            self._found.setdefault(failure.group, Finding(failure, None, reference))
+
+    def take(self, number: int, verdict: Verdict) -> bool:
+        """Take a verdict; whether the mission failed in a way in which it does not fail by default."""
+        if verdict.trouble:
+            self.troubles.append(verdict)
+        if not verdict.failures:
+            return False
+        new = [failure for failure in verdict.failures if failure.group not in self._expected]
+        failure = (new or verdict.failures)[0]
+        others = tuple(dict.fromkeys(each.title for each in new if each.group != failure.group))
+        finding = self._found.setdefault(failure.group, Finding(failure, number, verdict, others=others))
+        finding.again(number, verdict)
+        return bool(new)
+
+    def all(self) -> list[Finding]:
+        """All of them: those of the reference run, then the others as they were found."""
+        return list(self._found.values())

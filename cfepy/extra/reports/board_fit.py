@@ -1,0 +1,297 @@
+"""What a mission needs of a board, what does not fit, and the fewest changes that make it fit.
+
+The mission is flown on the board with as much RAM as it asks for, so that all of it shows. Stacks are booked as the
+startup script says; how deep compiled tasks have used theirs is measured, of Python that says nothing about C.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any, NamedTuple
+
+from cfepy.app import Cfe
+from cfepy.attachment import Attachment
+from cfepy.es import CFE_APP
+from cfepy.extra.c import ElfError, read_shared_object
+from cfepy.mission import Mission, MissionSpec, Processor, StackUse
+from cfepy.pilot import Results, RunPlan, fly
+from cfepy.psp import BoardProfile, load_profile
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import OBJECT_BYTES
+
+STACK = "stack"
+POOL = "memory pool"
+SMALLEST_STACK = 8192  # of an application whose use is not known; twice what core tasks have on small boards
+CALLS = 2048  # bytes of a stack that functions of cFE and OSAL take on top of what the application does; an estimate
+GRAIN = 1024  # to which sizes are rounded up
+SPARE = 2  # a pool is proposed with so many times what was in use at most
+SMALLEST_POOL = 16384
+
+
+class BoardLedger(Attachment):
+    """Lets a mission have as much RAM as it asks for, and takes down what that is.
+
+    Attributes:
+        claims: bytes by owner, what for and size of each, when most was in use.
+        peak: bytes that were in use then.
+        sb_pool: bytes of the Software Bus's pool that were in use at most.
+        pools: what was in the pools of cFE at the end.
+    """
+
+    def __init__(self) -> None:
+        self.claims: dict[tuple[str, str], list[int]] = {}
+        self.peak = 0
+        self.sb_pool = 0
+        self.pools: list[PoolRow] = []
+        self._mission: Mission
+
+    def begin(self, mission: Mission) -> None:
+        self._mission = mission
+
+    def power_up(self, processor: Processor) -> None:
+        """From now on nothing is refused."""
+        memory = processor.memory
+        claim = memory.claim
+        memory.limit = None
+
+        def noting(owner: str, kind: str, size: int) -> int:
+            token = claim(owner, kind, size)
+            if memory.used > self.peak:
+                self.peak, self.claims = memory.used, memory.sizes()
+            return token
+
+        memory.claim = noting  # type: ignore[method-assign]  # of this budget only
+
+    def conclude(self) -> None:
+        cfe = self._mission.cfe
+        self.sb_pool = max(self.sb_pool, cfe.sb.peaks.memory)
+        self.pools = [*_tables(cfe), *_cds(cfe), *_messages(cfe)]
+
+
+class PoolRow(NamedTuple):
+    """Bytes of a pool of cFE: who has them, and what for; nobody has what is free.
+
+    `pool` is what the pool is called among the bookings, such as "CDS"; a block counts with its descriptor.
+    """
+
+    pool: str
+    owner: str
+    what: str
+    size: int
+
+
+class BoardChange(NamedTuple):
+    """Something that makes a mission smaller: where it is written, what to write there, bytes that it saves.
+
+    `is_estimate`: nothing was measured that tells whether the smaller size is enough.
+    """
+
+    place: str
+    text: str
+    saves: int
+    is_estimate: bool = False
+
+
+class StackRow(NamedTuple):
+    """The stacks of an application: tasks, bytes of each, and how deep the deepest was used; None: not measured."""
+
+    app: str
+    tasks: int
+    size: int
+    used: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class BoardFit:
+    """What a mission needs of a board.
+
+    Attributes:
+        board: the board's name.
+        ram, flash: bytes that it has; 0 without a limit.
+        needed: bytes of RAM that were in use at most.
+        rows: (owner, what for, bytes), largest first.
+        pools: what is in the pools of cFE that are among the rows, at the end of the run.
+        stacks: of the applications of the startup script.
+        sb_pool, sb_pool_used: bytes of the Software Bus's pool, and how many were in use at most.
+        code: bytes of compiled applications in flash, by name; those in Python have none.
+        changes: the fewest that make it fit; none when it fits.
+        results: of the run, with the CPU of each application.
+    """
+
+    board: str
+    ram: int
+    flash: int
+    needed: int
+    rows: tuple[tuple[str, str, int], ...]
+    pools: tuple[PoolRow, ...]
+    stacks: tuple[StackRow, ...]
+    sb_pool: int
+    sb_pool_used: int
+    code: dict[str, int]
+    changes: tuple[BoardChange, ...]
+    results: Results
+
+    @property
+    def missing(self) -> int:
+        """Bytes of RAM that are missing; 0 when it fits."""
+        return max(0, self.needed - self.ram) if self.ram else 0
+
+    @property
+    def in_python(self) -> tuple[str, ...]:
+        """Applications of the startup script that have no C stack here, so that nothing of it could be measured."""
+        return tuple(row.app for row in self.stacks if row.used is None and row.app not in self.code)
+
+    @property
+    def fits_changed(self) -> bool:
+        """Whether it fits with the changes."""
+        return sum(change.saves for change in self.changes) >= self.missing
+
+    @property
+    def cpu(self) -> float:
+        """Share of the virtual time in which applications ran, 0 to 1."""
+        return sum(app.cpu_share for app in self.results.apps)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data."""
+        parts: dict[str, tuple[Any, ...]] = {"pools": self.pools, "stacks": self.stacks, "changes": self.changes}
+        named = {name: [each._asdict() for each in part] for name, part in parts.items()}
+        return {**asdict(self), **named, "missing": self.missing, "cpu": self.cpu}
+
+
+def fit_of(plan: RunPlan) -> BoardFit:
+    """Fly a mission and find out what it needs of its board.
+
+    Args:
+        plan: the run.
+
+    Raises:
+        UsageError: it cannot be flown, or there is no such board.
+    """
+    spec = plan.spec()
+    ledger = BoardLedger()
+    flown = fly(plan, spec=spec, attachments=[ledger])
+    board = load_profile(plan.board or spec.board)
+    config = flown.mission.config
+    rows = sorted(((*key, sum(sizes)) for key, sizes in ledger.claims.items()), key=lambda row: (-row[2], row))
+    fit = BoardFit(
+        board.name,
+        board.sram_size,
+        board.program_flash,
+        ledger.peak,
+        tuple(rows),
+        tuple(ledger.pools),
+        tuple(_stacks(spec, board, ledger, flown.mission.record.stack_use)),
+        config.sb_buf_memory_bytes,
+        ledger.sb_pool,
+        _code(spec),
+        (),
+        flown.results,
+    )
+    return replace(fit, changes=tuple(_fewest(fit, spec))) if fit.missing else fit
+
+
+def _stacks(
+    spec: MissionSpec, board: BoardProfile, ledger: BoardLedger, uses: Mapping[tuple[str, str], StackUse]
+) -> Iterator[StackRow]:
+    block = board.memory_costs.task_control_block
+    for entry in spec.entries:
+        sizes = ledger.claims.get((entry.name, STACK), []) if entry.kind == CFE_APP else []
+        if sizes:
+            used = [use.used for (app, _), use in uses.items() if app == entry.name]
+            tasks = sum(size == entry.stack_size + block for size in sizes)
+            yield StackRow(entry.name, tasks, entry.stack_size, max(used, default=None))
+
+
+def _tables(cfe: Cfe) -> Iterator[PoolRow]:
+    """The table buffer pool by the owners of tables."""
+    pool = cfe.es.pools.find(cfe.tbl.pool_id)
+    if pool is None:
+        return
+    found = []
+    for name, sizes in cfe.tbl.buffer_sizes().items():
+        app, _, own = name.partition(".")
+        what = f"table {own}" + (f", {len(sizes)} buffers" if len(sizes) > 1 else "")
+        shared = f"{len(sizes)} buffers that loads and dumps share"
+        found.append((app or "CFE_TBL", what if name else shared, sum(map(pool.blocks.room_of, sizes))))
+    yield from _shares("CFE_TBL memory pool", pool.blocks.size, found)
+
+
+def _cds(cfe: Cfe) -> Iterator[PoolRow]:
+    """The Critical Data Store by the owners of its blocks."""
+    store = cfe.es.cds
+    if store is None or not store.is_available:
+        return
+    found = [("CFE_ES", "registry", store.overhead)]
+    for block in store:
+        app, _, own = block.name.partition(".")
+        found.append((app, f"{'critical table' if block.is_table else 'block'} {own}", store.room_of(block)))
+    yield from _shares("CDS", cfe.es.psp.get_cds_size(), found)
+
+
+def _messages(cfe: Cfe) -> Iterator[PoolRow]:
+    """The pool of the Software Bus, when most of it was in use."""
+    found = [("CFE_SB", "subscriptions and messages, at most", cfe.sb.peaks.memory)]
+    yield from _shares("CFE_SB memory pool", cfe.sb.config.sb_buf_memory_bytes, found)
+
+
+def _shares(pool: str, size: int, found: list[tuple[str, str, int]]) -> Iterator[PoolRow]:
+    for owner, what, taken in sorted(found, key=lambda share: (-share[2], share)):
+        if taken:
+            yield PoolRow(pool, owner, what, taken)
+    yield PoolRow(pool, "", "free", size - sum(taken for _, _, taken in found))
+
+
+def _code(spec: MissionSpec) -> dict[str, int]:
+    found = {}
+    for entry in spec.entries:
+        built = spec.built.get(entry.name)
+        path = built.file if built is not None else spec.folder / entry.path.removeprefix("/cf/")
+        if path.suffix in (".so", ".obj") and os.path.isfile(path):
+            try:
+                source = read_shared_object(read_limited(path, OBJECT_BYTES), path.name)
+            except ElfError:
+                continue
+            found[entry.name] = sum(segment.file_size for segment in source.segments)
+    return found
+
+
+def _fewest(fit: BoardFit, spec: MissionSpec) -> list[BoardChange]:
+    """The changes that save most, as many as are needed; the last one saves no more than it has to."""
+    found: list[BoardChange] = []
+    left = fit.missing
+    lines = {entry.name: entry.line for entry in spec.entries}
+    unmeasured = {row.app for row in fit.stacks if row.used is None}
+    savings = sorted(_savings(fit), key=lambda each: (-each[0], each[1]))
+    for most, name, count, size, least in savings:
+        if left <= 0:
+            break
+        wanted = size - min(most, left) // count
+        new = max(least, _power_below(wanted)) if most > left else least
+        saves = count * (size - new)
+        if name:
+            place = f"{spec.script.name}:{lines[name]}"
+            text = f"stack of {name}: {new} in place of {size}, for each of {count} tasks"
+        else:
+            place = "mission.yaml" if spec.mission_file is None else spec.mission_file.name
+            text = f"limits: {{sb_buf_memory_bytes: {new}}} in place of {size}; {fit.sb_pool_used} were in use at most"
+        found.append(BoardChange(place, text.replace("each of 1 tasks", "its task"), saves, name in unmeasured))
+        left -= saves
+    return found
+
+
+def _savings(fit: BoardFit) -> Iterator[tuple[int, str, int, int, int]]:
+    """(bytes that can be saved, application or nothing for the pool, how many of them, size now, smallest size)."""
+    for row in fit.stacks:
+        least = SMALLEST_STACK if row.used is None else -(-(row.used + CALLS) // GRAIN) * GRAIN
+        if row.size > least and row.tasks:
+            yield row.tasks * (row.size - least), row.app, row.tasks, row.size, least
+    least = max(SMALLEST_POOL, -(-SPARE * fit.sb_pool_used // GRAIN) * GRAIN)
+    if fit.sb_pool > least:
+        yield fit.sb_pool - least, "", 1, fit.sb_pool, least
+
+
+def _power_below(size: int) -> int:
+    """The largest power of two that is not larger: sizes of stacks are such."""
+    return 1 << max(0, size.bit_length() - 1)

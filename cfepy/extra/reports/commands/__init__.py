@@ -1,0 +1,119 @@
+"""The commands trace, report and plot, which show a run; here are their options.
+
+A command belongs here when it shows what happened in a run: that of a journal, or of a mission that it flies.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from cfepy.cli.options import (
+    LOOK_STATUS,
+    VALUES_HELP,
+    add_from,
+    add_json,
+    add_looked_at,
+    add_mission_or_node,
+    add_output,
+    add_perfetto,
+    add_run_options,
+)
+
+REPORT_FILE, PLOT_FILE = "report.html", "plot.png"
+LEAST_INCHES, MOST_INCHES = 1.0, 100.0
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add these commands to the parser of `cfepy`."""
+    _add_trace(commands)
+    _add_report(commands)
+    _add_plot(commands)
+
+
+def _add_trace(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    trace = _command(
+        commands,
+        "trace",
+        "show everything that happened in a run, or write it for Perfetto",
+        "Print what happened in a run, a line each: virtual time, task, what. With --perfetto write it to a file that "
+        "ui.perfetto.dev opens.",
+    )
+    add_perfetto(trace)
+    add_from(trace)
+    trace.add_argument("--task", action="append", default=[], metavar="NAME", help="only this task, or 'ARM*'; again")
+    trace.add_argument(
+        "--topic",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="only messages of this topic, packet or MsgId that are sent, or '/arm/*'; again for more",
+    )
+
+
+def _add_report(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    report = _command(
+        commands,
+        "report",
+        "write a run as an HTML page",
+        "Write one HTML page about a run, which needs nothing else: timeline, rates, latencies, pipes, processor time, "
+        "events, console, deadlines.",
+    )
+    add_output(report, REPORT_FILE, REPORT_FILE)
+
+
+def _add_plot(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    plot = _command(
+        commands,
+        "plot",
+        "draw values over time",
+        "Draw fields of ROS topics and cFE packets over virtual time into a PNG, SVG or PDF file. An array gives a "
+        "line for each of its items; a text, such as the phase of a mission, marks where it changes.",
+    )
+    plot.add_argument("names", metavar="NAME.FIELD", nargs="+", help=VALUES_HELP)
+    add_output(plot, f"{PLOT_FILE}; also .svg and .pdf", PLOT_FILE)
+    plot.add_argument("--subplots", action="store_true", help="each NAME.FIELD in axes of its own")
+    add_from(plot)
+    plot.add_argument("--title", metavar="TEXT", help="above it (default: the run)")
+    plot.add_argument("--size", type=size_of, metavar="WxH", help="in inches (default: 10x4.5, higher with more axes)")
+
+
+def add_board_report(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the action report to the command board."""
+    report = actions.add_parser(
+        "report",
+        help="RAM by owner, flash, CPU, headroom, and what makes a mission fit",
+        description="Fly a mission on a board with as much RAM as it asks for; tell what it needs of RAM, flash and "
+        "CPU, and the fewest changes that make it fit.",
+        epilog="exit status: 0 it fits, 1 it does not, 2 bad usage, or a mission that cannot boot",
+    )
+    add_mission_or_node(report)
+    add_run_options(report)
+    add_json(report, "what was found")
+    report.set_defaults(module=f"{__name__}.board_report")
+
+
+def size_of(text: str) -> tuple[float, float]:
+    """Width and height in inches, for argparse."""
+    try:
+        width, height = map(float, text.lower().split("x"))
+    except ValueError:
+        width = height = 0.0
+    if not (LEAST_INCHES <= width <= MOST_INCHES and LEAST_INCHES <= height <= MOST_INCHES):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not like 10x4.5, each {LEAST_INCHES:g} to {MOST_INCHES:g} inches"
+        )
+    return width, height
+
+
+def _command(
+    commands: argparse._SubParsersAction[argparse.ArgumentParser], name: str, help_text: str, description: str
+) -> argparse.ArgumentParser:
+    command = commands.add_parser(
+        name,
+        help=help_text,
+        description=description,
+        epilog=LOOK_STATUS,
+    )
+    add_looked_at(command, with_bags=name == "plot")
+    command.set_defaults(module=f"{__name__}.{'page' if name == 'report' else name}")
+    return command

@@ -1,0 +1,53 @@
+"""`cfepy report`: a run as an HTML page. The report that a run prints is in `cfepy.cli.run.report`."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from cfepy.cli.failures import check_writable, writing
+from cfepy.cli.looked_at import look_at
+from cfepy.extra.reports import About, Collector, PageStory, StoryRow, page_of
+from cfepy.ground import SeriesRecorder
+from cfepy.pilot import RunPlan
+from cfepy.plugins import Hook
+
+STORY_OF_RUN: Hook[Callable[[RunPlan], Any]] = Hook("story_of_run")
+"""What happened in a run that failed: a table of tasks and rows, the cause, how it ended; None when nothing failed."""
+MOST_KEPT = 10_000  # messages of each topic and packet, of which the values are drawn
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the page of the run that the command line names.
+
+    Returns:
+        The exit status.
+
+    Raises:
+        UsageError: there is no such run, or the page cannot be written.
+    """
+    path = Path(arguments.output)
+    check_writable(path, "--output")
+    collector, recorder = Collector(), SeriesRecorder(most=MOST_KEPT)
+    looked_at = look_at(arguments, [collector, recorder], collector.policy)
+    story = None if looked_at.plan is None else _story(looked_at.plan)
+    about = About(looked_at.command, looked_at.schedule, arguments.source, looked_at.warnings, story)
+    with writing(path, "--output"):
+        path.write_text(page_of(looked_at.flown, collector, about, recorder), encoding="utf-8")
+    print(f"{path}: {path.stat().st_size:,} bytes; open it in a browser")
+    return looked_at.status()
+
+
+def _story(plan: RunPlan) -> PageStory | None:
+    """What happened under a schedule such as `cfepy explore` finds; None for all others, and when nothing failed."""
+    if not plan.schedule.is_told:
+        return None
+    find_story = STORY_OF_RUN.first()
+    story = None if find_story is None else find_story(plan)
+    if story is None:
+        return None
+    tasks, rows = story.table()
+    shown = [StoryRow(at_ns, tasks.index(task) if task else None, text, moves) for at_ns, task, text, moves in rows]
+    return PageStory(story.cause, tasks, shown, story.end)

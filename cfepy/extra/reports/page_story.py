@@ -1,0 +1,73 @@
+"""The part of a run's page that tells a failure as a story: its cause, and what each task did up to it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from cfepy.extra.reports.html_text import TableCell, section, table
+from cfepy.markup import element, escaped
+from cfepy.units import NS_PER_S
+
+STORY = "story"
+"""The anchor of the part."""
+
+
+class StoryRow(NamedTuple):
+    """A row of the story.
+
+    Attributes:
+        at_ns: virtual time; None for a row that stands for others.
+        column: of the task that did it; None for a row that stands for others.
+        text: what was done, or how often the rows above came.
+        is_switch: the schedule did it.
+    """
+
+    at_ns: int | None
+    column: int | None
+    text: str
+    is_switch: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class PageStory:
+    """A failure as a story.
+
+    Attributes:
+        cause: a sentence; empty where it is not known.
+        tasks: heads of the columns.
+        rows: in the order of time.
+        end: what failed, a line.
+    """
+
+    cause: str
+    tasks: Sequence[str]
+    rows: Sequence[StoryRow]
+    end: str
+
+
+def story_section(story: PageStory) -> str:
+    """The part itself."""
+    cause = element("p", f"Cause: {escaped(story.cause)}", class_="banner bad") if story.cause else ""
+    heads = ("At, s", *story.tasks)
+    rows = [_cells(number, row, len(story.tasks)) for number, row in enumerate(story.rows)]
+    about = "What the tasks did that the failure is about, where others could have got in. Times lead to the timeline."
+    end = element("p", escaped(story.end))
+    return section(
+        "What happened", STORY, cause + table("What each task did", heads, rows, class_="story") + end, about
+    )
+
+
+def _cells(number: int, row: StoryRow, columns: int) -> list[str]:
+    """HTML of a row; many have the same time, and are sorted by their number."""
+    text = escaped(row.text)
+    cells = [""] * columns
+    cells[row.column or 0] = element("strong", text, class_="switch") if row.is_switch else text
+    when = "" if row.at_ns is None else instant(row.at_ns, f"{row.at_ns / NS_PER_S:.6f}")
+    return [TableCell(when, number), *cells]
+
+
+def instant(at_ns: int, text: str) -> str:
+    """A link to an instant in the timeline of the page."""
+    return element("a", text, href="#timeline", data_at=at_ns, title="Show this instant in the timeline")

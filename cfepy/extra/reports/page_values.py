@@ -1,0 +1,201 @@
+"""Values over time on the page: what its script draws when a reader asks for a field, and where the reader asks.
+
+Fields come in groups that are drawn together: the items of an array, the members of a struct. The points of a series
+are thinned to some hundred pairs, of each stretch of messages the lowest and the highest value; their times are whole
+microseconds, and their values 16-bit steps between the lowest and the highest, in base64. So a field takes some two
+kilobytes, however long the run was. When all fields together would take more than `MOST_BYTES`, they get fewer points,
+and then those of the largest messages are left out.
+"""
+
+from __future__ import annotations
+
+import re
+from base64 import b64encode
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from cfepy.extra.reports.curves import Curve, Curves, curves_of
+from cfepy.extra.reports.html_text import section
+from cfepy.ground import Series, SeriesSet
+from cfepy.markup import element
+from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+MOST_BYTES = 1_500_000
+MOST_PAIRS, FEWEST_PAIRS = 400, 60
+BYTES_OF_A_PAIR = 2 * 2 * 4 / 3  # of a field: two values of two bytes, as base64
+STEPS = 65_534
+MISSING = 65_535
+US_PER_S = 1_000_000
+_ITEM = re.compile(r"(\[\d+\])+$")
+
+
+class ValueData(NamedTuple):
+    """What is embedded, as plain data for JSON, and how many of how many fields it has."""
+
+    plain: list[dict[str, Any]]
+    shown: int
+    found: int
+
+
+def value_data(recorded: SeriesSet) -> ValueData:
+    """The values of a run.
+
+    Args:
+        recorded: all topics and packets.
+    """
+    found = [curves for name in recorded.names for curves in _curves(recorded, name)]
+    count = sum(len(curves.lines) for curves in found)
+    pairs = max(FEWEST_PAIRS, min(MOST_PAIRS, int(MOST_BYTES / BYTES_OF_A_PAIR / max(1, count))))
+    room = left = int(MOST_BYTES / BYTES_OF_A_PAIR / pairs)
+    chosen: dict[str, dict[str, Any]] = {}
+    for curves in sorted(found, key=lambda each: len(each.lines)):
+        lines = curves.lines[:left]
+        left -= len(lines)
+        if lines or curves.changes:
+            chosen[curves.name] = _series(recorded.series(curves.name), curves, lines, pairs)
+    return ValueData([chosen[name] for name in sorted(chosen)], room - left, count)
+
+
+def _curves(recorded: SeriesSet, name: str) -> list[Curves]:
+    """What can be drawn of a topic or packet."""
+    try:
+        return curves_of(recorded, name)
+    except UsageError:  # nothing can, or its bytes are no such message
+        return []
+
+
+def _series(series: Series, curves: Curves, lines: Sequence[Curve], pairs: int) -> dict[str, Any]:
+    bins = TimeBins.of(curves.lines[0].times if curves.lines else series.times, pairs)
+    groups: dict[str, list[Curve]] = {}
+    for line in lines:
+        groups.setdefault(_group(line.label), []).append(line)
+    return {
+        "name": series.name,
+        "type": series.type,
+        "count": series.count,
+        "every": series.every,
+        "times": bins.times_us(),
+        "groups": [
+            {
+                "name": name,
+                "unit": series.unit(_path(members[0].label)),
+                "lines": [{"name": line.label, **encoded(bins.thinned(line.values))} for line in members],
+            }
+            for name, members in groups.items()
+        ],
+        "changes": [[round(change.time * US_PER_S), change.text] for change in curves.changes],
+    }
+
+
+def _path(label: str) -> str:
+    return label.partition(" ")[0]
+
+
+def _group(label: str) -> str:
+    """What a line is drawn together with: `position` of position[2], `pose.position` of pose.position.x."""
+    path = _path(label)
+    array = _ITEM.sub("", path)
+    return array if array != path else path.rpartition(".")[0] or path
+
+
+class TimeBins(NamedTuple):
+    """Stretches of a series that become two points each; none when there are few enough points."""
+
+    times: NDArray[Any]
+    starts: NDArray[Any] | None
+
+    @classmethod
+    def of(cls, times: NDArray[Any], pairs: int) -> TimeBins:
+        """At most so many stretches, of as many messages each."""
+        import numpy
+
+        if len(times) <= 2 * pairs:
+            return cls(times, None)
+        return cls(times, numpy.linspace(0, len(times), pairs, endpoint=False).astype(int))
+
+    def times_us(self) -> list[int]:
+        """When the points are, in us, each as the distance from the one before it."""
+        import numpy
+
+        times = self.times
+        if self.starts is not None:
+            ends = numpy.append(self.starts[1:], len(times))
+            times = times[numpy.column_stack((self.starts, (self.starts + ends) // 2)).ravel()]
+        steps: list[int] = numpy.diff(numpy.round(times * US_PER_S).astype(numpy.int64), prepend=0).tolist()
+        return steps
+
+    def thinned(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Values at these times: of each stretch the lowest and the highest, in the order of its first and last."""
+        import numpy
+
+        if self.starts is None:
+            return values
+        lows, highs = numpy.fmin.reduceat(values, self.starts), numpy.fmax.reduceat(values, self.starts)
+        lasts = values[numpy.append(self.starts[1:], len(values)) - 1]
+        rises = values[self.starts] <= lasts
+        return numpy.column_stack((numpy.where(rises, lows, highs), numpy.where(rises, highs, lows))).ravel()
+
+
+def encoded(values: NDArray[Any]) -> dict[str, Any]:
+    """Values as `low`, `step` and `data`: base64 of 16-bit numbers, little-endian, of steps above the lowest value.
+
+    Whole numbers in a narrow range are exact. A value that is missing or not finite is `MISSING`; one that never
+    changes has no `data`.
+    """
+    import numpy
+
+    is_there = numpy.isfinite(values)
+    if not is_there.any():
+        return {"low": 0.0, "step": 0.0, "data": _base64(numpy.full(len(values), MISSING))}
+    low, high = float(values[is_there].min()), float(values[is_there].max())
+    if low == high and is_there.all():
+        return {"low": low}
+    is_whole = high - low <= STEPS and bool((values[is_there] == numpy.round(values[is_there])).all())
+    step = 1.0 if is_whole else (high - low) / STEPS or 1.0
+    steps = numpy.where(is_there, numpy.round((numpy.where(is_there, values, low) - low) / step), MISSING)
+    return {"low": low, "step": step, "data": _base64(steps)}
+
+
+def _base64(steps: NDArray[Any]) -> str:
+    return b64encode(steps.astype("<u2").tobytes()).decode()
+
+
+# -- the section of the page ------------------------------------------------------------------------------------------
+
+
+def values_section(values: ValueData, recorded: SeriesSet) -> str:
+    """What a reader picks fields in; nothing where nothing was sent."""
+    if not values.plain:
+        return ""
+    picker = element("div", "", id="values-fields", class_="fields", role="group", aria_label="Fields to draw")
+    canvas = element(
+        "canvas",
+        "",
+        id="values-canvas",
+        tabindex="0",
+        role="img",
+        aria_label="The chosen fields by virtual time; cfepy export has them as a table",
+    )
+    tip = element("p", "Choose fields to draw them.", id="values-tip", class_="tip", aria_live="off")
+    search = element("input", type="search", id="values-filter", autocomplete="off").removesuffix("</input>")
+    search = element("label", "Show fields with", for_="values-filter") + search
+    drawn = element("div", element("div", canvas, class_="timeline") + tip, class_="drawn")
+    about = (
+        "Fields of topics and packets over the time that the timeline shows; both zoom and move together. "
+        "<code>cfepy plot</code> draws them into a file, <code>cfepy export csv</code> has every value."
+    )
+    inside = element("p", search, class_="filter") + element("div", picker + drawn, class_="values")
+    return section("Values over time", "values", inside, " ".join([about, *_thinned(values, recorded)]))
+
+
+def _thinned(values: ValueData, recorded: SeriesSet) -> Iterator[str]:
+    """What of the values the page has not."""
+    if any(len(recorded.series(each["name"])) > len(each["times"]) for each in values.plain):
+        yield "Of many messages the lowest and highest values of each stretch of time are drawn."
+    if any(each["every"] > 1 for each in values.plain):
+        yield "Of topics with very many messages only every second, fourth, ... was looked at."
+    if values.shown < values.found:
+        yield f"{values.shown:,} of {values.found:,} fields are here, those of the smaller messages."

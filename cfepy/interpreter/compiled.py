@@ -1,0 +1,58 @@
+"""The kernel and the bus, compiled to C by mypyc from these very sources: which modules, and whether they are in use.
+
+A wheel that was built with CFEPY_ENGINE has them (`hatch_build.py`), each beside its source, which Python then leaves
+aside. What they do is the same; they are never needed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mypy_extensions import mypyc_attr as mypyc_attr
+else:
+
+    def mypyc_attr(**_: Any) -> Any:
+        """What mypyc is told of a class; nothing where Python reads the source."""
+        return lambda decorated: decorated
+
+
+MODULES = (
+    "cfepy/rtos/task.py",
+    "cfepy/rtos/scheduler.py",
+    "cfepy/rtos/kernel.py",
+    "cfepy/rtos/queue.py",
+    "cfepy/sb/buffers.py",
+    "cfepy/sb/bus.py",
+    "cfepy/sb/core.py",
+    "cfepy/sb/pipe.py",
+    "cfepy/sb/pipes.py",
+    "cfepy/sb/routing.py",
+    "cfepy/time/clock.py",
+)
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def library_name(root: Path) -> str:
+    """The name of the library that all compiled modules share, without mypyc's ending; other sources have another.
+
+    Args:
+        root: the folder that has `cfepy` in it.
+    """
+    digest = hashlib.sha256()
+    for module in MODULES:
+        digest.update((root / module).read_bytes())
+    return f"cfepy_{digest.hexdigest()[:16]}"
+
+
+def state() -> str:
+    """How the kernel and the bus run here, in words for `cfepy --version`."""
+    compiled = [(ROOT / module).with_suffix(suffix) for module in MODULES for suffix in EXTENSION_SUFFIXES]
+    if not any(path.exists() for path in compiled):
+        return "kernel and bus interpreted"
+    if not list(ROOT.glob(f"{library_name(ROOT)}__mypyc.*")):
+        return "kernel and bus compiled from other sources than those here: build them again, or delete what was built"
+    return "kernel and bus compiled"

@@ -1,0 +1,124 @@
+"""Opening and reading files of somebody else's: the one way in which cfepy takes inputs.
+
+A file must be a regular file. A device or a pipe may never end, and opening a pipe may wait forever. The exception is a
+descriptor that the caller of the command handed over, such as `/dev/stdin` or the `/dev/fd/63` of `<(...)` in a shell:
+a path that the command line names may be one, a path inside a file may not.
+
+Reading never waits: a file of the system that has nothing to say yet, such as `/proc/kmsg`, is refused. How large a
+file may be is said by the limits of `cfepy.reading.input_limits`.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+from io import BufferedReader
+from pathlib import Path
+
+from cfepy.status import UsageError
+
+_DESCRIPTOR = re.compile(r"/dev/stdin|/dev/fd/\d+|/proc/self/fd/\d+")
+_PIECE = 1 << 16
+_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+
+
+def open_input(path: str | Path, *, handed: bool = False) -> BufferedReader:
+    """Open a file for reading.
+
+    Args:
+        path: the file.
+        handed: whether the command line names it, which may hand over a descriptor instead.
+
+    Returns:
+        The open file.
+
+    Raises:
+        UsageError: it is a device or a pipe, or no file can have such a path.
+        OSError: it cannot be opened, or is a folder.
+    """
+    if handed and _DESCRIPTOR.fullmatch(str(path)):
+        return open(path, "rb")
+    try:
+        found = os.stat(path)
+    except ValueError:  # a NUL, or a surrogate
+        raise UsageError(f"{str(path)!r} is not a path that a file can have; correct it") from None
+    _check_kind(found, path)
+    file = open(path, "rb", opener=lambda name, _: os.open(name, _FLAGS))  # noqa: SIM115  # the caller closes it
+    try:
+        _check_kind(os.fstat(file.fileno()), path)  # it may be another one by now
+    except UsageError:
+        file.close()
+        raise
+    return file
+
+
+def _check_kind(found: os.stat_result, path: str | Path) -> None:
+    if not stat.S_ISREG(found.st_mode) and not stat.S_ISDIR(found.st_mode):  # a folder cannot be read, as ever
+        raise UsageError("is a device or a pipe, which may never end; name a file", file=path)
+
+
+def read_limited(path: str | Path, most: int, *, handed: bool = False) -> bytes:
+    """Read a file.
+
+    Args:
+        path: the file.
+        most: bytes that it may have.
+        handed: see `open_input`.
+
+    Returns:
+        Its content.
+
+    Raises:
+        UsageError: it has more bytes; otherwise see `open_input`.
+        OSError: it cannot be read.
+    """
+    parts: list[bytes] = []
+    with open_input(path, handed=handed) as file:
+        size = os.fstat(file.fileno()).st_size
+        piece = max(size + 1, _PIECE)
+        while size <= most:
+            part = file.read(piece)
+            if part is None:
+                raise UsageError("has nothing to read yet, and may never have; name a file", file=path)
+            if not part:
+                return b"".join(parts) if len(parts) > 1 else parts[0] if parts else b""
+            parts.append(part)
+            size = max(size, sum(map(len, parts)))
+    raise UsageError(f"has more than {most:,} bytes, which is the limit for it; make it smaller", file=path)
+
+
+def text_limited(path: str | Path, most: int, errors: str = "strict", *, handed: bool = False) -> str:
+    """Read a file of text in UTF-8. Other arguments and errors as `read_limited`.
+
+    Args:
+        path: the file.
+        most: bytes that it may have.
+        errors: what to do with bytes that are not UTF-8, as of `bytes.decode`.
+        handed: see `open_input`.
+
+    Returns:
+        The text, its lines ended by "\\n".
+
+    Raises:
+        UnicodeDecodeError: it is not UTF-8, and `errors` does not say what to do then.
+    """
+    text = read_limited(path, most, handed=handed).decode("utf-8", errors)
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def beginning_of(path: str | Path, count: int) -> bytes:
+    """Read the first bytes of a file, to see of which kind it is.
+
+    Args:
+        path: the file.
+        count: how many bytes.
+
+    Returns:
+        The bytes; none for what is not a file that can be read.
+    """
+    try:
+        with open_input(path) as file:
+            return file.read(count) or b""
+    except (OSError, UsageError):
+        return b""

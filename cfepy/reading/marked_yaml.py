@@ -1,0 +1,231 @@
+"""YAML read so that every value knows its line, and an error about a file can give it.
+
+`load` gives a tree of `Marked`. A file is refused when it is not YAML, is too much (`cfepy.reading.plain_yaml`), has a
+key twice, or a key that is no text. A reader of such a tree reports mistakes to `Mistakes`, which raises the first or
+keeps all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from cfepy.reading.input_files import text_limited
+from cfepy.reading.input_limits import YAML_BYTES
+from cfepy.reading.plain_yaml import YamlError, constructed, opened
+from cfepy.status import UsageError
+from cfepy.units import TIME_UNITS
+
+MOST = (1 << 62) - 1  # what times in ns can hold
+MOST_SECONDS = 1e9
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Marked:
+    """A value of a file and its place.
+
+    Attributes:
+        value: a scalar, a list of Marked, or a dict of text to Marked.
+        file: the file it was read from.
+        line: line in it, from 1.
+        field: dotted path, "limits.sb_max_pipes"; "" for the whole file.
+    """
+
+    value: Any
+    file: Path
+    line: int
+    field: str
+
+    def fail(self, text: str) -> UsageError:
+        """The error to raise about this value; `text` says what is wrong and what to do."""
+        return UsageError(text, file=self.file, line=self.line, field=self.field or None)
+
+    def mapping(self, known: Iterable[str] | None = None) -> dict[str, Marked]:
+        """The value as a mapping, an empty one when nothing was written.
+
+        Args:
+            known: the keys it may have; any when None.
+
+        Raises:
+            UsageError: it is no mapping, or has another key.
+        """
+        if self.value is None:
+            return {}
+        if not isinstance(self.value, dict):
+            raise self.fail(f"is {self.plain()!r}, it must be a mapping of names to values")
+        allowed = None if known is None else tuple(known)
+        for name, item in self.value.items():
+            if allowed is not None and name not in allowed:
+                raise item.unknown(allowed)
+        return self.value
+
+    def unknown(self, known: Iterable[str]) -> UsageError:
+        """The error to raise about a key that is none of those that are known."""
+        return self.fail(f"is not known here; known are {', '.join(known)}")
+
+    def items(self) -> list[Marked]:
+        """The value as a list, an empty one when nothing was written.
+
+        Raises:
+            UsageError: it is no list.
+        """
+        if self.value is None:
+            return []
+        if not isinstance(self.value, list):
+            raise self.fail(f"is {self.plain()!r}, it must be a list")
+        return self.value
+
+    def integer(self, lowest: int = 0, highest: int = MOST) -> int:
+        """The value as a whole number from `lowest` to `highest`.
+
+        Raises:
+            UsageError: it is something else.
+        """
+        if not isinstance(self.value, int) or isinstance(self.value, bool) or self.value < lowest:
+            raise self.fail(f"is {self.plain()!r}, it must be a whole number of at least {lowest}")
+        if self.value > highest:
+            raise self.fail(f"is {self.value}, it must be at most {highest}")
+        return self.value
+
+    def text(self) -> str:
+        """The value as text.
+
+        Raises:
+            UsageError: it is something else.
+        """
+        if not isinstance(self.value, str):
+            raise self.fail(f"is {self.plain()!r}, it must be text; put it in quotes")
+        return self.value
+
+    def flag(self) -> bool:
+        """The value as true or false.
+
+        Raises:
+            UsageError: it is something else.
+        """
+        if not isinstance(self.value, bool):
+            raise self.fail(f"is {self.plain()!r}, it must be true or false")
+        return self.value
+
+    def time(self) -> int:
+        """The value as a time in ns, from a number of seconds, with or without a unit: 0.5, "0.5 s", "20 ms", "50 us".
+
+        Raises:
+            UsageError: it is no such time.
+        """
+        number, unit = (self.value, "s") if not isinstance(self.value, str) else _split(self.value)
+        try:
+            if isinstance(number, bool) or not 0 <= float(number) < MOST_SECONDS:
+                raise ValueError
+            return round(float(number) * TIME_UNITS[unit])
+        except (TypeError, ValueError, KeyError):
+            raise self.fail(f"is {self.plain()!r}, it must be a time such as 0.5, 0.5 s or 20 ms") from None
+
+    def plain(self) -> Any:
+        """The value without its marks."""
+        if isinstance(self.value, dict):
+            return {name: item.plain() for name, item in self.value.items()}
+        return [item.plain() for item in self.value] if isinstance(self.value, list) else self.value
+
+
+def _split(text: str) -> tuple[str, str]:
+    """A number and its unit."""
+    number = text.rstrip("abcdefghijklmnopqrstuvwxyz ")
+    return number, text[len(number) :].strip() or "s"
+
+
+class Mistakes:
+    """Takes what is wrong with a file while it is read: the first mistake ends the reading, or all are kept.
+
+    Args:
+        keep: keep all, as a check of the file does; otherwise the first one is raised, as before a run.
+
+    Attributes:
+        errors: those that were kept.
+    """
+
+    def __init__(self, keep: bool = False) -> None:
+        self.errors: list[UsageError] = []
+        self._keep = keep
+
+    def add(self, error: UsageError) -> None:
+        """There is one.
+
+        Raises:
+            UsageError: the mistake, unless mistakes are kept.
+        """
+        if not self._keep:
+            raise error
+        self.errors.append(error)
+
+    def attempt(self, read: Callable[[], T]) -> T | None:
+        """What `read` returns; None when it fails. Errors as `add`."""
+        try:
+            return read()
+        except UsageError as error:
+            self.add(error)
+            return None
+
+    def mapping(self, entry: Marked) -> dict[str, Marked]:
+        """A value as a mapping with any keys, an empty one when it is none. Errors as `add`."""
+        return self.attempt(entry.mapping) or {}
+
+    def fields(self, entry: Marked, known: Iterable[str]) -> Iterator[tuple[str, Marked]]:
+        """Keys and values of a value that is a mapping, without keys that are not known. Errors as `add`."""
+        allowed = tuple(known)
+        for name, item in self.mapping(entry).items():
+            if name in allowed:
+                yield name, item
+            else:
+                self.add(item.unknown(allowed))
+
+
+def load(path: Path, *, handed: bool = False) -> Marked:
+    """Read a YAML file.
+
+    Args:
+        path: the file.
+        handed: whether the command line names it; see `cfepy.reading.input_files.open_input`.
+
+    Raises:
+        UsageError: it cannot be read, or is not good YAML.
+    """
+    try:
+        text = text_limited(path, YAML_BYTES, handed=handed)
+    except OSError as error:
+        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
+    except UnicodeDecodeError:
+        raise UsageError("is no text in UTF-8", file=path) from None
+    try:
+        with opened(text) as loader:
+            node = loader.get_single_node()
+            return Marked(None, path, 1, "") if node is None else _mark(loader, node, path, "")
+    except YamlError as error:
+        raise UsageError(error.text, file=path, line=error.line) from None
+
+
+def _mark(loader: Any, node: Any, path: Path, field: str) -> Marked:
+    """A composed node as Marked; the loader's own constructor turns scalars into Python values."""
+    line = node.start_mark.line + 1
+    if node.id != "scalar" and not node.tag.endswith((":map", ":seq", ":omap", ":set")):
+        raise YamlError(f"has the tag {node.tag}, which is not known; leave it out", line)
+    if node.id == "mapping":
+        return Marked(dict(_pairs(loader, node, path, field)), path, line, field)
+    if node.id == "sequence":
+        items = [_mark(loader, item, path, f"{field}[{index}]") for index, item in enumerate(node.value)]
+        return Marked(items, path, line, field)
+    return Marked(constructed(loader, node), path, line, field)
+
+
+def _pairs(loader: Any, node: Any, path: Path, field: str) -> Iterator[tuple[str, Marked]]:
+    seen: set[str] = set()
+    for key_node, value_node in node.value:
+        key = _mark(loader, key_node, path, field)
+        name = key.text()
+        if name in seen:
+            raise key.fail(f"{name!r} is there twice; remove one")
+        seen.add(name)
+        yield name, _mark(loader, value_node, path, f"{field}.{name}" if field else name)

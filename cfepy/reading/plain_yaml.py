@@ -1,0 +1,207 @@
+"""YAML of files and of texts inside files, read within limits: the one way that cfepy reads YAML.
+
+A document is looked through before anything is made of it, so that nothing that it makes of itself counts: aliases
+that multiply or contain themselves, lists inside lists, numbers without end (`cfepy.reading.input_limits`). Whatever a
+value does wrong is a YamlError with its line. `cfepy.reading.marked_yaml` reads files whose values know their lines.
+PyYAML is imported when there is something to read.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from cfepy.reading.input_limits import YAML_BYTES, YAML_DEPTH, YAML_DIGITS, YAML_VALUES
+
+_NUMBER = re.compile(r"[-+0-9][0-9a-fA-F_:.xXoO]*")
+_QUOTED = ("'", '"', "|", ">")
+_TOO_DEEP = "exceeded maximum nesting depth"
+"""What libyaml says of it that comes with PyYAML 6.0.4 and later: it reads ahead, so `_Sizes` is not asked first."""
+_FLAWED = (ValueError, AttributeError, LookupError, TypeError, ArithmeticError)
+"""What PyYAML's constructors raise of a value that does not fit its tag, such as `!!timestamp soon`."""
+
+
+class YamlError(ValueError):
+    """A text is not YAML, or more than it may be.
+
+    Args:
+        text: what is wrong.
+        line: where, from 1; None when that is not known.
+    """
+
+    def __init__(self, text: str, line: int | None = None) -> None:
+        super().__init__(text if line is None else f"{text}, line {line} of it")
+        self.text = text
+        self.line = line
+
+
+def safe_loader() -> type[Any]:
+    """PyYAML's safe loader, the quick one where it was built."""
+    import yaml
+
+    found: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    return found
+
+
+def plain_yaml(text: str, loader: type[Any] | None = None) -> Any:
+    """The value of a YAML text with one document; None when it is empty.
+
+    Args:
+        text: the document.
+        loader: a loader that is derived from `safe_loader`, None for that one.
+
+    Raises:
+        YamlError: it is not YAML, or too much.
+    """
+    with opened(text, loader) as found:
+        node = found.get_single_node()
+        return None if node is None else _document(found, node)
+
+
+def plain_documents(text: str) -> list[Any]:
+    """The values of the documents of a YAML text. Errors as `plain_yaml`."""
+    values = []
+    with opened(text) as found:
+        while found.check_node():
+            values.append(_document(found, found.get_node()))
+    return values
+
+
+@contextmanager
+def opened(text: str, loader: type[Any] | None = None) -> Iterator[Any]:
+    """PyYAML's loader of a text that is not too much. Errors as `plain_yaml`, also for what is done inside."""
+    import yaml
+
+    make = safe_loader() if loader is None else loader
+    used: Any = None
+    try:
+        _check(text, make)
+        used = make(text)
+        yield used
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        line = None if mark is None else mark.line + 1
+        if error.problem == _TOO_DEEP:
+            raise YamlError("is nested too deeply", line) from None
+        raise YamlError(f"is not YAML: {error.problem or error.context}", line) from None
+    except yaml.YAMLError as error:
+        raise YamlError(f"is not YAML: {error}") from None
+    except UnicodeError:
+        raise YamlError("is not YAML: it has characters that no text can have") from None
+    finally:
+        if used is not None:
+            used.dispose()
+
+
+def constructed(loader: Any, node: Any) -> Any:
+    """The Python value of a node without nodes inside it.
+
+    Raises:
+        YamlError: it does not fit its tag.
+    """
+    try:
+        return loader.construct_object(node)
+    except _FLAWED as error:
+        raise _flaw(node, error) from None
+
+
+def _document(loader: Any, node: Any) -> Any:
+    try:
+        return loader.construct_document(node)
+    except _FLAWED as error:
+        flawed = next((each for each in _scalars(node) if _is_flawed(loader, each)), node)
+        raise error if isinstance(error, YamlError) else _flaw(flawed, error) from None
+
+
+def _scalars(node: Any) -> Iterator[Any]:
+    if node.id == "scalar":
+        yield node
+        return
+    for each in node.value:
+        for part in each if isinstance(each, tuple) else (each,):
+            yield from _scalars(part)
+
+
+def _is_flawed(loader: Any, node: Any) -> bool:
+    try:
+        loader.construct_object(node)
+    except Exception:
+        return True
+    return False
+
+
+def _flaw(node: Any, error: Exception) -> YamlError:
+    kind = str(node.tag).rpartition(":")[2]
+    return YamlError(f"has a value that is no {kind}: {error}", node.start_mark.line + 1)
+
+
+def _check(text: str, loader: type[Any]) -> None:
+    """Look through a text, event by event, and refuse what is too much."""
+    if len(text) > YAML_BYTES:
+        raise YamlError(f"has more than {YAML_BYTES:,} characters; split it")
+    found = loader(text)
+    try:
+        _Sizes().take(found)
+    finally:
+        found.dispose()
+
+
+class _Sizes:
+    """Counts the values of a text, its aliases written out."""
+
+    def __init__(self) -> None:
+        self._inside: list[tuple[str | None, int]] = []  # anchors of what is open, and how many values were before
+        self._values = 0
+        self._sizes: dict[str, int | None] = {}  # by anchor; None for one that is not complete
+
+    def take(self, loader: Any) -> None:
+        """All events of a loader."""
+        from yaml import events
+
+        while loader.check_event():
+            event = loader.get_event()
+            if isinstance(event, events.CollectionStartEvent):
+                self._begin(event)
+            elif isinstance(event, events.CollectionEndEvent):
+                self._end()
+            elif isinstance(event, events.ScalarEvent):
+                self._scalar(event)
+            elif isinstance(event, events.AliasEvent):
+                self._alias(event)
+            elif isinstance(event, events.DocumentStartEvent):
+                self._sizes.clear()
+
+    def _add(self, values: int, event: Any) -> None:
+        self._values += values
+        if self._values > YAML_VALUES:
+            what = f"has more than {YAML_VALUES:,} values when its aliases are written out; split it"
+            raise YamlError(what, event.start_mark.line + 1)
+
+    def _begin(self, event: Any) -> None:
+        if len(self._inside) == YAML_DEPTH:
+            raise YamlError(f"is nested too deeply: more than {YAML_DEPTH} levels", event.start_mark.line + 1)
+        self._inside.append((event.anchor, self._values))
+        if event.anchor is not None:
+            self._sizes[event.anchor] = None
+        self._add(1, event)
+
+    def _end(self) -> None:
+        anchor, before = self._inside.pop()
+        if anchor is not None:
+            self._sizes[anchor] = self._values - before
+
+    def _scalar(self, event: Any) -> None:
+        self._add(1, event)
+        if event.anchor is not None:
+            self._sizes[event.anchor] = 1
+        is_text = event.style in _QUOTED and event.tag is None
+        if len(event.value) > YAML_DIGITS and not is_text and _NUMBER.fullmatch(event.value):
+            raise YamlError(f"has a number of more than {YAML_DIGITS:,} digits", event.start_mark.line + 1)
+
+    def _alias(self, event: Any) -> None:
+        size = self._sizes.get(event.anchor, 1)  # one that is not there is told by the composer
+        if size is None:
+            raise YamlError("has an alias of something inside itself", event.start_mark.line + 1)
+        self._add(size, event)

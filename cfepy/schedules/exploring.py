@@ -1,0 +1,370 @@
+"""A kernel that asks a policy at every scheduling point which task runs, to find failures that fifo never shows.
+
+Scheduling points are: each call of an app or a node into the API (`point`), each charge of virtual CPU time, each call
+that makes another task ready or changes a priority, and each wait. Taking candidate 0 every time gives exactly the run
+of `Kernel`, which pays nothing for this module.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from heapq import heappop, heappush
+from typing import Any, Protocol, SupportsIndex
+
+from cfepy import trace as tr
+from cfepy.rtos import SLICE_NS, Decision, Kernel, Policy, Question, Task
+from cfepy.schedules.moves import stable_name
+from cfepy.units import time_word
+
+CONNECTION_DELAYS = 8  # of a connection that are tried, at even distances up to the longest, besides the usual one
+
+
+class CallObserver(Protocol):
+    """Is told of the calls that are scheduling points, in the task that makes them; it must not wait, nor call back."""
+
+    def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
+        """Others have had their chance, and the call begins now.
+
+        Args:
+            subject: whose method it is: a service of cFE, or a lock of a node; `__init__` says that this was made.
+            call: the method's name.
+            args: what it gets.
+        """
+
+    def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
+        """It has come to its end, with this result."""
+
+    def failed(self, subject: Any, call: str) -> None:
+        """It has raised something instead."""
+
+
+class _All:
+    """Several observers, one after the other."""
+
+    def __init__(self, observers: Sequence[CallObserver]) -> None:
+        self._observers = observers
+
+    def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
+        for each in self._observers:
+            each.called(subject, call, args)
+
+    def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
+        for each in self._observers:
+            each.returned(subject, call, args, result)
+
+    def failed(self, subject: Any, call: str) -> None:
+        for each in self._observers:
+            each.failed(subject, call)
+
+
+class ExploringKernel(Kernel):
+    """A kernel whose choices are a policy's.
+
+    Args:
+        context: see `Kernel`, as for the arguments not named here.
+        policy: decides which task runs next.
+
+    Attributes:
+        observer: is told of calls; None for nobody. `watch` adds one.
+        on_wake: is told of a task that the running one lets go on; None for nobody.
+    """
+
+    def __init__(
+        self,
+        context: str,
+        trace: tr.Trace | None,
+        policy: Policy,
+        tick_ns: int = 0,
+        switch_cost_ns: int = 0,
+        seed: int = 0,
+    ) -> None:
+        super().__init__(context, trace, tick_ns, switch_cost_ns, seed)
+        self.policy = policy
+        self.observer: CallObserver | None = None
+        self._watching: tuple[CallObserver, ...] = ()
+        self.on_wake: Callable[[Task], object] | None = None
+        self.frames_wanted = True
+        self._any = policy.any_priority
+        self._hold_ns = policy.hold_ns
+        self._decisions = 0
+        self._going_on: Task | None = None  # the task that was put in front just now: it could go on
+        self._left: Task | None = None  # the task that gave up its turn, or ought to, just now
+        self._hushed: dict[Task, None] = {}  # tasks that make others ready and go on, and those that owe a point
+        self._owing: dict[Task, None] = {}
+        self._early: dict[str, None] = {}  # names of tasks that may start before their time
+        self._busy: Task | None = None  # the task that used the CPU last, and how much it may use in one go
+        self._busy_until = 0
+
+    def watch(self, observer: CallObserver) -> None:
+        """Have an observer told of calls, besides those that are."""
+        self._look((*self._watching, observer))
+
+    def unwatch(self, observer: CallObserver) -> None:
+        """Tell an observer of no more calls."""
+        self._look(tuple(each for each in self._watching if each is not observer))
+
+    def _look(self, watching: tuple[CallObserver, ...]) -> None:
+        self._watching = watching
+        self.observer = None if not watching else watching[0] if len(watching) == 1 else _All(watching)
+
+    def tell(self, subject: object, call: str, args: tuple[object, ...] = ()) -> None:
+        """Observers are told of it as of a call that begins."""
+        if self.observer is not None:
+            self.observer.called(subject, call, args)
+
+    # -- scheduling points -----------------------------------------------------------------------------------------
+
+    def point(self) -> None:
+        """The current task calls something: others may get in before that."""
+        task = self.current
+        if self._hushed and self._is_quiet(task):
+            self._owing[task] = None
+            return
+        if self._hold_ns or self._early:
+            if task is self.host or task.dying or not self._has_choice(task):
+                return
+        else:  # most calls find no task that could get in: they end here
+            ready = self.ready
+            if not ready or not (self._any or ready[0][0] <= task.priority) or task.dying or task is self.host:
+                return
+        self._push_front(task)
+        following = self._take()
+        if following is not task:
+            self._switch(task, following)
+
+    def preempt(self) -> None:
+        """Others may run now, more urgent ones as always."""
+        self.point()
+
+    def hush(self, call: Callable[..., Any], *args: Any, **options: Any) -> Any:
+        """Make a call that others get in after, by `settle`, and not within, unless they are more urgent.
+
+        Args:
+            call: makes tasks ready, and does not wait.
+            args: of the call.
+            options: of the call.
+        """
+        task = self.current
+        self._hushed[task] = None
+        try:
+            return call(*args, **options)
+        finally:
+            self._hushed.pop(task, None)
+
+    @property
+    def is_hushed(self) -> bool:
+        """Whether nobody gets in at a point of the current task."""
+        return bool(self._hushed) and self._is_quiet(self.current)
+
+    def _is_quiet(self, task: Task) -> bool:
+        """Whether nobody is to get in now: the running task is in a hushed call, and nobody more urgent is ready."""
+        return task in self._hushed and not (self.ready and self.ready[0][0] < task.priority)
+
+    def settle(self) -> None:
+        """The current task has made others ready in hushed calls: they get their chance now."""
+        if self.current in self._owing:
+            del self._owing[self.current]
+            self.point()
+
+    def forgive(self) -> None:
+        """The current task is going to wait, or to end: others get their chance by that."""
+        self._owing.pop(self.current, None)
+
+    def enqueue(self, task: Task, value: Any) -> None:
+        if self.on_wake is not None:
+            self.on_wake(task)
+        super().enqueue(task, value)
+
+    def delay(self, duration_ns: SupportsIndex) -> None:
+        self.point()
+        super().delay(duration_ns)
+
+    def make_ready(self, task: Task, value: Any = None) -> None:
+        self.enqueue(task, value)
+        self.point()
+
+    def charge(self, duration_ns: int) -> None:
+        task = self.current
+        if task is self.host:
+            return
+        task.cpu_ns = used = task.cpu_ns + duration_ns
+        self.now = now = self.now + duration_ns
+        if task is not self._busy:
+            self._busy, self._busy_until = task, used + SLICE_NS
+        elif used >= self._busy_until:
+            self._left = task
+            self._busy_until += SLICE_NS
+        timers = self.timers
+        ready = self.ready
+        if (
+            (ready and (self._any or ready[0][0] <= task.priority))
+            or (timers and timers[0][0] - self._hold_ns <= now)
+            or now > self._until
+            or self._early
+        ):
+            self._catch_up(task, duration_ns)
+
+    def _catch_up(self, task: Task, duration_ns: int) -> None:
+        """As the base class, but equals get their chance each time, not only when the time slice is used up."""
+        self._fire_due()
+        paused = self.now > self._until
+        if task.dying or not (paused or self._has_choice(task)):
+            return
+        is_over = self._slice_is_used_up(task, duration_ns)
+        if not (paused or is_over) and self._is_quiet(task):
+            return
+        if is_over:
+            self._push_back(task)
+        else:
+            self._push_front(task)
+        if paused:
+            self._last = task
+        following = self.host if paused else self._take()
+        if following is not task:
+            self._switch(task, following)
+
+    def _slice_is_used_up(self, task: Task, duration_ns: int) -> bool:
+        ready = self.ready
+        return (
+            bool(ready)
+            and ready[0][0] == task.priority
+            and self.now >= self._slice_end
+            and self._turn_is_over(task, duration_ns)
+        )
+
+    def _has_choice(self, task: Task) -> bool:
+        """Whether another task than the running one might go on from here."""
+        ready = self.ready
+        return (
+            bool(ready and (self._any or ready[0][0] <= task.priority))
+            or bool(self._hold_ns and self._next_timer() is not None)
+            or bool(self._early and self._starters(task))
+        )
+
+    # -- tasks ---------------------------------------------------------------------------------------------------------
+
+    def _enlist(self, task: Task) -> None:
+        task.alias = stable_name(task, self.tasks)
+        super()._enlist(task)
+
+    # -- tasks that may start early ----------------------------------------------------------------------------------
+
+    def may_start_early(self, name: str) -> None:
+        self._early[name] = None
+
+    def has_started(self) -> None:
+        self._early.pop(self.current.name, None)
+
+    def _starters(self, task: Task) -> list[Task]:
+        """The tasks of the same application that could start now instead of later."""
+        owner = task.owner
+        return [each for each in self.tasks if each.timer and each.owner is owner and each.name in self._early]
+
+    # -- questions -----------------------------------------------------------------------------------------------------
+
+    def connection_delay(self, publisher: str, subscriber: str, topic: str, usual_ns: int) -> int:
+        """The policy chooses, if connections are open to it."""
+        assert self.policy is not None
+        longest_ns = self.policy.connect_ns
+        if not longest_ns:
+            return usual_ns
+        tried = (longest_ns * step // CONNECTION_DELAYS for step in range(CONNECTION_DELAYS + 1))
+        delays = tuple(dict.fromkeys((usual_ns, *tried)))
+        name = f"connection of {publisher} to {subscriber} on {topic}"
+        words = tuple(time_word(delay) for delay in delays)
+        return delays[self.answer(Question(name, "slow connection", words, f"{topic} connects in {{}}"))]
+
+    def answer(self, question: Question) -> int:
+        number = self._decisions
+        self._decisions = number + 1
+        assert self.policy is not None
+        return self.policy.choose(Decision(number, self.now, (), False, False, None, question))
+
+    # -- choosing --------------------------------------------------------------------------------------------------
+
+    def _push_front(self, task: Task) -> None:
+        self._front = front = self._front - 1
+        heappush(self.ready, (task.priority, front, task))
+        self._going_on = task
+
+    def _push_back(self, task: Task) -> None:
+        super()._push_back(task)
+        self._left = task
+
+    def _take(self) -> Task:
+        """Ask the policy if there is a choice; a pause of the run does not make it a second decision."""
+        ready = self.ready
+        while True:
+            if len(ready) > 1:
+                ready.sort()  # a sorted list is a heap, and stays one without any of its items
+            first = ready[0][2]
+            if first is self.host:
+                return heappop(ready)[2]
+            width = 1 if len(ready) == 1 else self._width()
+            timer = self._next_timer() if self._hold_ns and first is self._going_on else None
+            starters = self._starters(first) if self._early else []
+            choice = 0 if width == 1 and timer is None and not starters else self._ask(width, starters, timer)
+            if choice < width + len(starters):
+                self._going_on = self._left = None
+                if choice < width:
+                    return ready.pop(choice)[2]
+                starter = starters[choice - width]
+                self._time_out(starter)
+                return starter
+            assert timer is not None
+            self.now = timer
+            self._fire_due()
+            if self.now > self._until:
+                self._last = first
+                return self.host
+
+    def _width(self) -> int:
+        """How many of the ready tasks, which are in order, are candidates."""
+        ready = self.ready
+        if self._any:
+            return len(ready)
+        priority = ready[0][0]
+        width = 1
+        while width < len(ready) and ready[width][0] == priority:
+            width += 1
+        return width
+
+    def _ask(self, width: int, starters: list[Task], timer: int | None) -> int:
+        """Which of the first `width` ready tasks or the starters runs; one more answer is none before the timer."""
+        tasks = [*(entry[2] for entry in self.ready[:width]), *starters]
+        number = self._decisions
+        self._decisions = number + 1
+        assert self.policy is not None
+        running = tasks[0] is self._going_on
+        return self.policy.choose(Decision(number, self.now, tasks, running, timer is not None, self._left))
+
+    def _next_timer(self) -> int | None:
+        """When the next timer is due, if that is soon enough for a task to be held up until then."""
+        timers = self.timers
+        while timers and timers[0][2].timer != timers[0][1]:
+            heappop(timers)
+        return timers[0][0] if timers and timers[0][0] - self.now <= self._hold_ns else None
+
+
+class CallPointKernel(ExploringKernel):
+    """One that knows which tasks have called it lately, for points behind such calls; the arguments are those above.
+
+    Attributes:
+        entered: tasks that have called, until somebody takes them out.
+        passed: how many calls there were.
+    """
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self.entered: dict[Task, bool] = {}
+        self.passed = 0
+
+    def point(self) -> None:
+        self.passed += 1
+        self.entered[self.current] = True
+        super().point()
+
+    def charge(self, duration_ns: int) -> None:
+        self.passed += 1
+        self.entered[self.current] = True
+        super().charge(duration_ns)

@@ -1,0 +1,38 @@
+"""Which kernel a run gets: the plain one for first come, first served, one that asks for any other schedule.
+
+The plain kernel is nearly always the one, so the other is loaded when a policy is given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from cfepy.rtos import Kernel, Policy
+from cfepy.schedules.points import CALLS, Points
+from cfepy.trace import Trace
+
+
+def make_kernel(
+    context: str = "thread",
+    trace: Trace | None = None,
+    policy: Policy | None = None,
+    tick_ns: int = 0,
+    switch_cost_ns: int = 0,
+    seed: int = 0,
+    derived: Callable[[type[Kernel]], type[Kernel]] = lambda base: base,
+) -> Kernel:
+    """The kernel for a run: the plain one without a policy.
+
+    Args:
+        context: see `Kernel`, as for the arguments not named here.
+        policy: decides which task runs next; None for first come, first served.
+        derived: gives the class of the kernel, made of the one that it would have been.
+    """
+    if policy is None:
+        return derived(Kernel)(context, trace, tick_ns, switch_cost_ns, seed)
+    from cfepy.schedules.exploring import CallPointKernel, ExploringKernel
+
+    kind: Any = derived(CallPointKernel if Points.parse(policy.points).kind == CALLS else ExploringKernel)
+    made: Kernel = kind(context, trace, policy, tick_ns, switch_cost_ns, seed)
+    return made

@@ -1,0 +1,265 @@
+"""`Schedule`: which policy a run has, as a text that a person can write, read and send to a colleague.
+
+    fifo                    first come, first served
+    random:7                any of the candidates, by seed 7
+    pct:7:3                 PCT, seed 7, for bugs of depth 3 (`cfepy.rtos.policies.PCT`)
+    pct:7:3:5000            the same for runs of about 5000 decisions
+    abreast:7               side by side, by seed 7 (`cfepy.schedules.abreast.Abreast`)
+    at:42=1,97=2            fifo, but at decision 42 candidate 1, and at decision 97 candidate 2
+    moves:A@650/add.publish=B
+                            fifo, but where A, from 650 ms on, calls publish in its function add, B runs
+                            (`cfepy.schedules.moves`)
+
+Every kind but fifo takes options at its end: `any` (tasks of less urgent priority may run before more urgent ones),
+`fair=50` (a task that could run is passed over in at most 50 decisions), `hold=500us` (the running task may be held up
+until the next timer is due, if that is within 500 us), `connect=50ms` (a connection between two ROS nodes may take up
+to 50 ms), `points=attributes` or `points=lines,arm` (tasks may be interrupted between the calls of their code as well:
+`cfepy.schedules.points`), and `from=600ms` (fifo up to 600 ms after the start of the run; what comes before still
+counts as decisions).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from cfepy.schedules.points import Points
+from cfepy.status import UsageError
+from cfepy.units import TIME_UNITS, time_word
+
+if TYPE_CHECKING:
+    from cfepy.rtos import Policy, Settings
+    from cfepy.schedules.moves import Move
+
+ORDER = "order"
+SEEDED = ("random", "pct", "abreast")
+DEPTH = 3  # of PCT, where the text gives none
+STEPS = 1000
+_TIME = re.compile(r"(\d+)(ns|us|ms|s)")
+_FORMS = (
+    "fifo, random:SEED, pct:SEED:DEPTH[:STEPS], abreast:SEED, moves:TASK@MS/FUNCTION.CALL=TASK,..., "
+    "or at:DECISION=CHOICE,..., all but fifo with :any, :fair=50, :hold=500us, :connect=50ms, :points=attributes "
+    "or :from=600ms"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """Who runs next, where there is a choice.
+
+    Args:
+        kind: "fifo", "random", "pct", "abreast", "at", "moves" or "order".
+        seed: of random, pct and abreast.
+        depth: of the bugs pct looks for, at least 1.
+        steps: how many decisions pct expects of the run, at least 1.
+        deviations: pairs of decision and choice of at, in order.
+        moves: those of moves.
+        runs: pairs of a task's path and a number of order, which a search of orders makes, and no text means: see
+            `InOrder`. A run under it is one under an `at` as well.
+        any_priority: see `Policy`.
+        hold_ns: see `Policy`.
+        connect_ns: see `Policy`.
+        points: see `Policy`.
+        from_ns: virtual ns up to which it is fifo.
+        fair: decisions in which a task may be passed over (`Fair`); 0 for any number.
+    """
+
+    kind: str = "fifo"
+    seed: int = 0
+    depth: int = DEPTH
+    steps: int = STEPS
+    deviations: tuple[tuple[int, int], ...] = ()
+    runs: tuple[tuple[str, int], ...] = ()
+    any_priority: bool = False
+    hold_ns: int = 0
+    connect_ns: int = 0
+    points: str = ""
+    from_ns: int = 0
+    moves: tuple[Move, ...] = ()
+    fair: int = 0
+
+    @classmethod
+    def parse(cls, text: str, seed: int = 0) -> Schedule:
+        """The schedule that a text means.
+
+        Args:
+            text: see the module's.
+            seed: for `random`, `pct` and `abreast` without one.
+
+        Raises:
+            UsageError: it means none.
+        """
+        if _LONG_NUMBER.search(text):
+            raise UsageError("has a number of more than 30 digits; write a smaller one", field="--schedule")
+        kind, *fields = text.split(":")
+        found = cls(kind, seed)
+        while fields and (option := _option(fields[-1])) is not None:
+            found = replace(found, **option)
+            fields.pop()
+        if kind == "fifo" and found == cls(kind, seed) and not fields:
+            return cls()
+        if kind in SEEDED and len(fields) <= (3 if kind == "pct" else 1):
+            return replace(found, **_numbers(text, fields))
+        if kind == "at" and len(fields) <= 1:
+            return replace(found, seed=0, deviations=_deviations(text, fields[0] if fields else ""))
+        if kind == "moves" and len(fields) <= 1:
+            return replace(found, seed=0, moves=_moves(text, fields[0] if fields else ""))
+        raise _wrong(text)
+
+    def text(self) -> str:
+        """The shortest text that `parse` gives this schedule for."""
+        words = [self.kind]
+        if self.kind in SEEDED:
+            words.append(str(self.seed))
+        if self.kind == "pct":
+            words.append(str(self.depth))
+            words += [str(self.steps)] if self.steps != STEPS else []
+        if self.deviations:
+            words.append(",".join(f"{decision}={choice}" for decision, choice in self.deviations))
+        if self.moves:
+            words.append(",".join(move.text() for move in self.moves))
+        if self.runs:
+            words.append(",".join(f"{path}={number}" for path, number in self.runs))
+        words += ["any"] if self.any_priority else []
+        words += [f"fair={self.fair}"] if self.fair else []
+        words += [f"hold={time_word(self.hold_ns)}"] if self.hold_ns else []
+        words += [f"connect={time_word(self.connect_ns)}"] if self.connect_ns else []
+        words += [f"points={self.points}"] if self.points else []
+        words += [f"from={time_word(self.from_ns)}"] if self.from_ns else []
+        return ":".join(words)
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def policy(self) -> Policy | None:
+        """A policy for one run; None for fifo."""
+        if self.kind == "fifo":
+            return None
+        from cfepy.rtos import Fair, From
+
+        policy = Fair(self._policy(), self.fair) if self.fair else self._policy()
+        return From(policy, self.from_ns) if self.from_ns else policy
+
+    def _policy(self) -> Policy:
+        """That of the kind; fifo, the usual one, imports none."""
+        from cfepy.rtos import PCT, Deviations, InOrder, SeededRandom
+
+        if self.kind == "random":
+            return SeededRandom(self.seed, *self.settings)
+        if self.kind == "abreast":
+            from cfepy.schedules.abreast import Abreast
+
+            return Abreast(self.seed, *self.settings)
+        if self.kind == "pct":
+            return PCT(self.seed, self.depth, self.steps, *self.settings)
+        if self.kind == "moves":
+            from cfepy.schedules.moves import MovePolicy
+
+            return MovePolicy(self.moves, self.settings)
+        if self.kind == ORDER:
+            return InOrder(self.runs, *self.settings)
+        return Deviations(dict(self.deviations), *self.settings)
+
+    @property
+    def is_told(self) -> bool:
+        """Whether it says itself what it does otherwise than fifo, as a shrunk schedule does."""
+        return bool(self.deviations or self.moves)
+
+    @property
+    def settings(self) -> Settings:
+        """Those of its policy."""
+        return self.any_priority, self.hold_ns, self.connect_ns, self.points
+
+    def at(self, deviations: Mapping[int, int]) -> Schedule:
+        """The schedule that takes some decisions otherwise than fifo, with this one's options.
+
+        Args:
+            deviations: choice by number of the decision, as `NotingPolicy.deviations` has them.
+        """
+        return replace(self._bare("at"), deviations=tuple(sorted(deviations.items())))
+
+    def by_moves(self, moves: Iterable[Move]) -> Schedule:
+        """The schedule that makes some moves and is fifo's otherwise, with this one's options."""
+        return replace(self._bare("moves"), moves=tuple(moves))
+
+    def in_order(self, runs: Iterable[tuple[str, int]]) -> Schedule:
+        """The schedule in which tasks run in an order, with this one's options."""
+        return replace(self._bare(ORDER), runs=tuple(runs))
+
+    def _bare(self, kind: str) -> Schedule:
+        return replace(self, kind=kind, seed=0, depth=DEPTH, steps=STEPS, deviations=(), moves=(), runs=())
+
+    def with_points(self, points: str) -> Schedule:
+        """The same with other points, as `Points.text` has them; fifo without a change of order, if it is fifo."""
+        return replace(self.at({}) if points and self.kind == "fifo" else self, points=points)
+
+    def with_seed(self, seed: int) -> Schedule:
+        """The same with another seed."""
+        return replace(self, seed=seed)
+
+
+_LONG_NUMBER = re.compile(r"\d{31}")
+_HIGHEST = {"depth": 10_000, "steps": 10**12}
+
+
+def _option(field: str) -> dict[str, Any] | None:
+    """What a field at the end of the text sets, if it is an option."""
+    if field == "any":
+        return {"any_priority": True}
+    name, _, time = field.partition("=")
+    if name == "fair":
+        if re.fullmatch(r"\d+", time, re.ASCII) is None or not int(time):
+            raise UsageError(
+                f"{field!r} wants a number of decisions of at least 1, such as fair=50", field="--schedule"
+            )
+        return {"fair": int(time)}
+    if name == "points":
+        return {"points": Points.parse(time, "--schedule").text()}
+    if name not in ("hold", "connect", "from"):
+        return None
+    match = _TIME.fullmatch(time)
+    if match is None or not int(match[1]):
+        raise UsageError(f"{field!r} wants a time in ns, us, ms or s, such as {name}=500us", field="--schedule")
+    return {f"{name}_ns": int(match[1]) * TIME_UNITS[match[2]]}
+
+
+def _numbers(text: str, fields: list[str]) -> dict[str, Any]:
+    names = ("seed", "depth", "steps")
+    found: dict[str, int] = {}
+    for name, field in zip(names, fields, strict=False):
+        if re.fullmatch(r"\d+", field, re.ASCII) is None or (name != "seed" and not int(field)):
+            least = "0" if name == "seed" else "1"
+            wrong = f"{name.upper()} is a whole number of at least {least}, not {field!r}"
+            raise UsageError(f"schedule {text!r}: {wrong}", field="--schedule")
+        if name in _HIGHEST and int(field) > _HIGHEST[name]:
+            wrong = f"{name.upper()} is {field}, it must be at most {_HIGHEST[name]:,}"
+            raise UsageError(f"schedule {text!r}: {wrong}", field="--schedule")
+        found[name] = int(field)
+    return found
+
+
+def _deviations(text: str, field: str) -> tuple[tuple[int, int], ...]:
+    found: dict[int, int] = {}
+    for pair in field.split(",") if field else ():
+        match = re.fullmatch(r"(\d+)=(\d+)", pair, re.ASCII)
+        if match is None or int(match[1]) in found:
+            wrong = f"{pair!r} is not DECISION=CHOICE" if match is None else f"decision {match[1]} comes twice"
+            raise UsageError(f"schedule {text!r}: {wrong}; write for instance at:42=1,97=2", field="--schedule")
+        found[int(match[1])] = int(match[2])
+    return tuple((decision, choice) for decision, choice in sorted(found.items()) if choice)
+
+
+def _moves(text: str, field: str) -> tuple[Move, ...]:
+    from cfepy.schedules.moves import Move
+
+    try:
+        return tuple(Move.parse(each) for each in field.split(",")) if field else ()
+    except ValueError as error:
+        wrong = f"{error}; write for instance moves:ARM@650/add.publish=ARM.commands"
+        raise UsageError(f"schedule {text!r}: {wrong}", field="--schedule") from None
+
+
+def _wrong(text: str) -> UsageError:
+    return UsageError(f"no schedule is called {text!r}; write {_FORMS}", field="--schedule")

@@ -1,0 +1,111 @@
+"""`python -m dev.take_out [NAME ...]`: take add-ons out of a copy of this checkout, one at a time, and fly the rest.
+
+A name is one of the folders of `cfepy/extra`, or `ros_libraries`; `all` is all of them at once. Without names each is
+taken out in turn. What is tried: the help, the check and the run of `lab`, the run of `capture`, `cfepy.boot`, and that
+a command which is gone says which add-on has it; with `--tests` also the quick tests of the rest.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from cfepy.plugins import OWN
+from dev.house.tree import ROOT
+
+SHELF, ALL = "ros_libraries", "all"
+NAMES = (*(each.name for each in OWN), SHELF)
+COMPUTER = ("rtos", "osal", "psp", "msg", "fs", "es", "sb", "evs", "time", "tbl")
+BOOT = "import cfepy\nwith cfepy.boot('lab') as flight:\n    flight.run_for(1.0)\n"
+LEFT_OUT = shutil.ignore_patterns(".git", ".venv", "__pycache__", "*.so", ".*_cache", ".hypothesis", ".site")
+
+
+class Tried(NamedTuple):
+    """What was tried, and what went wrong; `trouble` is empty when nothing did."""
+
+    what: str
+    trouble: str
+
+
+class Copy:
+    """A copy of the checkout without some add-ons.
+
+    Args:
+        folder: where it is made; must not be there yet.
+        names: what is taken out.
+    """
+
+    def __init__(self, folder: Path, names: Sequence[str]) -> None:
+        self.folder = folder
+        self.names = names
+        shutil.copytree(ROOT, folder, ignore=LEFT_OUT)
+        for name in names:
+            shutil.rmtree(folder / name if name == SHELF else folder / "cfepy" / "extra" / name)
+
+    def give(self, *words: str) -> subprocess.CompletedProcess[str]:
+        """Give a command of this Python, which finds the copy and not the checkout."""
+        environ = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+        environ["PYTHONPATH"] = os.pathsep.join([str(self.folder), str(self.folder / "tests")])
+        command = [sys.executable, *words]
+        return subprocess.run(command, cwd=self.folder, env=environ, capture_output=True, text=True, check=False)
+
+    def flights(self) -> list[Tried]:
+        """Try what must go on without the add-ons."""
+        tried = [
+            self._well("cfepy --help", "-m", "cfepy", "--help"),
+            self._well("cfepy check lab", "-m", "cfepy", "check", "lab"),
+            self._well("cfepy run lab", "-m", "cfepy", "run", "lab", "--for", "2", "--quiet"),
+            self._well("cfepy run capture", "-m", "cfepy", "run", "capture", "--for", "2", "--quiet"),
+            self._well("cfepy.boot", "-c", BOOT),
+        ]
+        for plugin in OWN:
+            if plugin.name in self.names and plugin.commands:
+                tried.append(self._gone(plugin.commands[0], plugin.name))
+        return tried
+
+    def tests(self) -> list[Tried]:
+        """Run the quick tests of the rest; without all add-ons, those of the computer."""
+        where = [f"tests/{part}" for part in COMPUTER] if set(NAMES) <= set(self.names) else ["tests"]
+        return [self._well("tests", "-m", "pytest", "-q", "-m", "quick", "-p", "no:cacheprovider", *where)]
+
+    def _well(self, what: str, *words: str) -> Tried:
+        done = self.give(*words)
+        return Tried(what, "" if done.returncode == 0 else f"status {done.returncode}\n{done.stdout}{done.stderr}")
+
+    def _gone(self, command: str, name: str) -> Tried:
+        done = self.give("-m", "cfepy", command, "--help")
+        said = f"cfepy: the command {command} needs the add-on {name}, which this installation lacks"
+        is_said = done.returncode == 2 and done.stderr.startswith(said)
+        return Tried(f"cfepy {command}", "" if is_said else f"status {done.returncode}\n{done.stdout}{done.stderr}")
+
+
+def main() -> int:
+    """Take them out; the exit status is 1 if something does not go on."""
+    parser = argparse.ArgumentParser(prog="python -m dev.take_out", description=__doc__)
+    parser.add_argument(
+        "names", metavar="NAME", nargs="*", help=f"{', '.join(NAMES)}, or {ALL} (default: each in turn)"
+    )
+    parser.add_argument("--tests", action="store_true", help="run the quick tests of the rest, too")
+    arguments = parser.parse_args()
+    unknown = {*arguments.names} - {*NAMES, ALL}
+    if unknown:
+        parser.error(f"there is no add-on {', '.join(sorted(unknown))}; there are {', '.join(NAMES)}")
+    status = 0
+    for name in arguments.names or NAMES:
+        with tempfile.TemporaryDirectory() as folder:
+            copy = Copy(Path(folder) / "cfepy", NAMES if name == ALL else [name])
+            for tried in [*copy.flights(), *(copy.tests() if arguments.tests else [])]:
+                print(f"without {name}: {tried.what}: {'well' if not tried.trouble else tried.trouble}", flush=True)
+                status |= bool(tried.trouble)
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

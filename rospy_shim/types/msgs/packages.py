@@ -1,0 +1,191 @@
+"""ROS packages on disk: which there are and where they lie, by the rules of rospkg and catkin.
+
+A package is a folder with a package.xml (or rosbuild's manifest.xml), which also names it. Near a node and in `share`
+folders a folder with definitions in `msg`, `srv` or `action` will do; its own name is the package's then. This is the
+one place that knows the rules; code that reads definitions or looks packages up by name calls it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+
+from cfepy.interpreter.cached import CachedProperty
+from cfepy.reading.input_files import text_limited
+from cfepy.reading.input_limits import PYTHON_BYTES, XML_BYTES
+from cfepy.status import UsageError
+
+_MANIFESTS = ("package.xml", "manifest.xml")
+_FENCES = ("CATKIN_IGNORE", "AMENT_IGNORE", "rospack_nosubdirs")
+_DEFINITIONS = ("msg", "srv", "action")
+_PACKAGE_DIR = re.compile(r"""package_dir['"]?\s*[=:]\s*\{\s*['"]{2}\s*:\s*['"]([^'"]+)['"]""")
+_NAME = re.compile(r"<name>([^<]*)</name>")
+_LEGAL = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,254}")
+_SHOWN = 100  # characters of a name that is wrong
+
+
+class Packages:
+    """The packages that a program can see, each by its first place.
+
+    They are looked for when the first is asked for: near the program, then along ROS_PACKAGE_PATH, then in the share
+    folders of CMAKE_PREFIX_PATH.
+
+    Args:
+        script: the program's file; None leaves out what is near it.
+        environ: its environment, read when the first package is asked for.
+        resolve: makes an absolute path of one in the environment.
+    """
+
+    def __init__(
+        self,
+        script: Path | None,
+        environ: Mapping[str, str],
+        resolve: Callable[[str], str | os.PathLike[str]] = os.path.abspath,
+    ) -> None:
+        self._script = script
+        self._environ = environ
+        self._resolve = resolve
+
+    def names(self) -> list[str]:
+        """Names of all packages, sorted."""
+        return sorted(self._found)
+
+    def path(self, name: str) -> Path | None:
+        """Folder of a package (rospkg.RosPack.get_path), or None when there is none such."""
+        folders = self.folders(name)
+        return folders[0] if folders else None
+
+    def folders(self, name: str) -> list[Path]:
+        """All folders of a package, the one that counts first; a built one may have a `share` folder as well."""
+        return self._found.get(name, [])
+
+    def package_of(self, file: Path) -> str | None:
+        """Name of the package that a file belongs to (rospkg.get_package_name)."""
+        return next((name_of(folder) for folder in file.absolute().parents if has_manifest(folder)), None)
+
+    def code_folders(self) -> list[Path]:
+        """Folders with Python code that packages offer under their own names, as catkin_python_setup has it."""
+        found = [folders[0] / inner for folders in self._found.values() for inner in _code_roots(folders[0])]
+        return [folder for folder in found if any(folder.glob("*/__init__.py"))]
+
+    @CachedProperty
+    def _found(self) -> dict[str, list[Path]]:
+        found: dict[str, list[Path]] = {}
+        for folder in dict.fromkeys(self._search()):
+            found.setdefault(name_of(folder), []).append(folder)
+        return found
+
+    def _search(self) -> Iterator[Path]:
+        if self._script is not None:
+            yield from near(self._script)
+        for root in self._listed("ROS_PACKAGE_PATH"):
+            yield from crawl(root)
+        for prefix in self._listed("CMAKE_PREFIX_PATH"):
+            yield from filter(is_package, _subfolders(prefix / "share"))
+
+    def _listed(self, variable: str) -> list[Path]:
+        return [Path(self._resolve(each)) for each in self._environ.get(variable, "").split(os.pathsep) if each]
+
+
+def _code_roots(package: Path) -> list[str]:
+    """Where a package has the code that it installs: `src`, or what its setup.py says of all its Python packages."""
+    try:
+        match = _PACKAGE_DIR.search(text_limited(package / "setup.py", PYTHON_BYTES, "replace"))
+    except (OSError, UsageError):
+        match = None
+    return list(dict.fromkeys(["src", *([match[1]] if match else [])]))
+
+
+def near(script: Path) -> Iterator[Path]:
+    """Packages near a program: those it lies in and their neighbours, then the folders next to the program itself.
+
+    At last those of the catkin workspace, if the program's package lies in the `src` of one.
+    """
+    homes = [folder for folder in script.absolute().parents if has_manifest(folder)]
+    for folder in homes:
+        yield folder
+        yield from filter(is_package, _subfolders(folder.parent))
+    here = script.absolute().parent
+    if has_definitions(here):
+        yield here
+    yield from filter(is_package, _subfolders(here))
+    for source in [folder for home in homes[-1:] for folder in home.parents if folder.name == "src"][:1]:
+        yield from crawl(source)
+
+
+def crawl(root: Path) -> Iterator[Path]:
+    """Packages in a folder of ROS_PACKAGE_PATH, at any depth; none inside another."""
+    if has_manifest(root):
+        yield root
+    elif not any(os.path.exists(root / fence) for fence in _FENCES):
+        for folder in _subfolders(root):
+            yield from crawl(folder)
+
+
+def name_of(folder: Path) -> str:
+    """What a package's manifest calls it; without one, with rosbuild's, or with no legal name, the folder's name."""
+    name = _name_in(folder / _MANIFESTS[0])
+    return name if name is not None and is_package_name(name) else folder.name
+
+
+def is_package_name(name: str) -> bool:
+    """Whether a package may have a name, as catkin has it (REP 144 asks for small letters besides)."""
+    return _LEGAL.fullmatch(name) is not None
+
+
+def check_package_name(folder: Path) -> None:
+    """Check what a package's manifest calls it.
+
+    Args:
+        folder: of the package.
+
+    Raises:
+        UsageError: no package may have the name.
+    """
+    file = folder / _MANIFESTS[0]
+    name = _name_in(file)
+    if name is not None and not is_package_name(name):
+        text = f"is {name[:_SHOWN]!r}, which is not the name of a package; write letters, digits, '_' and '-'"
+        raise UsageError(text, file=file, field="<name>")
+
+
+def _name_in(manifest: Path) -> str | None:
+    """The name in a manifest; None when it cannot be read, or has none."""
+    try:
+        match = _NAME.search(text_limited(manifest, XML_BYTES, "replace"))
+    except (OSError, UsageError):
+        return None
+    return match[1].strip() if match else None
+
+
+def has_manifest(folder: Path) -> bool:
+    """Whether a folder says that it is a package."""
+    return any(os.path.isfile(folder / manifest) for manifest in _MANIFESTS)
+
+
+def has_definitions(folder: Path) -> bool:
+    """Whether a folder has .msg files in `msg`, or .srv or .action files where they belong."""
+    return any(True for kind in _DEFINITIONS for _ in (folder / kind).glob(f"*.{kind}"))
+
+
+def is_package(folder: Path) -> bool:
+    """Whether a folder is a package where none needs a manifest."""
+    return has_manifest(folder) or has_definitions(folder)
+
+
+def _subfolders(folder: Path) -> list[Path]:
+    """Folders in a folder that are not hidden, sorted; none when it cannot be read."""
+    try:
+        with os.scandir(folder) as found:  # tells folders from files without a look at each
+            return [folder / name for name in sorted(each.name for each in found if _is_subfolder(each))]
+    except OSError:
+        return []
+
+
+def _is_subfolder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return not entry.name.startswith(".") and entry.is_dir()
+    except OSError:
+        return False  # a link that leads round in a circle

@@ -1,0 +1,35 @@
+"""Functions of cFE for C: each application says here what it said on NASA's cFE."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from dev.c.api.flights import MARK, NAMES, WITHOUT_DEPRECATED, expected, fly
+from tests.extra.c.building import needs_compiler
+
+pytestmark = needs_compiler
+
+
+@pytest.mark.parametrize("tasks", ["thread", pytest.param("greenlet", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", NAMES)
+def test_an_application_says_what_it_says_on_nasas_cfe(tmp_path: Path, name: str, tasks: str) -> None:
+    assert fly(name, tmp_path, tasks) == expected(name)
+
+
+def test_handles_of_tables_are_ids_without_deprecated_elements(tmp_path: Path) -> None:
+    lines = fly("tables", tmp_path, flags=WITHOUT_DEPRECATED, more="compiled: {omit_deprecated: true}\n")
+    assert own(lines) == own(expected("tables"))  # NASA's log has a handle that was never set then
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [each for each in NAMES if each != "pools"])
+def test_it_says_the_same_under_the_guard(tmp_path: Path, name: str) -> None:
+    """That of pools looks at what a pool writes before its blocks, which are elsewhere then."""
+    assert fly(name, tmp_path, more="compiled: {guard: true}\n") == expected(name)
+
+
+def own(lines: list[str]) -> list[str]:
+    """What the application itself says."""
+    return [line for line in lines if line.startswith(MARK)]

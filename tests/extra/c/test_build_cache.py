@@ -1,0 +1,111 @@
+"""Where cfepy keeps what it builds: the user's cache, CFEPY_CACHE, or a folder of its own among temporary ones."""
+
+from __future__ import annotations
+
+import errno
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from cfepy.extra.c.build_cache import cache_folder, writing_cache
+from cfepy.extra.c.toolchain import headers_folder
+from cfepy.status import UsageError
+from tests.extra.c.building import needs_compiler
+
+
+@pytest.fixture(autouse=True)
+def _environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A home that is a file, so that not even root can make a folder in it, and a folder for temporary files."""
+    (tmp_path / "home").write_text("", encoding="utf-8")
+    (tmp_path / "tmp").mkdir()
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    for name in ("CFEPY_CACHE", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+
+
+def fallback(tmp_path: Path) -> Path:
+    return tmp_path / "tmp" / f"cfepy-cache-{os.getuid()}"
+
+
+def test_cache_folder_is_in_the_home_that_can_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert cache_folder() == tmp_path / ".cache/cfepy"
+    assert cache_folder().is_dir()
+
+
+def test_cache_folder_is_the_named_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CFEPY_CACHE", str(tmp_path / "a/b"))
+    assert cache_folder() == tmp_path / "a/b"
+
+
+def test_home_that_cannot_be_written_is_said_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cache_folder() == fallback(tmp_path)
+    said = capsys.readouterr().err
+    assert f"{tmp_path}/home/.cache/cfepy cannot be made: Not a directory" in said
+    assert str(fallback(tmp_path)) in said
+    assert "CFEPY_CACHE" in said
+    assert said.count("\n") == 1
+    assert cache_folder() == fallback(tmp_path)
+    assert capsys.readouterr().err == ""
+
+
+def test_fallback_folder_belongs_to_the_user_alone(tmp_path: Path) -> None:
+    assert cache_folder().stat().st_mode & 0o777 == 0o700
+    assert headers_folder().is_relative_to(fallback(tmp_path))
+
+
+def test_fallback_folder_that_others_can_write_is_refused(tmp_path: Path) -> None:
+    fallback(tmp_path).mkdir()
+    fallback(tmp_path).chmod(0o777)
+    with pytest.raises(UsageError, match=r"you alone can write; set CFEPY_CACHE") as failure:
+        cache_folder()
+    assert failure.value.file == str(fallback(tmp_path))
+
+
+def test_fallback_folder_that_is_a_link_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    fallback(tmp_path).symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(UsageError, match="you alone can write"):
+        cache_folder()
+
+
+def test_named_folder_that_cannot_be_made_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CFEPY_CACHE", str(tmp_path / "home/cache"))
+    with pytest.raises(UsageError, match=r"home/cache: cannot be written: Not a directory; set CFEPY_CACHE"):
+        headers_folder()
+
+
+def test_full_cache_is_named() -> None:
+    full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    expected = r"^/cache/x: cannot be written: No space left on device; set CFEPY_CACHE"
+    with pytest.raises(UsageError, match=expected), writing_cache(Path("/cache/x")):
+        raise full
+
+
+def test_error_elsewhere_is_not_blamed_on_the_cache() -> None:
+    with pytest.raises(FileNotFoundError), writing_cache(Path("/cache/x")):
+        raise FileNotFoundError(errno.ENOENT, "No such file", "/source.c")
+
+
+APP = "void APP_Main(void) { CFE_ES_ExitApp(CFE_ES_RunStatus_APP_EXIT); }\n"
+
+
+@needs_compiler
+def test_application_is_built_and_flown_without_a_home(tmp_path: Path) -> None:
+    (tmp_path / "app.c").write_text('#include "cfe.h"\n' + APP, encoding="utf-8")
+    (tmp_path / "startup.scr").write_text("CFE_APP, app.so, APP_Main, APP, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
+    cfepy = [sys.executable, "-m", "cfepy"]
+    made = subprocess.run([*cfepy, "build", str(tmp_path)], capture_output=True, text=True, check=False)
+    assert made.returncode == 0, made.stderr
+    assert made.stderr.count("CFEPY_CACHE") == 1
+    library = Path(made.stdout.splitlines()[0])
+    library.rename(tmp_path / "app.so")
+    flown = subprocess.run([*cfepy, "run", str(tmp_path), "--for", "1"], capture_output=True, text=True, check=False)
+    assert flown.returncode == 0, flown.stdout + flown.stderr
+    assert "CFEPY_CACHE" not in flown.stderr

@@ -1,0 +1,356 @@
+"""Building compiled applications: what is compiled, against which headers, and the table files that come of it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from cfepy.extra.c import Built, CompilerError, Options, build
+from cfepy.extra.c.elf import elf_file
+from cfepy.extra.c.toolchain.compiler import compile_file
+from cfepy.extra.c.toolchain.sources import find_sources, read_cmake_lists
+from cfepy.fs import read_table_file
+from cfepy.status import UsageError
+from tests.extra.c.building import console_of, fly, needs_compiler, needs_cpp, said, write_mission
+
+pytestmark = needs_compiler
+
+DATA = Path(__file__).parents[2] / "data"
+MAIN = """
+    #include "cfe.h"
+    #include "probe_msgids.h"
+    uint32 PROBE_Mid(void) { return PROBE_CMD_MID; }
+    void PROBE_Main(void) { CFE_ES_ExitApp(CFE_ES_RunStatus_APP_EXIT); }
+"""
+TABLE = """
+    #include "cfe_tbl_filedef.h"
+    typedef struct { uint16 Int1, Int2; } Probe_t;
+    Probe_t ExampleTable = {1, 2};
+    CFE_TBL_FILEDEF(ExampleTable, SAMPLE_APP.ExampleTable, Table Utility Test Table, sample_app_tbl.tbl)
+"""
+
+
+def write(folder: Path, files: dict[str, str]) -> Path:
+    """Files of an application, indented as they stand in the test."""
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(textwrap.dedent(text).lstrip(), encoding="utf-8")
+    return folder
+
+
+@pytest.fixture
+def app(tmp_path: Path) -> Path:
+    """An application whose message id a mission may choose."""
+    files = {"fsw/src/probe.c": MAIN, "config/default_probe_msgids.h": "#define PROBE_CMD_MID 0x1890\n"}
+    return write(tmp_path / "apps/probe", files)
+
+
+def library(built: Built) -> object:
+    """The shared object, as pyelftools reads it."""
+    return elf_file(built.library.open("rb"))  # type: ignore[arg-type]  # a file is a stream, too
+
+
+def symbols(built: Built) -> dict[str, bool]:
+    """The dynamic symbols, and whether each is defined."""
+    table = library(built).get_section_by_name(".dynsym")  # type: ignore[attr-defined]
+    return {each.name: each["st_shndx"] != "SHN_UNDEF" for each in table.iter_symbols() if each.name}
+
+
+def sections(built: Built) -> set[str]:
+    return {each.name for each in library(built).iter_sections()}  # type: ignore[attr-defined]
+
+
+# -- sources -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_folder_without_cmake_is_all_its_sources_but_those_of_eds(app: Path) -> None:
+    write(app, {"fsw/src/probe_eds_dispatch.c": "#error EDS\n", "fsw/src/more.c": "int More(void) { return 1; }\n"})
+    built = build(app)
+    assert built.library == app / "probe.so"
+    assert symbols(built)["PROBE_Main"]
+    assert symbols(built)["More"]
+    assert symbols(built)["CFE_ES_ExitApp"] is False
+
+
+def test_cmake_lists_say_name_sources_and_tables(tmp_path: Path) -> None:
+    text = """
+        project(CFS_PROBE C)  # a comment (with brackets
+        set(PROBE_OPTION FALSE CACHE STRING "an option")
+        set(FILES fsw/src/a.c
+                  fsw/src/b.c)
+        if (CFE_EDS_ENABLED)
+          list(APPEND FILES fsw/src/eds.c)
+        elseif (NOT PROBE_OPTION)
+          list(APPEND FILES fsw/src/c.c)
+        else()
+          list(APPEND FILES fsw/src/d.c)
+        endif()
+        foreach(EXT_APP hs lc)
+          list(FIND TGTSYS_APPS ${EXT_APP} HAVE_APP)
+          add_definitions(-DHAVE_${EXT_APP})
+        endforeach()
+        aux_source_directory(fsw/more FILES)
+        add_definitions(-DPROBE=1)
+        include_directories(${other_MISSION_DIR}/fsw/inc)
+        add_cfe_app(probe ${FILES})
+        target_include_directories(probe PUBLIC fsw/inc)
+        add_cfe_app_dependency(probe sample_lib)
+        add_cfe_tables(probe fsw/tables/t.c)
+        if (ENABLE_UNIT_TESTS)
+          add_cfe_tables(probe unit-test/t.c)
+        endif (ENABLE_UNIT_TESTS)
+    """
+    write(tmp_path, {"CMakeLists.txt": text, "fsw/more/e.c": "", "fsw/more/f.cpp": ""})
+    said = read_cmake_lists(tmp_path)
+    assert said.name == "probe"
+    assert said.sources == ["fsw/src/a.c", "fsw/src/b.c", "fsw/src/c.c", "fsw/more/e.c", "fsw/more/f.cpp"]
+    assert said.tables == ["fsw/tables/t.c"]
+    assert said.definitions == ["PROBE=1"]
+    assert said.includes == ["/fsw/inc", "fsw/inc"]
+    assert said.dependencies == ["other", "sample_lib"]
+
+
+def test_a_source_that_cmake_names_must_be_there(app: Path) -> None:
+    write(app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/gone.c)\n"})
+    with pytest.raises(UsageError, match=r"CMakeLists\.txt names fsw/src/gone\.c, which is not there"):
+        build(app)
+
+
+@pytest.mark.parametrize("name", ["nothing", "apps"])
+def test_there_must_be_something_to_build(name: str, app: Path) -> None:
+    with pytest.raises(UsageError, match=r"there is no such folder|has no C sources"):
+        build(app.parents[1] / name)
+
+
+def test_headers_of_a_mission_go_before_defaults(app: Path, tmp_path: Path) -> None:
+    write(tmp_path / "defs", {"probe_msgids.h": "#define PROBE_CMD_MID 0x18A0\n#define CHOSEN\n"})
+    write(app, {"fsw/src/check.c": '#include "probe_msgids.h"\n#ifndef CHOSEN\n#error default\n#endif\nint check;\n'})
+    with pytest.raises(CompilerError, match="#error default"):
+        build(app)
+    build(app, options=Options(definitions=tmp_path / "defs"))
+
+
+def test_a_header_that_only_missions_have_is_empty_without_one(app: Path) -> None:
+    write(app, {"mission_build.cmake": "set(PROBE_MISSION_CONFIG_FILE_LIST\n  probe_msgids.h\n  probe_extra.h\n)\n"})
+    write(app, {"fsw/src/more.c": '#include "probe_extra.h"\nint more;\n'})
+    assert build(app).warnings == []
+
+
+def test_headers_of_a_library_beside_it_are_found(app: Path) -> None:
+    write(app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/user.c)\nadd_cfe_app_dependency(probe my_lib)\n"})
+    write(app, {"fsw/src/user.c": '#include "my_lib.h"\nint user = MY_LIB;\n'})
+    with pytest.raises(CompilerError, match=r"It uses headers of my_lib: have that folder beside this one"):
+        build(app)
+    write(app.parents[1] / "libs/my_lib", {"fsw/public_inc/my_lib.h": '#include "my_lib_cfg.h"\n'})
+    write(app.parents[1] / "libs/my_lib", {"config/default_my_lib_cfg.h": "#define MY_LIB 7\n"})
+    build(app)
+
+
+# -- the compiler ------------------------------------------------------------------------------------------------------
+
+
+def test_what_the_compiler_says_is_told(app: Path) -> None:
+    write(app, {"fsw/src/wrong.c": "int wrong(void) { return nothing; }\n"})
+    with pytest.raises(CompilerError, match=r"wrong\.c:1:26: error: .*nothing.* undeclared"):
+        build(app)
+    assert not (app / "probe.so").exists()
+
+
+def test_warnings_are_told(app: Path) -> None:
+    write(app, {"fsw/src/odd.c": "static int unused;\n"})
+    (warning,) = build(app).warnings
+    assert "odd.c:1:12: warning: 'unused' defined but not used" in warning.replace("\u2018", "'").replace("\u2019", "'")
+
+
+def test_a_compiler_that_is_not_there(app: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CC", "no-such-compiler -m64")
+    with pytest.raises(UsageError, match="no-such-compiler is not there: install a C compiler"):
+        build(app)
+
+
+def test_debug_data_is_there_unless_unwanted(app: Path) -> None:
+    assert ".debug_info" in sections(build(app))
+    assert ".debug_info" not in sections(build(app, options=Options(debug=False)))
+
+
+def test_two_builds_give_the_same_bytes(app: Path, tmp_path: Path) -> None:
+    one, other = (build(app, tmp_path / name).library.read_bytes() for name in ("one.so", "other.so"))
+    assert one == other
+
+
+def test_sources_of_one_name_in_two_folders(app: Path) -> None:
+    write(
+        app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/a.c fsw/src/x/a.c ../common.c)\n", "fsw/src/a.c": "int a;\n"}
+    )
+    write(app, {"fsw/src/x/a.c": "int b;\n", "../common.c": "int c;\n"})
+    assert {"a", "b", "c"} <= symbols(build(app)).keys()
+
+
+@needs_cpp
+def test_cpp_has_its_library(app: Path, tmp_path: Path) -> None:
+    text = """
+        #include <stdexcept>
+        #include <string>
+        #include <vector>
+        #include "cfe.h"
+        static std::vector<std::string> texts{"one", "two"};
+        extern "C" void TEST_Main(void)
+        {
+            try {
+                texts.at(2);
+            } catch (const std::out_of_range &) {
+                CFE_ES_WriteToSysLog("> %s", (texts[0] + texts[1]).c_str());
+            }
+            CFE_ES_ExitApp(CFE_ES_RunStatus_APP_EXIT);
+        }
+    """
+    write(app, {"fsw/src/test.cpp": text})
+    build(app, tmp_path / "TEST.so")
+    assert said(console_of(fly(write_mission(tmp_path, "TEST"), 1))) == ["onetwo"]
+
+
+def test_flags_and_optimisation_reach_the_compiler(app: Path) -> None:
+    text = "#if !defined WANTED || !defined __OPTIMIZE__\n#error flags\n#endif\nint flags;\n"
+    write(app, {"fsw/src/flags.c": text})
+    build(app, options=Options(flags=["-DWANTED"], optimize="2"))
+    with pytest.raises(CompilerError, match="#error flags"):
+        build(app, options=Options(flags=["-DWANTED"], optimize="0"))
+
+
+def test_without_deprecated_names_handles_are_ids(app: Path) -> None:
+    write(app, {"fsw/src/size.c": '#include "cfe.h"\nchar size[sizeof(CFE_TBL_Handle_t) == SIZE ? 1 : -1];\n'})
+    build(app, options=Options(flags=["-DSIZE=2"]))
+    build(app, options=Options(flags=["-DSIZE=4"], omit_deprecated=True))
+
+
+def test_accesses_of_memory_are_told_to_whoever_loads_it(app: Path) -> None:
+    write(app, {"fsw/src/shared.c": "int shared; int Read(void) { return shared; }\n"})
+    built = build(app, options=Options(sanitize_thread=True))
+    assert symbols(built)["__tsan_read4"] is False
+    needed = library(built).get_section_by_name(".dynamic").iter_tags("DT_NEEDED")  # type: ignore[attr-defined]
+    assert not [each.needed for each in needed if "tsan" in each.needed]
+
+
+def test_notes_for_gcov_stay_beside_the_library(app: Path, tmp_path: Path) -> None:
+    built = build(app, tmp_path / "out/probe.so", Options(coverage=True))
+    assert (tmp_path / "out/probe.so.coverage/fsw/src/probe.c.gcno").is_file()
+    assert any(name.startswith("__gcov") for name in symbols(built)) or ".init_array" in sections(built)
+
+
+# -- a tree of the user's own ------------------------------------------------------------------------------------------
+
+
+def test_the_headers_of_a_cfs_tree_are_taken_in_place_of_ours(app: Path, tmp_path: Path) -> None:
+    needed = ("cfe_mission_cfg", "osconfig", "osapi")
+    tree = write(
+        tmp_path / "cfs",
+        {
+            "cfe/modules/core_api/fsw/inc/cfe.h": "".join(f'#include "{name}.h"\n' for name in needed),
+            "cfe/modules/core_api/config/default_cfe_mission_cfg.h": "#error default\n",
+            "osal/src/os/inc/osapi.h": "typedef unsigned uint32;\nvoid CFE_ES_ExitApp(uint32);\n",
+            "my_defs/cfe_mission_cfg.h": "enum { CFE_ES_RunStatus_APP_EXIT = 2 };\n",
+        },
+    )
+    assert symbols(build(app, options=Options(cfs=tree)))["PROBE_Main"]
+    write(tree, {"build/inc/cfe_mission_cfg.h": "#error made by the build\n"})
+    with pytest.raises(CompilerError, match="#error made by the build"):
+        build(app, options=Options(cfs=tree))
+
+
+def test_a_tree_must_be_one(app: Path, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="is no cFS tree of cFE 7"):
+        build(app, options=Options(cfs=tmp_path))
+
+
+# -- tables ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_table_is_the_file_that_nasas_tools_make(app: Path, tmp_path: Path) -> None:
+    write(app, {"fsw/tables/sample_app_tbl.c": TABLE})
+    (made,) = build(app, tmp_path / "out/probe.so").tables
+    assert made == tmp_path / "out/sample_app_tbl.tbl"
+    assert made.read_bytes() == (DATA / "sample_app_tbl.tbl").read_bytes()
+
+
+def test_a_table_of_zeros_has_its_zeros(app: Path) -> None:
+    write(app, {"fsw/tables/zeros.c": TABLE.replace("= {1, 2}", "")})
+    (made,) = build(app).tables
+    assert read_table_file(made.read_bytes())[2] == bytes(4)
+
+
+def test_addresses_in_a_table_are_told(app: Path) -> None:
+    text = TABLE.replace("uint16 Int1, Int2;", "uint64 Number; const char *Text;").replace("{1, 2}", '{1, "text"}')
+    write(app, {"fsw/tables/pointers.c": text})
+    built = build(app)
+    assert "1 words of the table are addresses" in built.warnings[0]
+    assert read_table_file(built.tables[0].read_bytes())[2] == (1).to_bytes(8, "little") + bytes(8)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "wrong"),
+    [
+        ("CFE_TBL_FILEDEF(ExampleTable, ", "int ", "defines no table"),
+        (
+            "CFE_TBL_FILEDEF(ExampleTable,",
+            "extern int Other; CFE_TBL_FILEDEF(Other,",
+            "which is no object of this file",
+        ),
+        ("sample_app_tbl.tbl", "/cf/x.tbl", "which is no name of a file"),
+        ("SAMPLE_APP.ExampleTable", "ExampleTable", "is no full table name"),
+    ],
+)
+def test_what_is_no_table(old: str, new: str, wrong: str, app: Path) -> None:
+    text = TABLE.replace(old, new)
+    if "defines no" in wrong:
+        text = text[: text.index("int SAMPLE")]
+    write(app, {"fsw/tables/bad.c": text})
+    with pytest.raises(UsageError, match=wrong):
+        build(app)
+
+
+def test_a_compiler_that_waits_for_a_pipe_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cfepy.extra.c.toolchain.compiler._LOOK_S", 0.2)
+    os.mkfifo(tmp_path / "pipe.h")
+    (tmp_path / "a.c").write_text('#include "pipe.h"\n', encoding="utf-8")
+    with pytest.raises(CompilerError, match="waited for something"):
+        compile_file(tmp_path / "a.c", tmp_path / "a.o", [])
+
+
+def test_a_compiler_is_held_to_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cfepy.extra.c.toolchain.compiler.OBJECT_BYTES", 1 << 20)
+    (tmp_path / "a.c").write_text("char many[8 << 20] = {1};\n", encoding="utf-8")
+    with pytest.raises(CompilerError):
+        compile_file(tmp_path / "a.c", tmp_path / "a.o", [])
+    (tmp_path / "a.c").write_text("char few[8] = {1};\n", encoding="utf-8")
+    assert compile_file(tmp_path / "a.c", tmp_path / "a.o", []) == ""
+
+
+@pytest.mark.parametrize("name", ["../victim", "/victim", "a/b", "..", "a b", "-o"])
+def test_a_name_that_leads_out_is_refused(name: str, app: Path) -> None:
+    write(app, {"CMakeLists.txt": f'add_cfe_app("{name}" fsw/src/probe.c)\n'})
+    with pytest.raises(UsageError, match="names the application"):
+        build(app)
+
+
+def test_a_header_that_a_mission_makes_stays_where_it_is_written(app: Path) -> None:
+    write(app, {"mission_build.cmake": "set(PROBE_PLATFORM_FILE_LIST ../../../victim.h /victim.h good.h)\n"})
+    assert set(find_sources(app).chosen) == {"good.h", "probe_msgids.h"}
+
+
+def test_a_compiler_is_called_where_the_process_itself_is_bound(tmp_path: Path) -> None:
+    (tmp_path / "a.c").write_text("int a;\n", encoding="utf-8")
+    program = (
+        "import resource, sys\n"
+        "from pathlib import Path\n"
+        "from cfepy.extra.c.toolchain.compiler import compile_file\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))\n"
+        "resource.setrlimit(resource.RLIMIT_CPU, (60, 60))\n"
+        "compile_file(Path(sys.argv[1]), Path(sys.argv[2]), [])\n"
+    )
+    subprocess.run([sys.executable, "-c", program, str(tmp_path / "a.c"), str(tmp_path / "a.o")], check=True)
+    assert (tmp_path / "a.o").is_file()

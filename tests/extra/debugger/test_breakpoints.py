@@ -1,0 +1,121 @@
+"""What a run stops at: events, MsgIds, names, predicates; and what cannot be meant."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.extra.debugger.breakpoints import breakpoints
+from cfepy.mission import MissionSpec, read_mission
+from cfepy.pilot.pilot import fly
+from cfepy.pilot.plan import RunPlan
+from cfepy.status import UsageError
+
+TALKER = """
+import rospy
+from std_msgs.msg import Int32, String
+rospy.init_node("talker")
+numbers = rospy.Publisher("/numbers", Int32, queue_size=10)
+words = rospy.Publisher("/words", String, queue_size=10)
+for number in range(5):
+    rospy.sleep(0.1)
+    numbers.publish(number)
+    words.publish("word " * number)
+rospy.logerr("that is all")
+"""
+
+
+@pytest.fixture
+def plan(tmp_path: Path) -> RunPlan:
+    """A run of a node that publishes numbers and words."""
+    script = tmp_path / "talker.py"
+    script.write_text(TALKER, encoding="utf-8")
+    return RunPlan((str(script),), command="node", seconds=3)
+
+
+def hits(plan: RunPlan, *texts: str) -> list[str]:
+    """What a run would stop at."""
+    found: list[str] = []
+    spec = plan.spec()
+    fly(plan, attachments=breakpoints(texts, spec, found.append), spec=spec)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("/nombers", "--break '/nombers' stopped nowhere"),
+        ("CFE_TIME:99", "--break 'CFE_TIME:99' stopped nowhere"),
+        ("msg.data == 77", "--break 'msg.data == 77' stopped nowhere"),
+        ("/words", None),
+    ],
+)
+def test_one_that_stops_nowhere_says_so(plan: RunPlan, text: str, why: str | None) -> None:
+    spec = plan.spec()
+    (point,) = breakpoints([text], spec, lambda what: None)
+    fly(plan, attachments=[point], spec=spec)
+    assert point.missed == why
+
+
+def test_a_field_that_no_message_has_is_told(plan: RunPlan) -> None:
+    spec = plan.spec()
+    (point,) = breakpoints(["msg.dat > 2"], spec, lambda what: None)
+    fly(plan, attachments=[point], spec=spec)
+    assert "applies to no message: /" in str(point.missed)
+    assert "'dat'" in str(point.missed)
+
+
+def test_a_topic(plan: RunPlan) -> None:
+    assert hits(plan, "/numbers") == [f"/numbers of /talker: data: {number}" for number in range(5)]
+
+
+def test_a_pattern_of_topics(plan: RunPlan) -> None:
+    assert len(hits(plan, "/[nw]*s")) == 10
+
+
+def test_a_predicate(plan: RunPlan) -> None:
+    (found,) = hits(plan, "msg.data == 3 and sender == '/talker'")
+    assert found.endswith("/numbers of /talker: data: 3")
+
+
+def test_a_predicate_that_does_not_apply_to_a_message_does_not_hold(plan: RunPlan) -> None:
+    assert len(hits(plan, "msg.data > 2")) == 2  # words are no numbers
+
+
+def test_a_predicate_about_time_and_topic(plan: RunPlan) -> None:
+    assert len(hits(plan, "topic == '/words' and t > 0.9")) == 2
+
+
+def test_an_event_by_number_and_by_type(plan: RunPlan) -> None:
+    (found,) = hits(plan, "CFE_TIME:1")
+    assert found.startswith("event CFE_TIME 1 INFORMATION")
+    assert {text.split()[1] for text in hits(plan, "*:INFORMATION")} > {"CFE_TIME", "CFE_TBL"}
+
+
+@pytest.mark.parametrize("text", ["0x0808", "CFE_EVS_LONG_EVENT_MSG"])
+def test_a_packet_by_msg_id_and_by_name(plan: RunPlan, text: str) -> None:
+    found = hits(plan, text)
+    assert found[0].startswith("CFE_EVS_LONG_EVENT_MSG (0x0808) of CFE_ES, 172 bytes: {'PacketID'")
+
+
+def test_a_command_is_told_from_others_with_its_msg_id() -> None:
+    plan = RunPlan(("capture",), seconds=1.2)
+    assert len(hits(plan, "CFE_TIME_ONEHZ_CMD")) == len(hits(plan, "0x1811")) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("CFE_EVS_LONG_EVENT_MSGG", "did you mean CFE_EVS_LONG_EVENT_MSG?"),
+        ("nonsense", "is no packet of this mission; write APP:ID"),
+        ("HK:FOO", "FOO is no type of event; there are DEBUG, INFORMATION, ERROR, CRITICAL"),
+        ("msg.x >", "'msg.x >' is no Python expression"),
+        ("message.x > 3", "names 'message', which is not known here"),
+    ],
+)
+def test_what_cannot_be_meant_is_told(text: str, why: str) -> None:
+    spec: MissionSpec = read_mission("capture")
+    with pytest.raises(UsageError, match="--break") as caught:
+        breakpoints([text], spec, print)
+    assert why in str(caught.value)

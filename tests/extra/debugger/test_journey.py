@@ -1,0 +1,254 @@
+"""Going back in a run: each moment is found again as it was."""
+
+from __future__ import annotations
+
+import bdb
+import io
+import random
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cfepy.extra.debugger.app_debugger import own_frame
+from cfepy.extra.debugger.breakpoints import VariableCondition, finders
+from cfepy.extra.debugger.debugger import Debugger
+from cfepy.extra.debugger.journey import Journey, LineMoment, RunMoment
+from cfepy.pilot import Course
+from cfepy.pilot.pilot import Flown, fly
+from cfepy.pilot.plan import RunPlan
+from cfepy.status import UsageError
+
+COUNTER = """
+import threading
+import rospy
+from std_msgs.msg import Int32
+
+state = 0
+lock = threading.Lock()
+
+def on_number(message):
+    global state
+    with lock:
+        state = message.data * 2
+
+rospy.init_node("counter")
+publisher = rospy.Publisher("/numbers", Int32, queue_size=10)
+rospy.Subscriber("/numbers", Int32, on_number)
+for number in range(4):
+    rospy.sleep(0.1)
+    publisher.publish(number)
+rospy.sleep(0.1)
+"""
+BOTH = pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+STEPS = 1000
+
+
+@pytest.fixture
+def plan(tmp_path: Path) -> RunPlan:
+    """A run of a node that counts, in two threads."""
+    script = tmp_path / "counter.py"
+    script.write_text(COUNTER, encoding="utf-8")
+    return RunPlan((str(script),), command="node", seconds=1.2, tasks="greenlet")
+
+
+class User(io.StringIO):
+    """Types what a function says.
+
+    Attributes:
+        debugger: that of the flight that is on.
+    """
+
+    def __init__(self, say: Callable[[Debugger], str]) -> None:
+        super().__init__()
+        self.debugger: Debugger
+        self._say = say
+
+    def readline(self, size: int = -1, /) -> str:
+        return self._say(self.debugger) + "\n"
+
+
+def journey_of(plan: RunPlan, commands: str | User, journey: Journey, **options: Any) -> tuple[str, Flown, int]:
+    """Fly with a debugger as often as its user goes back; what it says, the last flight, and how many there were."""
+    typed = io.StringIO(commands) if isinstance(commands, str) else commands
+    stream, flights, end = io.StringIO(), 0, End()
+    while True:
+        spec = plan.spec()
+        debugger = Debugger(spec, commands=typed, stream=stream, journey=journey, on_quit=end.come, **options)
+        if isinstance(typed, User):
+            typed.debugger = debugger
+        flown = fly(plan, attachments=[debugger], spec=spec, make_course=end.course)
+        flights += 1
+        if not journey.flies_again:
+            return stream.getvalue(), flown, flights
+        journey.flies_again = False
+
+
+class End:
+    """Ends a flight, as a replay does."""
+
+    def __init__(self) -> None:
+        self._course: Course
+
+    def course(self, *given: Any) -> Course:
+        """What is flown."""
+        self._course = Course(*given)
+        return self._course
+
+    def come(self) -> None:
+        """It ends here."""
+        self._course.until_ns = -1
+        self._course.mission.kernel.stop()
+
+
+def times(said: str) -> list[str]:
+    return [line for line in said.splitlines() if line[:1].isdigit()]
+
+
+def state_of(debugger: Debugger) -> str:
+    """All that can be told of a run where it stands still."""
+    mission, frame = debugger._mission, own_frame()
+    variables = {} if frame is None else {name: repr(frame.f_globals.get(name)) for name in ("state", "number")}
+    pipes = [(pipe.name, len(pipe.items)) for pipe in mission.cfe.sb.pipes]
+    return f"{mission.trace.digest()} {mission.kernel.now} {mission.kernel.waiting()} {pipes} {variables}"
+
+
+class Walk:
+    """A user who goes back and forth at random, and sees whether all is as it was."""
+
+    def __init__(self, steps: int, seed: int) -> None:
+        self.known: dict[RunMoment, str] = {}
+        self.seen_again = 0
+        self.wrong: list[RunMoment] = []
+        self._random = random.Random(seed)
+        self._left = steps
+
+    def say(self, debugger: Debugger) -> str:
+        """What is typed next."""
+        moment, state = debugger._moment, state_of(debugger)
+        if moment in self.known:
+            self.seen_again += 1
+            if self.known[moment] != state:
+                self.wrong.append(moment)
+        self.known[moment] = state
+        self._left -= 1
+        return "q" if not self._left else self._random.choice(["s", "b"])
+
+
+def walked(plan: RunPlan, steps: int, seed: int) -> Walk:
+    walk = Walk(steps, seed)
+    user = User(walk.say)
+    journey_of(plan, user, Journey(asks_at_end=True), step=True, from_ns=600_000_000)
+    assert not walk.wrong
+    return walk
+
+
+def test_moments_are_the_same_again(plan: RunPlan) -> None:
+    assert walked(plan, 8, 1).seen_again > 1
+
+
+@pytest.mark.slow
+def test_a_thousand_steps_forward_and_back_end_in_equal_states(plan: RunPlan) -> None:
+    walk = walked(plan, STEPS, 2)
+    assert walk.seen_again > STEPS / 2
+    assert walk.seen_again + len(walk.known) == STEPS
+
+
+@BOTH
+def test_what_was_seen_forward_is_seen_backward(plan: RunPlan, tasks: str) -> None:
+    plan = RunPlan(plan.words, command="node", seconds=1.2, tasks=tasks)
+    said, _, flights = journey_of(plan, "s\ns\nb\nb\nq\n", Journey(), stops=["msg.data == 1"])
+    first, second, third, again, stop = times(said)
+    assert again == second
+    assert third != second
+    assert flights == 3
+    assert stop.endswith("goes on") or stop.endswith("bytes")
+    assert first.endswith("/numbers of /counter: data: 1")
+
+
+@pytest.mark.slow
+def test_back_to_the_last_breakpoint(plan: RunPlan) -> None:
+    said, flown, flights = journey_of(plan, "c\nc\nrc\nrc\nrc\nc\nq\n", Journey(), stops=["/numbers"])
+    assert [line[-1] for line in times(said)] == list("0121001")
+    assert said.count("that has not been, before this moment") == 1
+    assert flights == 1 + 2 + 2 + 1
+    assert flown.interrupted is False
+
+
+def test_back_to_what_held_from_the_end(plan: RunPlan) -> None:
+    said, flown, _ = journey_of(plan, "bt state == 4\nw\nc\n", Journey(asks_at_end=True))
+    end, held, again = times(said)
+    assert end == again
+    assert end.endswith("the end of the run")
+    assert held.startswith("0.950006")  # then the next number comes
+    assert flown.trace == fly(plan).trace
+
+
+@pytest.mark.slow
+def test_the_first_flight_looks_for_the_last_time(plan: RunPlan) -> None:
+    said, _, flights = journey_of(plan, "q\n", Journey(back_to="msg.data == 2"))
+    assert times(said)[0].endswith("/numbers of /counter: data: 2")
+    assert flights == 2
+    said, _, flights = journey_of(plan, "q\n", Journey(asks_at_end=True, back_to="msg.data == 7"))
+    assert said.startswith("that has not been, before this moment")
+    assert flights == 1
+
+
+@pytest.mark.slow
+def test_lines_of_a_task_backwards(plan: RunPlan) -> None:
+    plan = RunPlan(plan.words, command="node", seconds=1.2, tasks="thread")  # as a debugger in a task needs them
+    typed = "n\nn\nrstep\nrs\np number\nb 19\nc\nc\np number\nrcontinue\np number\nrc\nq\n"
+    try:
+        said, _, flights = journey_of(plan, typed, Journey(), app="COUNTER", stops=["msg.data == 1"])
+    finally:
+        bdb.Breakpoint.clearBreakpoints()  # type: ignore[no-untyped-call]  # they are the process's
+    shown = [line.removeprefix("-> ") for line in said.splitlines() if line.startswith("-> ")]
+    begins, sleeps, publishes = "for number in range(4):", "rospy.sleep(0.1)", "publisher.publish(number)"
+    forward = [begins, sleeps, publishes]
+    assert shown == [*forward, sleeps, begins, publishes, publishes, publishes, publishes]
+    assert re.findall(r"\(Pdb\) (\d)", said) == ["1", "3", "2"]
+    assert said.count("that has not been, before this moment") == 0
+    assert flights == 1 + 2 + 2 + 2
+
+
+def test_without_a_journey_there_is_no_way_back(plan: RunPlan) -> None:
+    spec, stream = plan.spec(), io.StringIO()
+    debugger = Debugger(
+        spec, commands=io.StringIO("b\nrc\nbt /numbers\nwhat\nc\n"), stream=stream, stops=["msg.data == 0"]
+    )
+    fly(plan, attachments=[debugger], spec=spec)
+    assert stream.getvalue().count("there is no way back") == 3
+    assert "back to the last breakpoint" not in stream.getvalue()
+
+
+@pytest.mark.parametrize("text", ["launch() == 3", "x := 3", "state ==", "no_such_packet"])
+def test_what_may_change_the_run_or_means_nothing_is_refused(plan: RunPlan, text: str) -> None:
+    with pytest.raises(UsageError):
+        finders(text, plan.spec(), lambda what: None)
+
+
+def test_a_condition_does_not_hold_where_its_names_are_not_known() -> None:
+    assert VariableCondition("STEPS == 1000 and len('abc') == 3").holds(sys._getframe())
+    assert not VariableCondition("there == 3").holds(sys._getframe())
+    assert not VariableCondition("STEPS == 1000").holds(None)
+
+
+def test_the_moment_before() -> None:
+    assert RunMoment(5).before() == RunMoment(4)
+    assert RunMoment(5, hits=1).before() == RunMoment(5)
+    assert RunMoment(5, finds=1, text="/a").before() == RunMoment(5)
+
+
+def test_a_search_ends_at_its_limit() -> None:
+    journey = Journey()
+    journey.look_for("", LineMoment(3, 9))
+    journey.finds(LineMoment(3, 4))
+    journey.finds(RunMoment(7, 1))  # a breakpoint of the run, and not of the debugger's
+    journey.finds(LineMoment(3, 9))
+    assert not journey.arrives(LineMoment(3, 9))
+    assert journey.target == LineMoment(3, 4)
+    assert journey.arrives(LineMoment(3, 4))
+    assert not journey.is_silent

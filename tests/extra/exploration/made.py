@@ -1,0 +1,11 @@
+"""Moves that a run made, for tests."""
+
+from __future__ import annotations
+
+from cfepy.extra.exploration.moves import MadeMove
+from cfepy.schedules import Move
+
+
+def moved(task: str, chosen: str) -> MadeMove:
+    """One in which a task is preempted by another."""
+    return MadeMove(Move(task, chosen), task, chosen, preempts=True, question="", decision=0, choice=1)

@@ -1,0 +1,114 @@
+"""Which schedules a search gives, in which order."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+import pytest
+
+from cfepy.extra.exploration.search import SeededSearch, SystematicSearch, make_search
+from cfepy.extra.exploration.verdict import Verdict
+from cfepy.schedules.schedule import Schedule
+
+
+def next_of(search: SeededSearch | SystematicSearch) -> str | None:
+    """The next schedule as text."""
+    found = search.next()
+    return None if found is None else found.text()
+
+
+def first(policy: str, count: int, depth: int | None = None, options: str = "at", seed: int = 0) -> list[str]:
+    search = make_search(policy, depth, 50, Schedule.parse(options), seed)
+    found = search.next()
+    assert found is not None
+    search.tell(0, Verdict(found))
+    more = islice(iter(search.next, None), count - 1)
+    return [found.text(), *(each.text() for each in more if each is not None)]
+
+
+def test_seeds_of_one_policy() -> None:
+    assert first("random", 3) == ["random:0", "random:1", "random:2"]
+    assert first("pct", 2, seed=7) == ["pct:7:3:50", "pct:8:3:50"]
+    assert first("pct", 1, depth=5) == ["pct:0:5:50"]
+
+
+def test_all_is_a_mixture_without_doubles() -> None:
+    found = first("all", 40)
+    assert len(set(found)) == 40
+    assert {text.split(":")[0] for text in found} == {"random", "pct", "abreast"}
+    assert {text.split(":")[2] for text in found if text.startswith("pct")} >= {"1", "2", "3"}
+
+
+def test_options_go_into_every_schedule() -> None:
+    assert all(text.endswith(":any:hold=500us") for text in first("all", 8, options="at:any:hold=500us"))
+
+
+def test_pct_reckons_with_the_decisions_that_the_first_schedule_had() -> None:
+    search = make_search("pct", None, 50, Schedule.parse("at"))
+    assert [next_of(search), next_of(search)] == ["pct:0:3:50", None]
+    search.tell(0, Verdict(Schedule.parse("pct:0:3:50"), decisions=120))
+    assert [next_of(search), next_of(search)] == ["pct:1:3:120", "pct:2:3:120"]
+    search.tell(1, Verdict(Schedule.parse("pct:1:3:120"), decisions=300))
+    assert next_of(search) == "pct:3:3:120"
+
+
+def test_each_schedule_is_the_one_that_its_text_means() -> None:
+    for policy in ("all", "random", "pct", "abreast"):
+        search = make_search(policy, None, 50, Schedule.parse("at:any"))
+        for number in range(12):
+            schedule = search.next()
+            assert schedule is not None
+            assert Schedule.parse(schedule.text()) == schedule
+            search.tell(number, Verdict(schedule, decisions=120))
+
+
+def test_fifo_may_have_the_most_decisions() -> None:
+    search = make_search("all", None, 50, Schedule.parse("at"))
+    assert [next_of(search), next_of(search)] == ["random:0", None]
+    search.tell(0, Verdict(Schedule("random", 0), decisions=20))
+    assert next_of(search) == "pct:1:2:50"
+
+
+def test_with_points_between_calls_random_has_the_most_turns() -> None:
+    search = make_search("all", None, 50, Schedule.parse("at:points=attributes"))
+    texts = [next_of(search)]
+    search.tell(0, Verdict(Schedule("random", 0), decisions=20))
+    texts += [next_of(search) for _ in range(5)]
+    kinds = ["random:0", "pct:1:3:50", "abreast:2", "random:3:hold=1ms", "random:4", "random:5:hold=1ms"]
+    assert texts == [f"{kind}:points=attributes" for kind in kinds]
+
+
+def test_what_is_asked_for_has_its_depth_with_points_as_well() -> None:
+    search = make_search("all", 5, 50, Schedule.parse("at:points=lines"))
+    search.next()
+    search.tell(0, Verdict(Schedule("random", 0), decisions=20))
+    assert next_of(search) == "pct:1:5:50:points=lines"
+
+
+def test_the_systematic_search_learns_from_verdicts() -> None:
+    search = make_search("dfs", 1, 50, Schedule.parse("at"))
+    assert next_of(search) == "at"
+    assert next_of(search) is None
+    search.tell(0, Verdict(Schedule("at"), widths=(-2, 3)))
+    assert [next_of(search) for _ in range(4)] == ["at:0=1", "at:1=1", "at:1=2", None]
+
+
+def test_a_systematic_search_has_two_preemptions_by_default() -> None:
+    found: list[list[str]] = []
+    for depth in (None, 2, 1):
+        search, texts = make_search("dfs", depth, 10, Schedule()), list[str]()
+        while (schedule := search.next()) is not None:
+            texts.append(schedule.text())
+            search.tell(len(texts) - 1, Verdict(schedule, widths=(-2, -2, -2)))
+        found.append(texts)
+    assert found[0] == found[1]
+    assert len(found[1]) == 1 + 3 + 3
+    assert len(found[2]) == 1 + 3
+
+
+@pytest.mark.parametrize(("tick_ns", "hold"), [(0, "1ms"), (500_000, "1ms"), (10_000_000, "10ms")])
+def test_tasks_are_held_up_for_a_tick_at_least(tick_ns: int, hold: str) -> None:
+    search = make_search("all", None, 50, Schedule.parse("at"), tick_ns=tick_ns)
+    search.next()
+    search.tell(0, Verdict(Schedule(), decisions=50))
+    assert any(str(search.next()).endswith(f"hold={hold}") for _ in range(4))

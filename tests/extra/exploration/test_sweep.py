@@ -1,0 +1,77 @@
+"""What a sweep finds: rates that came, what was lost, and the knee."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.extra.exploration.crews import make_crew
+from cfepy.extra.exploration.lot import answers
+from cfepy.extra.exploration.sweep import Point, PointNumbers, Sweep, SweepRow, TopicNumbers, knees, sweep_table
+from cfepy.extra.exploration.sweep_points import points_of
+from cfepy.mission import read_mission
+from cfepy.pilot.plan import RunPlan
+
+TOPICS = ("/left_to_right", "/right_to_left")
+
+
+def numbers(came_hz: float, lost: int = 0, problem: str = "") -> PointNumbers:
+    topic = TopicNumbers("/a", 10, 10, lost, 0, came_hz, 1.0, 2.0)
+    return PointNumbers("small", topics=(topic,), problem=problem)
+
+
+def row(rate_hz: float, came_hz: float, seed: int = 0, lost: int = 0) -> SweepRow:
+    return SweepRow(Point(rate_hz=rate_hz, seed=seed), numbers(came_hz, lost), ())
+
+
+def test_the_knee_is_where_a_rate_no_longer_comes() -> None:
+    (knee,) = knees([row(10, 10), row(100, 99.5), row(200, 150), row(400, 400)])
+    assert (knee.clean_hz, knee.broken_hz) == (100, 200)
+    assert knee.text == "small: clean up to 100 Hz; at 200 Hz /a came at 150.0 Hz"
+
+
+def test_a_rate_is_clean_when_it_is_under_all_seeds() -> None:
+    (knee,) = knees([row(10, 10), row(10, 10, seed=1), row(20, 20), row(20, 20, seed=1, lost=1)])
+    assert (knee.clean_hz, knee.broken_hz, knee.why) == (10, 20, "/a lost 1 of 10")
+
+
+def test_no_knee() -> None:
+    assert knees([row(10, 10)])[0].text == "small: clean up to 10 Hz, the highest rate that was flown"
+    assert knees([row(10, 5)])[0].text == "small: not clean at any rate; at 10 Hz /a came at 5.0 Hz"
+    assert knees([SweepRow(Point(), numbers(5), ())]) == []
+
+
+def test_what_went_wrong_is_no_clean_run() -> None:
+    assert numbers(10, problem="ARM died").why_not_clean(10) == "ARM died"
+    assert PointNumbers().why_not_clean(None) == "no message came"
+    assert numbers(5).why_not_clean(None) == ""
+
+
+def test_a_point_of_the_board_mission() -> None:
+    (point, varied), *_ = points_of(read_mission("rx64m_pubsub"), [None], [160], [], [0])
+    found = Sweep(RunPlan(("rx64m_pubsub",), seconds=2), TOPICS).judge(point)
+    assert found.board == "rx64m"
+    assert [topic.name for topic in found.topics] == list(TOPICS)
+    assert [topic.delivered_hz for topic in found.topics] == pytest.approx([100, 100], rel=0.01)
+    assert found.why_not_clean(160).startswith("/left_to_right came at 100.0 Hz, ")
+    heads, cells = sweep_table([SweepRow(point, found, varied)])
+    assert [dict(zip(heads, each, strict=True))["topic"] for each in cells] == list(TOPICS)
+
+
+def test_a_point_that_cannot_be_is_told(tmp_path: Path) -> None:
+    found = Sweep(RunPlan((str(tmp_path),))).judge(Point())
+    assert found.problem
+    assert not found.trouble
+
+
+@pytest.mark.slow
+def test_the_knee_of_two_boards_from_any_number_of_processes() -> None:
+    points = points_of(read_mission("rx64m_pubsub"), ["rx64m", "linux"], [100, 125, 1000], [], [0])
+    lot = Sweep(RunPlan(("rx64m_pubsub",), seconds=3), TOPICS)
+    here = [lot.judge(point) for point, _ in points]
+    for jobs in (1, 2):
+        assert [each for _, each in sorted(answers(lot, [each for each, _ in points], make_crew(6, jobs)))] == here
+    small, large = knees([SweepRow(point, each, varied) for (point, varied), each in zip(points, here, strict=True)])
+    assert (small.clean_hz, small.broken_hz) == (100, 125)
+    assert (large.clean_hz, large.broken_hz) == (1000, None)

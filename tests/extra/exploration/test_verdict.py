@@ -1,0 +1,90 @@
+"""Failures are grouped by what they have in common."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, fields
+
+from cfepy.extra.exploration.verdict import DIED, EVENT, INVARIANT, RESULTS, Failure, Findings, Verdict
+from cfepy.schedules import Schedule
+
+
+def died(text: str) -> Failure:
+    return Failure(DIED, "ARM", text, 1)
+
+
+def test_numbers_make_no_other_failure() -> None:
+    assert (
+        died("ValueError: 17 of 20.5 at 0x1F (arm.py:12)").group
+        == died("ValueError: 3 of 1e-9 at 0x2 (arm.py:12)").group
+    )
+
+
+def test_values_in_quotes_make_no_other_failure() -> None:
+    assert died("KeyError: 'left' (arm.py:12)").group == died("KeyError: 'right' (arm.py:12)").group
+    assert died("it isn't so").group != died("it isn't there").group
+
+
+def test_what_tells_causes_apart_counts_in_place_of_the_text() -> None:
+    assert (
+        Failure(EVENT, "ARM", "joint left", cause="event 5").group
+        == Failure(EVENT, "ARM", "x", 7, cause="event 5").group
+    )
+    assert Failure(EVENT, "ARM", "x", cause="event 5").group != Failure(EVENT, "ARM", "x", cause="event 6").group
+
+
+def test_lines_of_source_do() -> None:
+    assert died("KeyError: 1 (arm.py:12)").group != died("KeyError: 1 (arm.py:13)").group
+
+
+def test_kind_and_who_do() -> None:
+    groups = {Failure(kind, who, "x").group for kind in (DIED, INVARIANT) for who in ("A", "B")}
+    assert len(groups) == 4
+
+
+def test_plain_data_has_the_schedule_as_text() -> None:
+    schedule = Schedule.parse("pct:3:2:60:hold=1ms")
+    verdict = Verdict(schedule, (died("x"),), deviations=((3, 1),), widths=(2, -2))
+    plain = verdict.to_dict()
+    assert list(plain) == [each.name for each in fields(Verdict)]
+    assert plain["schedule"] == "pct:3:2:60:hold=1ms"
+    assert plain["failures"] == (asdict(died("x")),)
+    assert Verdict.from_dict(json.loads(json.dumps(plain))) == verdict
+
+
+def test_each_failure_is_found_once_with_its_first_schedule() -> None:
+    findings = Findings(Verdict(Schedule()))
+    bad = Verdict(Schedule("random", 2), (died("x"), Failure(RESULTS, "/total", "other")))
+    assert not findings.take(0, Verdict(Schedule("random", 0)))
+    assert findings.take(2, bad)
+    assert findings.take(7, bad)
+    (finding,) = findings.all()
+    assert (finding.number, finding.numbers, finding.median_schedules) == (2, [2, 7], 4)
+    assert finding.others == ("results differ: /total: other",)
+
+
+def test_the_runs_with_the_fewest_preemptions_are_those_to_shrink() -> None:
+    findings = Findings(Verdict(Schedule()))
+    for number, preemptions in enumerate((5, 2, 3, 7, 4)):
+        findings.take(number, Verdict(Schedule("random", number), (died("x"),), preemptions=preemptions))
+    (finding,) = findings.all()
+    assert finding.verdict.schedule == Schedule("random", 0)
+    assert [each.schedule.seed for each in finding.simplest] == [1, 2, 4]
+
+
+def test_what_fails_by_default_does_not_hide_the_rest() -> None:
+    known, new = died("always"), died("sometimes")
+    findings = Findings(Verdict(Schedule(), (known,)))
+    assert not findings.take(0, Verdict(Schedule("random", 0), (known,)))
+    assert findings.take(1, Verdict(Schedule("random", 1), (known, new)))
+    assert [(each.failure.text, each.in_reference) for each in findings.all()] == [
+        ("always", True),
+        ("sometimes", False),
+    ]
+
+
+def test_errors_of_cfepy_are_kept_apart() -> None:
+    findings = Findings(Verdict(Schedule()))
+    findings.take(0, Verdict(Schedule("random", 0), trouble="Traceback"))
+    assert findings.all() == []
+    assert [each.schedule for each in findings.troubles] == [Schedule("random", 0)]

@@ -1,0 +1,18 @@
+"""The core flies without its add-ons: each is taken out of a copy, and the rest goes on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from dev.take_out import ALL, NAMES, Copy
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.mark.parametrize("name", [*NAMES, ALL])
+def test_the_rest_flies(name: str, tmp_path: Path) -> None:
+    copy = Copy(tmp_path / "cfepy", NAMES if name == ALL else [name])
+    for tried in copy.flights():
+        assert not tried.trouble, tried.what
