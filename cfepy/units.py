@@ -16,3 +16,9 @@ def time_word(time_ns: int) -> str:
     """A time as a whole number of the largest unit that it has, such as 25ms; 0 is 0s."""
     unit, size = next((unit, size) for unit, size in reversed(TIME_UNITS.items()) if time_ns % size == 0)
     return f"{time_ns // size}{unit}"
+
+
+def time_text(duration_ns: int) -> str:
+    """A time as people write it: "2.5 ms"."""
+    unit = next((name for name in ("s", "ms", "us") if duration_ns >= TIME_UNITS[name]), "ns")
+    return f"{duration_ns / TIME_UNITS[unit]:.6g} {unit}"

@@ -75,15 +75,16 @@ def _signals_are_answered_as_before() -> Iterator[None]:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Files that the quick loop leaves out are not even read."""
-    asked = config.getoption("markexpr") == quick.MARK
-    return True if asked and quick.is_long(collection_path.relative_to(Path(__file__).parent)) else None
+    """Files of which the quick loop has no test are not even read."""
+    return True if config.getoption("markexpr") == quick.MARK and quick.is_dear(collection_path) else None
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> Generator[None, None, None]:
-    """Mark the tests of the quick loop, which are the first of their files, before the order is shuffled."""
-    functions = [item for item in items if isinstance(item, pytest.Function) and not item.get_closest_marker("slow")]
-    for item in quick.quick_ones(functions):
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Generator[None, None, None]:
+    """Mark the tests of the quick loop, and see whether the table of costs is about the tests that there are."""
+    for item in quick.quick_ones(items):
         item.add_marker(quick.MARK)
+    if not any("::" in word for word in config.args) and not config.getoption("lf", False):
+        config.stash[quick.STALE] = quick.stale_lines(items)
     yield
+    items.sort(key=lambda item: item.get_closest_marker("xdist_group") is None)  # long ones, one after the other, first

@@ -1,55 +1,37 @@
-"""The quick loop: `python -m pytest -m quick`, some seconds of each package after a change, before the whole suite.
+"""The quick loop: `python -m pytest -m quick`, all tests that cost little, after a change and before the whole suite.
 
-The rule: of each file the first cases of its first tests, which are those of what it is about. Left out are the folders
-whose tests search, fly long sessions or look at other people's code, and files in which even the first tests take long.
+A test is in it unless it is a slow one or stands in the table of costs, `tests/costs.tsv`, which `python -m dev.costs`
+measures and writes. A new test is in it until it was measured.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Protocol, TypeVar
+
+import pytest
+
+from dev.costs.table import ROOT, Table, file_of, function_of
 
 MARK = "quick"
-TESTS_OF_A_FILE = 3
-LONG_FOLDERS = {"corpus", "functional", "packaging", "peers", "property", "quality", "requirements", "ros_nodes"}
-LONG_FILES = {
-    "test_actionlib_goals", "test_actionlib_simple", "test_app_life", "test_bag", "test_campaign",
-    "test_campaign_property", "test_capture_resets", "test_check_determinism", "test_collector", "test_command",
-    "test_crews", "test_determinism", "test_determinism_nodes", "test_distributions", "test_documentation",
-    "test_evs_apps", "test_evs_log", "test_example_package", "test_explore", "test_exploring_numbers",
-    "test_faults_command", "test_fork_server", "test_forking_judge", "test_genpy_equal", "test_golden_files",
-    "test_golden_telemetry", "test_host_network", "test_hypothesis", "test_isolation", "test_launch_files",
-    "test_leftovers", "test_life", "test_link", "test_missions", "test_network", "test_new", "test_ordered_sets",
-    "test_page_in_browser", "test_plan", "test_plugin", "test_processor_faults", "test_property", "test_psutil",
-    "test_put_faults", "test_random_commands", "test_replay", "test_report", "test_ros_faults", "test_rows",
-    "test_sch", "test_shipment", "test_shipped_missions", "test_shrink", "test_slave_api", "test_strategies",
-    "test_stuck", "test_table_yaml", "test_tables", "test_tbl_properties", "test_text", "test_time_values",
-    "test_uplink_fuzz", "test_xtce",
-}  # fmt: skip
+TABLE = Table.read()
+STALE = pytest.StashKey[list[str]]()
+"""Lines of the table that name no test of the default suite, of the files that were collected whole."""
 
 
-class Test(Protocol):
-    """What is asked of a collected test: its file, its function and its case."""
-
-    path: Path
-    originalname: str
+def is_dear(path: Path) -> bool:
+    """Whether no test of a file is in the quick loop, which need not be read then."""
+    return path.relative_to(ROOT).as_posix() in TABLE.costs
 
 
-T = TypeVar("T", bound=Test)
+def quick_ones(tests: Iterable[pytest.Item]) -> Iterator[pytest.Item]:
+    """The tests of the quick loop."""
+    return (test for test in tests if not test.get_closest_marker("slow") and test.nodeid not in TABLE)
 
 
-def is_long(path: Path) -> bool:
-    """Whether a file or folder of tests is left out of the quick loop."""
-    return path.stem in LONG_FILES or not LONG_FOLDERS.isdisjoint(path.parts)
-
-
-def quick_ones(tests: Iterable[T]) -> Iterator[T]:
-    """The first cases of the first tests of each file."""
-    seen: dict[Path, set[str]] = {}
-    for test in tests:
-        of_file = seen.setdefault(test.path, set())
-        if test.originalname in of_file or len(of_file) == TESTS_OF_A_FILE or is_long(test.path):
-            continue
-        of_file.add(test.originalname)
-        yield test
+def stale_lines(tests: Iterable[pytest.Item]) -> list[str]:
+    """The lines of the table that stand for none of the tests, which are all of their files."""
+    names = [test.nodeid for test in tests if not test.get_closest_marker("slow")]
+    known = {name for test in names for name in (test, function_of(test), file_of(test))}
+    files = {file_of(name) for name in names}
+    return sorted(line for line in TABLE.costs.keys() - known if file_of(line) in files)

@@ -11,7 +11,6 @@ from dev.house import figures
 from dev.house.floors import allowed, homeless, wrong_arrows
 from dev.house.picture import HOUSE, MESSAGE, draw
 from dev.house.tree import ROOT, Tree, the_tree
-from tests import quick
 
 FILES = {
     "cfepy/__init__.py": '"""The face."""\n__version__ = "1"\n',
@@ -114,12 +113,6 @@ def test_the_pictures_are_those_of_this_tree(path: Path) -> None:
     assert number.sub("", committed) == number.sub("", drawn), "run python -m dev.house --picture"
     for old, new in zip(number.findall(committed), number.findall(drawn), strict=True):
         assert abs(int(old.replace(",", "")) / int(new.replace(",", "")) - 1) < 0.25, "python -m dev.house --picture"
-
-
-def test_what_the_quick_loop_leaves_out_is_there() -> None:
-    tests = ROOT / "tests"
-    assert {path.stem for path in tests.rglob("test_*.py")} >= quick.LONG_FILES
-    assert {path.name for path in tests.iterdir()} >= quick.LONG_FOLDERS
 
 
 def test_each_package_names_its_central_file() -> None:

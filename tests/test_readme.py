@@ -40,6 +40,7 @@ def missing(lines: list[str], printed: str) -> Iterator[str]:
             del left[: left.index(line) + 1]
 
 
+@pytest.mark.slow
 def test_the_demonstration(capsys: pytest.CaptureFixture[str]) -> None:
     main(["run", "capture", "--for", "20", "--tasks", "greenlet"])
     assert list(missing(sample("CFE_PSP: "), capsys.readouterr().out)) == []

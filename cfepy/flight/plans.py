@@ -5,20 +5,22 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, TypedDict
+from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
 
 from cfepy.attachment import Attachment
-from cfepy.faults import FaultInjector, FaultPlan
 from cfepy.mission import cpp_nodes_source
 from cfepy.pilot import NODE, RUN, RunPlan
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.schedules import Schedule
 
+if TYPE_CHECKING:
+    from cfepy.faults import FaultPlan
+
 MissionWords = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
 """A mission: the name of one that cfepy brings along, a folder, a startup script, a launch file, or a node's .py file;
 in a sequence with what follows it on the command line, such as `("talker.py", "_rate:=5")`."""
 
-Faults = str | os.PathLike[str] | Mapping[str, Any] | FaultPlan
+Faults: TypeAlias = "str | os.PathLike[str] | Mapping[str, Any] | FaultPlan"
 """What goes wrong: a plan's file, "seed:N", a plan, or a dictionary of its form."""
 
 SEED = "seed:"
@@ -129,7 +131,7 @@ def schedule_of(given: str | Schedule) -> Schedule:
 
 def fault_text(faults: Faults | None) -> str | None:
     """What a plan says of the faults; None for those that the program alone has, see `fault_attachments`."""
-    return None if faults is None or isinstance(faults, Mapping | FaultPlan) else os.fspath(faults)
+    return os.fspath(faults) if isinstance(faults, str | os.PathLike) else None
 
 
 def fault_attachments(faults: Faults | None) -> list[Attachment]:
@@ -138,6 +140,8 @@ def fault_attachments(faults: Faults | None) -> list[Attachment]:
     Raises:
         UsageError: something in the plan is wrong.
     """
-    if isinstance(faults, FaultPlan):
-        return [FaultInjector(faults)]
-    return [FaultInjector(FaultPlan.from_dict(faults))] if isinstance(faults, Mapping) else []
+    if faults is None or isinstance(faults, str | os.PathLike):
+        return []
+    from cfepy.faults import FaultInjector, FaultPlan
+
+    return [FaultInjector(FaultPlan.from_dict(faults) if isinstance(faults, Mapping) else faults)]

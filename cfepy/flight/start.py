@@ -8,17 +8,18 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import Unpack
+from typing import TYPE_CHECKING, Unpack
 
 from cfepy.attachment import Attachment
 from cfepy.console import Console
-from cfepy.flight.flight import Flight
 from cfepy.flight.log import FlightLog
 from cfepy.flight.plans import MissionOptions, MissionWords, RunOptions, fault_attachments, plan_of
 from cfepy.flight.run import Run
-from cfepy.journal import Replay, read_journal, record, staged
 from cfepy.pilot import Host, LiveRun, RunPlan, fly
 from cfepy.rtos import Stopwatch
+
+if TYPE_CHECKING:
+    from cfepy.flight.flight import Flight
 
 
 class TimedHost(Host):
@@ -79,6 +80,8 @@ def fly_plan(
     if journal is None:
         flown = fly(plan, spec=spec, attachments=watching, console=console, host=TimedHost())
     else:
+        from cfepy.journal import record
+
         flown = record(plan, os.fspath(journal), watching, spec=spec, console=console, host=TimedHost())
     return Run(plan, flown.mission, log, flown)
 
@@ -105,6 +108,8 @@ def boot(mission: MissionWords, *, attachments: Sequence[Attachment] = (), **opt
         TypeError: there is no such option.
         UsageError: as of `run`.
     """
+    from cfepy.flight.flight import Flight
+
     plan = plan_of(mission, options, MissionOptions.__annotations__)
     return Flight(plan, attachments=[*fault_attachments(options.get("faults")), *attachments])
 
@@ -122,6 +127,8 @@ def replay(journal: str | os.PathLike[str], *, tasks: str | None = None) -> Run:
     Raises:
         UsageError: it is no journal, or its mission cannot fly.
     """
+    from cfepy.journal import Replay, read_journal, staged
+
     journal_of_run = read_journal(os.fspath(journal))
     with staged(journal_of_run) as stage:
         log = FlightLog(stage.spec())

@@ -18,7 +18,7 @@ from cfepy.fs import HEADER_SIZE, TABLE_HEADER_SIZE
 from cfepy.ground.names import CORE_PACKETS
 from cfepy.ground.topics import Topic
 from cfepy.ground.values import int_of, line_of, texts_of
-from cfepy.mission import NODE_SYMBOL, MissionSpec, described, read_mission, sources
+from cfepy.mission import NODE_SYMBOL, MissionSpec, read_mission, sources
 from cfepy.mission.python_code import ModuleNames, execute, find_declarations
 from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Command, Layout, Telemetry
 from cfepy.reading.contained_files import is_contained
@@ -310,6 +310,8 @@ def _of_app(
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # also sys.exit(): the code is the mission's, and may do anything
+        from cfepy.mission import described
+
         problems.append(f"{source} could not be read: {described(error)}")
         return []
     values = (getattr(module, name, ()) for name in attributes)

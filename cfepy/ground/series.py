@@ -18,11 +18,8 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cfepy.attachment import Attachment
-from cfepy.ground.bag import BagReader
 from cfepy.ground.dictionary import Dictionary, dictionary_of
 from cfepy.ground.fields import MessageDecoder, array_of, columns_of, names_in, path_of, steps_of, unit_at, values_at
-from cfepy.ground.json_packets import PACKETS
-from cfepy.ground.recording import packets_of
 from cfepy.ground.topics import topics_of
 from cfepy.ground.values import unknown_field
 from cfepy.markup import headline, rows_of
@@ -325,6 +322,8 @@ def bag_series(file: str, words: Sequence[str] = (), seconds: float | None = Non
     Raises:
         UsageError: there is no such bag, it is broken, or a word names nothing in it.
     """
+    from cfepy.ground.bag import BagReader
+
     packets = [word for word in words if not word.startswith("/")]
     topics = _topics_of(words)
     found = SeriesSet()
@@ -353,6 +352,9 @@ class RecordedPacket(NamedTuple):
 def _take_packets(
     found: SeriesSet, file: str, words: Sequence[str], start_ns: int | None, seconds: float | None
 ) -> None:
+    from cfepy.ground.json_packets import PACKETS
+    from cfepy.ground.recording import packets_of
+
     wanted = {name for word in words for name, _ in meanings(word)}
     there: set[str] = set()
     for message in packets_of(file):

@@ -12,9 +12,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from cfepy.interpreter.faces import face
-from cfepy.monitors.deadlines import Check, DeadlineResult, Overrun, time_text
 
 if TYPE_CHECKING:
+    from cfepy.monitors.deadlines import Check, DeadlineResult, Overrun
     from cfepy.monitors.demands import Demands, demands_of, judges_of, read_demands
     from cfepy.monitors.inversions import InversionWatch
     from cfepy.monitors.liveness import Lack, Limits, LivenessWatch
@@ -59,13 +59,13 @@ __all__ = [
     "read_demands",
     "short",
     "shortened",
-    "time_text",
 ]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".deadlines": ("Check", "DeadlineResult", "Overrun"),
             ".demands": (
                 "Demands",
                 "demands_of",

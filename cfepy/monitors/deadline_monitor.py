@@ -8,12 +8,12 @@ from typing import Any
 
 from cfepy.ground import LiveNames
 from cfepy.mission import Mission, Processor, hearing
-from cfepy.monitors.deadlines import AppDeadline, Check, Deadlines, Overrun, TopicDeadline, limits_of, time_text
+from cfepy.monitors.deadlines import AppDeadline, Check, Deadlines, Overrun, TopicDeadline, limits_of
 from cfepy.monitors.observer import Observer, Sent
 from cfepy.monitors.record import DeadlineRecord
 from cfepy.rtos import Task
 from cfepy.sb import Pipe, SoftwareBus
-from cfepy.units import NS_PER_S
+from cfepy.units import NS_PER_S, time_text
 
 SHOWN = 10  # overruns of one deadline that the console shows; all are in the trace
 KEPT = 1000  # overruns of one deadline that are kept for tools, the first ones

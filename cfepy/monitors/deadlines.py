@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from cfepy.msg import is_valid_msg_id
 from cfepy.reading.marked_yaml import Marked, Mistakes
-from cfepy.units import NS_PER_S, TIME_UNITS
+from cfepy.units import NS_PER_S, TIME_UNITS, time_text
 
 APP_FIELDS = ("response", "period", "jitter", "task")
 TOPIC_FIELDS = ("latency", "at_least_every", "at_most_every")
@@ -145,12 +145,6 @@ def _time(entry: Marked | None, zero: bool = False) -> int | None:
     if not (0 if zero else 1) <= found <= LONGEST_NS:
         raise entry.fail(f"is {entry.value}, it must be from {0 if zero else 1} ns to {LONGEST_NS // NS_PER_S} s")
     return found
-
-
-def time_text(duration_ns: int) -> str:
-    """A time as people write it: "2.5 ms"."""
-    unit = next((name for name in ("s", "ms", "us") if duration_ns >= TIME_UNITS[name]), "ns")
-    return f"{duration_ns / TIME_UNITS[unit]:.6g} {unit}"
 
 
 def limits_of(deadline: AppDeadline | TopicDeadline) -> Mapping[str, int]:

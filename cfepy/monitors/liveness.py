@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from cfepy.mission import CORE_APPS, Processor
-from cfepy.monitors.deadlines import time_text
 from cfepy.monitors.observer import Observer, Sent
 from cfepy.rtos import Task
 from cfepy.sb import Pipe
-from cfepy.units import NS_PER_S
+from cfepy.units import NS_PER_S, time_text
 
 RUNS = 100  # of an application's tasks without a message, from which on it is no idling
 

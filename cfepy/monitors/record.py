@@ -7,10 +7,12 @@ of the processor.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from cfepy.monitors.deadlines import Check, Overrun, time_text
-from cfepy.units import NS_PER_S
+from cfepy.units import NS_PER_S, time_text
+
+if TYPE_CHECKING:
+    from cfepy.monitors.deadlines import Check, Overrun
 
 KEPT_INVERSIONS = 1000
 

@@ -18,6 +18,10 @@ NAMES_OF_NODES: dict[str, str] = {
 """Class names that ROS fixes, so that they may stand for more than one thing."""
 
 
+FREE_NAMES = {"events", "packets", "task", "service", "commands", "app", "tables"}
+"""Names of modules that mean the same in each service and application."""
+
+
 class Face(NamedTuple):
     """Imports across packages of cfepy: past the face of the other, and through it."""
 
@@ -168,6 +172,24 @@ def names_twice(tree: Tree) -> dict[str, list[str]]:
     return {name: places for name, places in sorted(found.items()) if len(places) > 1}
 
 
+def modules_named_twice(tree: Tree) -> dict[str, list[str]]:
+    """Names that stand for two modules or packages, with where they are.
+
+    Left out are `FREE_NAMES`, and three patterns that say what is meant by where they stand: the module of a command,
+    which has its name; the parts of the API in C, which are those of the packages; a package and its central module.
+    """
+    found: dict[str, list[str]] = {}
+    for name, module in tree.modules.items():
+        parts = name.split(".")
+        last = parts[-1]
+        is_command = "commands" in parts or (parts[:2] == ["cfepy", "cli"] and (module.is_package or len(parts) == 4))
+        is_part_of_api = name.startswith("cfepy.extra.c.api.")
+        is_central = len(parts) > 1 and parts[-2] == last
+        if last not in FREE_NAMES and not (is_command or is_part_of_api or is_central):
+            found.setdefault(last, []).append(module.where)
+    return {name: places for name, places in sorted(found.items()) if len(places) > 1}
+
+
 def class_names(tree: Tree) -> int:
     """How many names of public classes there are."""
     return len({name for module in tree.modules.values() for name in module.classes})
@@ -195,6 +217,11 @@ def offered(tree: Tree) -> list[str]:
             if isinstance(target, ast.Name) and (not target.id.startswith("_") or target.id == "__version__"):
                 names.append(target.id)
     return names
+
+
+def entries(tree: Tree) -> list[str]:
+    """The modules and packages right below `cfepy/`."""
+    return sorted({name.split(".")[1] for name in tree.modules if name.startswith("cfepy.")})
 
 
 ABOUT_IMPORTS = re.compile(
@@ -229,6 +256,7 @@ def report(tree: Tree) -> str:
     hidden = by_name(tree)
     twice = names_twice(tree)
     told = sentences_about_imports(tree)
+    named_twice = modules_named_twice(tree)
     longest = sorted(modules, key=lambda module: -module.lines)[:5]
     what = [
         ("files and lines in `cfepy`", f"{len(modules):,}; {lines:,}"),
@@ -242,6 +270,8 @@ def report(tree: Tree) -> str:
         ("imports up or of a peer", len(list(wrong_arrows(tree)))),
         ("imports of other packages by name", f"{len(hidden)}, not readable: {_unread(tree)}"),
         ("public class names that stand for two things", f"{len(twice)} of {class_names(tree)}: {', '.join(twice)}"),
+        ("names that stand for two modules", f"{len(named_twice)}: {', '.join(named_twice)}"),
+        ("entries of `cfepy/`", len(entries(tree))),
         ("what `import cfepy` offers", f"{len(offered(tree))}: {', '.join(offered(tree))}"),
         ("module heads that say what is imported", len(told)),
     ]

@@ -43,6 +43,7 @@ def check(folder: str, *options: str) -> int:
     return main(["run", folder, "--for", "1", "--check-determinism", *options])
 
 
+@pytest.mark.slow
 def test_a_deterministic_mission(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = write_mission(tmp_path, STARTUP, talker=TALKER.format(names="sorted(names)"), listener=LISTENER)
     assert check(folder) == 0
@@ -75,6 +76,7 @@ def test_messages_without_a_subscriber_count(tmp_path: Path, capsys: pytest.Capt
     assert "ordered_sets: true" in shown
 
 
+@pytest.mark.slow
 def test_messages_without_a_subscriber_are_not_in_the_digest(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -86,6 +88,7 @@ def test_messages_without_a_subscriber_are_not_in_the_digest(
     assert compared == capsys.readouterr().out.splitlines()[-1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "mission_yaml", ["ordered_sets: true\n", "ordered_sets: false\nnodes: {TALKER: {ordered_sets: true}}\n"]
 )
@@ -118,6 +121,7 @@ def test_other_causes(tmp_path: Path, capsys: pytest.CaptureFixture[str], expres
     assert f"{tmp_path / 'talker.py'}:5: uses " in shown
 
 
+@pytest.mark.slow
 def test_an_application(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     program = """
     def Main(cfe):
@@ -142,6 +146,7 @@ def test_the_text_of_an_object_has_its_address() -> None:
     assert "address" not in shown(b"1 <arm.Joint object at 0x7f0012345678>", b"2 <arm.Joint object at 0x7f0012345678>")
 
 
+@pytest.mark.slow
 def test_with_a_script_a_board_and_a_schedule(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     script = tmp_path / "flight.txt"
     script.write_text("at 3 end\n", encoding="utf-8")
@@ -199,6 +204,7 @@ today = numpy.datetime64("today")
 """
 
 
+@pytest.mark.slow
 def test_what_goes_past_the_simulated_computer_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = str(tmp_path / "raw.bin")
     folder = write_mission(tmp_path, STARTUP, talker=HOST.format(path=path), listener=LISTENER)

@@ -147,7 +147,7 @@ def flying(folder: Path) -> tuple[subprocess.Popen[str], Path, Path]:
 
 def started(*options: str, below: Sequence[str] = ()) -> subprocess.Popen[str]:
     """A run of capture, its output in pipes."""
-    words = [*below, sys.executable, "-m", "cfepy", "run", "capture", *options]
+    words = [*below, sys.executable, "-u", "-m", "cfepy", "run", "capture", *options]  # each line is seen at once
     return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 

@@ -26,6 +26,7 @@ def explore(*words: object) -> int:
     return main(["explore", *map(str, words), "--tasks", "greenlet", "--quiet"])
 
 
+@pytest.mark.slow
 def test_a_failure_is_told_once_with_its_command_and_timeline(
     late: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -75,6 +76,7 @@ def test_a_failure_of_the_default_schedule_is_told_as_such(tmp_path: Path, capsy
     assert "--schedule" not in out
 
 
+@pytest.mark.slow
 def test_the_report_does_not_depend_on_the_number_of_processes(late: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = (late, "--for", 0.7, "--seeds", 6, "--shrink", 8)
     explore(*words, "--jobs", 1)
@@ -92,6 +94,7 @@ def test_it_stops_with_the_first_failure_when_asked(late: Path, capsys: pytest.C
     assert "--schedule at:" in out
 
 
+@pytest.mark.slow
 def test_results_are_kept_in_a_file_and_not_run_again(
     late: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -124,6 +127,7 @@ RACE = """
 """
 
 
+@pytest.mark.slow
 def test_a_result_that_depends_on_who_goes_first(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = missions.write(tmp_path, {"RACE": RACE}, "results: {/winner: last}\n")
     words = (folder, "--for", 0.7, "--seeds", 30, "--jobs", 1, "--until-failure", "--policy", "random", "--shrink", 5)
@@ -136,6 +140,7 @@ def test_a_result_that_depends_on_who_goes_first(tmp_path: Path, capsys: pytest.
 OTHERS = ("--policy pct", "--depth 2", "--first-seed 5", "--any-priority", "--hold 1ms", "--from 600ms")
 
 
+@pytest.mark.slow
 def test_results_of_another_search_are_refused(late: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = (late, "--for", 0.1, "--jobs", 1, "--shrink", 0, "--results", tmp_path / "results", "--seeds")
     explore(*words, 1)
@@ -162,6 +167,7 @@ def test_an_error_of_cfepy_is_no_success(
     assert "3 with an error in cfepy itself" in out
 
 
+@pytest.mark.slow
 def test_a_task_that_waits_for_ever_may_be_let(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = missions.write(tmp_path / "pair", {"PAIR": missions.LOST_WAKE_UP})
     words = (folder, "--for", 0.8, "--seeds", 6, "--jobs", 1, "--shrink", 0, "--results", tmp_path / "results")

@@ -145,6 +145,7 @@ def test_a_single_node_with_faults(tmp_path: Path, capsys: pytest.CaptureFixture
     assert "fault drop-1 (drop /none) never happened" in err
 
 
+@pytest.mark.slow
 def test_a_launch_file_with_faults(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "beat.py").write_text(
         "#!/usr/bin/env python3\nimport rospy\nrospy.init_node('beat')\nrospy.spin()\n", encoding="utf-8"

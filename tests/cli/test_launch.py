@@ -167,6 +167,7 @@ def test_hints_at_what_was_meant(write_launch: Launch, demo: Path, capsys: pytes
     assert "unrecognized arguments: --xyzzy; what the node itself is to get comes after --" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_launch_file_where_a_mission_is_meant(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
     file = write_launch(TALKER.format("", COUNT.format(3)))
     main(["launch", file, "--quiet"])

@@ -100,12 +100,10 @@ CASES = {
     ),
     "crash that was asked for": Case(QUIET, faults="faults: [{crash: PROG, at: 0.9}]\n", startup=APP),
 }
-QUICK = ("quiet", "callback", "event, and a script that does well")
 
 
-@pytest.mark.parametrize(
-    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in CASES]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CASES)
 def test_every_command_has_the_same_verdict(
     tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -140,23 +140,39 @@ def plan_that_takes_off(words: list[str], monkeypatch: pytest.MonkeyPatch) -> Ru
     return took_off.value.plan
 
 
+@pytest.fixture
+def handed(words: dict[str, list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., RunPlan]:
+    """Give a command with options, and take the plan that it hands to the pilot."""
+
+    def plan_of(command: str, *options: str) -> RunPlan:
+        if "launch_args" in options:  # which only a launch file takes, and reading it comes before the flight
+            monkeypatch.setattr("cfepy.pilot.plan.read_mission", lambda word, args, build: read_mission_of(tmp_path))
+        monkeypatch.chdir(tmp_path)
+        said = [word for option in options for word in OPTIONS[option][0]]
+        return plan_that_takes_off([*words[command], *said], monkeypatch)
+
+    return plan_of
+
+
+def test_all_commands_are_tried(words: dict[str, list[str]]) -> None:
+    assert list(words) == list(COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_hands_all_options_to_the_pilot(command: str, handed: Callable[..., RunPlan]) -> None:
+    options = [option for option in OPTIONS if (command, option) not in SAID_OTHERWISE]
+    plan = handed(command, *options)
+    assert {option: getattr(plan, option) for option in options} == {option: OPTIONS[option][1] for option in options}
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("option", OPTIONS)
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_hands_every_option_to_the_pilot(
-    command: str,
-    option: str,
-    words: dict[str, list[str]],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    command: str, option: str, handed: Callable[..., RunPlan]
 ) -> None:
-    if (command, option) in SAID_OTHERWISE:
-        return
-    assert list(words) == list(COMMANDS)
-    said, expected = OPTIONS[option]
-    if option == "launch_args":  # which only a launch file takes, and reading it comes before the flight
-        monkeypatch.setattr("cfepy.pilot.plan.read_mission", lambda word, args, build: read_mission_of(tmp_path))
-    monkeypatch.chdir(tmp_path)
-    assert getattr(plan_that_takes_off([*words[command], *said], monkeypatch), option) == expected
+    if (command, option) not in SAID_OTHERWISE:
+        assert getattr(handed(command, option), option) == OPTIONS[option][1]
 
 
 def read_mission_of(folder: Path) -> object:

@@ -162,6 +162,7 @@ def test_a_full_disk_is_told_at_the_end(tmp_path: Path, capsys: pytest.CaptureFi
     assert "/dev/full: --record: cannot be written" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_diff_of_a_change_in_the_code(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for step in (1, 2):
         main(["run", adder(tmp_path / "mission", step), "--for", "2", "--quiet", "--record", f"{step}.cfepy"])
@@ -187,6 +188,7 @@ def Main(cfe):
 """
 
 
+@pytest.mark.slow
 def test_diff_shows_where_files_were_and_leaves_nothing_behind(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -64,6 +64,7 @@ def test_a_test_in_another_language_is_an_error(write_launch: Launch, capsys: py
     assert "[demo.g.can_run_here][ERROR]\n    package 'demo' has no file 'gtest'" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_test_is_retried_with_another_seed(demo: Path, write_launch: Launch) -> None:
     (demo / "scripts/flaky.py").write_text(
         "import random, sys, unittest, rostest\n"

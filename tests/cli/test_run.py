@@ -283,6 +283,7 @@ def test_ctrl_c_ends_a_run_with_its_report(make_mission: Write, options: tuple[s
     assert "ended by Ctrl-C or SIGTERM after " in err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "told"),
     [

@@ -130,7 +130,8 @@ def test_any_message_may_be_the_one_that_is_lost(tmp_path: Path, number: int) ->
     assert row["details"] == [f"drops /request #{number} sent by CANDIDATES"]
 
 
-@pytest.mark.parametrize("kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind != "drop")) for kind in FAULTS])
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", FAULTS)
 def test_threads_and_greenlets_do_the_same(tmp_path: Path, kind: str) -> None:
     plan = plan_of(tmp_path, FAULTS[kind])
     one, other = (

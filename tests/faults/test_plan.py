@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cfepy.faults import Fault, FaultPlan, Targets, When, random_plan, read_plan
@@ -145,6 +145,7 @@ TARGETS: Any = st.builds(
 )
 
 
+@settings(max_examples=30)
 @given(st.integers(0, 2**64), TARGETS, st.sampled_from(sorted(INTENSITIES)))
 def test_random_plans_are_plans(seed: int, targets: Targets, intensity: str) -> None:
     plan = random_plan(seed, targets, intensity)

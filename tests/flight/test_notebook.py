@@ -85,6 +85,7 @@ def test_a_flight() -> None:
         assert "PacketID.AppName" in series
 
 
+@pytest.mark.slow
 def test_an_exploration() -> None:
     mission = Path(__file__).parents[1] / "quality/missions/lost_update"
     found = cfepy.explore(mission, seeds=3, seconds=1, jobs=1, shrink=20)

@@ -216,7 +216,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "run.bag"
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(st.lists(st.tuples(st.floats(0, 1, exclude_max=True), st.integers(0, 255)), min_size=1, max_size=5))
 def test_a_broken_bag_is_read_or_named(whole: Path, changes: list[tuple[float, int]]) -> None:
     data = bytearray(whole.read_bytes())

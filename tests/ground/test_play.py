@@ -132,6 +132,7 @@ def test_options_that_cannot_be(options: str, why: str, tmp_path: Path) -> None:
         heard(tmp_path, options)
 
 
+@pytest.mark.slow
 def test_packets_of_a_raw_topic_are_played_as_they_were_recorded(tmp_path: Path) -> None:
     bag, topic = tmp_path / "packets.bag", "/cfe/hk/combined_pkt1"
     assert main(["run", "capture", "--for", "4", "--quiet", "--bag", str(bag), "--bag-topics", topic]) == 0

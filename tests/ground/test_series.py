@@ -138,6 +138,7 @@ def test_a_bag_has_topics_only(tmp_path: Path) -> None:
         bag_series(file, ["CFE_ES_HK_TLM"])
 
 
+@pytest.mark.slow
 def test_an_mcap_file_has_packets_as_the_run_has(tmp_path: Path) -> None:
     file, recorder = str(tmp_path / "run.mcap"), SeriesRecorder()
     with McapRecorder(file) as mcap:

@@ -62,7 +62,7 @@ def test_any_image_comes_back(image: bytes, tmp_path_factory: pytest.TempPathFac
     assert through_yaml(file, tmp_path_factory.mktemp("any")).pack() == file.pack()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(
     used=st.dictionaries(
         st.integers(0, 7),

@@ -48,6 +48,7 @@ def test_a_source_that_is_nested_too_deeply_is_a_syntax_error(text: str) -> None
             parse(text)
 
 
+@pytest.mark.slow
 def test_a_source_that_is_looked_into_is_held_to_its_limits() -> None:
     attributes = PYTHON_DEPTH - 5
     assert parsed_input(f"x{'.a' * attributes}").body

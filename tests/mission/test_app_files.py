@@ -119,6 +119,7 @@ def test_it_can_be_kept(mission: str, folder: Path, tmp_path: Path, monkeypatch:
     assert log.read_text(encoding="utf-8") == "first one\nsecond one\n"
 
 
+@pytest.mark.slow
 def test_nothing_of_it_is_past_the_simulated_computer(
     mission: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

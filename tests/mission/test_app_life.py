@@ -109,8 +109,14 @@ LEAKY = """
 """
 
 
-@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_a_hundred_restarts_leave_nothing_behind(tmp_path: Path, tasks: str) -> None:
+@pytest.mark.parametrize(
+    ("tasks", "count"),
+    [
+        *(("thread", 25), ("greenlet", 25)),
+        *(pytest.param(tasks, 100, marks=pytest.mark.slow) for tasks in ("thread", "greenlet")),
+    ],
+)
+def test_many_restarts_leave_nothing_behind(tmp_path: Path, tasks: str, count: int) -> None:
     folder = write_mission(tmp_path, APP.format("leaky", "LEAKY", 0) + "!", leaky=LEAKY)
     drain()
     threads = _thread._count()
@@ -119,13 +125,13 @@ def test_a_hundred_restarts_leave_nothing_behind(tmp_path: Path, tasks: str) -> 
         mission.run_for(2)
         es = mission.cfe.es
         before = held(mission)
-        for number in range(100):
+        for number in range(count):
             app = es.app_named("LEAKY")
             assert app is not None, number
             assert app.state == RUNNING
             es.restart_app(app.app_id)
             mission.run_for(8)
-        assert es.history["LEAKY"].restarts == 100
+        assert es.history["LEAKY"].restarts == count
         assert held(mission) == before
     drain()
     assert _thread._count() == threads

@@ -42,8 +42,9 @@ def digest(folder: str, tasks: str, slices: list[float]) -> str:
         return mission.trace.digest()
 
 
-def test_both_contexts_and_any_slicing_give_one_trace(folder: str) -> None:
-    slices = [[25.0], [12.5, 12.5], [0.1] * 250, [10.0, 0.0, 15.0]]
+@pytest.mark.parametrize("seconds", [5, pytest.param(25, marks=pytest.mark.slow)])
+def test_both_contexts_and_any_slicing_give_one_trace(folder: str, seconds: int) -> None:
+    slices = [[seconds], [seconds / 2] * 2, [0.1] * (seconds * 10), [seconds * 0.4, 0.0, seconds * 0.6]]
     assert len({digest(folder, tasks, cut) for tasks in ("thread", "greenlet") for cut in slices}) == 1
 
 
@@ -65,13 +66,14 @@ def digest_in_process(mission: str, tasks: str, seconds: float, hash_seed: str) 
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.strip()
 
 
-def test_hash_seeds_do_not_matter(folder: str) -> None:
-    seeds = ["0", "1", "4242"]
+@pytest.mark.parametrize("seeds", [["4242"], pytest.param(["0", "1", "77"], marks=pytest.mark.slow)], ids=len)
+def test_hash_seeds_do_not_matter(folder: str, seeds: list[str]) -> None:
     assert (
         len({digest_in_process(folder, "thread", 5, seed) for seed in seeds} | {digest(folder, "thread", [5.0])}) == 1
     )
 
 
+@pytest.mark.slow
 def test_hash_seeds_do_not_matter_to_nodes() -> None:
     digests = {digest_in_process("capture", tasks, 1.2, seed) for tasks, seed in (("thread", "7"), ("greenlet", "99"))}
     assert len(digests) == 1
@@ -85,9 +87,8 @@ def eventful(hash_seed: int, *arguments: object) -> subprocess.Popen[str]:
     return subprocess.Popen(command, cwd=root, env=environment, stdout=subprocess.PIPE, text=True)
 
 
-@pytest.mark.parametrize(
-    ("mission", "schedule"), [("lab", []), ("sched", [7]), pytest.param("capture", [7], marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("mission", "schedule"), [("lab", []), ("sched", [7]), ("capture", [7])])
 def test_resets_and_a_ground_link_change_nothing(mission: str, schedule: list[int]) -> None:
     flights = [
         eventful(0, mission, "thread", 1, *schedule),

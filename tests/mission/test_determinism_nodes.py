@@ -43,6 +43,7 @@ def test_all_nodes_come_to_their_end(folder: str) -> None:
     assert last["clocks"].startswith("['clocks.py', 'loop.py', 'robot.py', 'startup.scr', 'workers.py']")
 
 
+@pytest.mark.slow
 def test_a_few_runs(folder: str) -> None:
     assert check(folder, 3) == 0
 

@@ -51,9 +51,10 @@ def fly(seconds: float = SECONDS, tasks: str = "thread") -> Mission:
     return mission
 
 
+@pytest.mark.parametrize("flights", [3, pytest.param(FLIGHTS, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_missions_do_not_pile_up(tasks: str) -> None:
-    for _ in range(FLIGHTS):
+def test_missions_do_not_pile_up(tasks: str, flights: int) -> None:
+    for _ in range(flights):
         fly(tasks=tasks)
     found = parts()
     assert found["Mission"] <= 1  # of the last one, which nobody has looked for since
@@ -61,6 +62,7 @@ def test_missions_do_not_pile_up(tasks: str) -> None:
     assert found["Universe"] <= 4  # of which each flight makes four
 
 
+@pytest.mark.slow
 def test_those_that_were_watched_do_not_pile_up() -> None:
     """Their kernels and buses have classes of their own."""
     for seed in range(FLIGHTS):

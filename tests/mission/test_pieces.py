@@ -33,15 +33,18 @@ class PressedInTheBus(PacketWatch):
 
 
 @TASKS
-@pytest.mark.parametrize("packet", [1, 300, 800])
-def test_a_flight_goes_on_after_it(tasks: str, packet: int) -> None:
+@pytest.mark.parametrize(
+    ("packet", "seconds"),
+    [(50, 0.8), *(pytest.param(packet, 3, marks=pytest.mark.slow) for packet in (1, 300, 800))],
+)
+def test_a_flight_goes_on_after_it(tasks: str, packet: int, seconds: float) -> None:
     with cfepy.boot("capture", tasks=tasks) as usual:
-        usual.run_until(3)
+        usual.run_until(seconds)
     with cfepy.boot("capture", tasks=tasks, attachments=[PressedInTheBus(packet)]) as flight:
         with pytest.raises(KeyboardInterrupt):
-            flight.run_until(3)
-        assert flight.now < 3
-        flight.run_until(3)
+            flight.run_until(seconds)
+        assert flight.now < seconds
+        flight.run_until(seconds)
     assert flight.trace == usual.trace
 
 
@@ -62,7 +65,8 @@ class LongPiece(PressedInTheBus):
             self._clocks.wait_for_looks()
 
 
-@pytest.mark.parametrize("tasks", ["thread", pytest.param("greenlet", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
 def test_a_flight_goes_on_after_it_however_busy_the_computer_is(tasks: str, monkeypatch: pytest.MonkeyPatch) -> None:
     with cfepy.boot("capture", tasks=tasks) as usual:
         usual.run_until(2)

@@ -152,15 +152,16 @@ def _left_of_core(name: str, board: str | None) -> dict[str, object]:
 
 
 @pytest.mark.parametrize(
-    ("name", "board"),
+    ("name", "board", "count"),
     [
-        ("lab", None),
-        pytest.param("lab", "rx64m", marks=pytest.mark.slow),
-        pytest.param("sched", None, marks=pytest.mark.slow),
+        ("lab", None, 100),
+        pytest.param("lab", None, 400, marks=pytest.mark.slow),
+        pytest.param("lab", "rx64m", 400, marks=pytest.mark.slow),
+        pytest.param("sched", None, 400, marks=pytest.mark.slow),
     ],
 )
-def test_hundreds_of_commands(name: str, board: str | None) -> None:
-    assert survive(name, 1, 400, board) > 0
+def test_hundreds_of_commands(name: str, board: str | None, count: int) -> None:
+    assert survive(name, 1, count, board) > 0
 
 
 @pytest.mark.slow

@@ -182,7 +182,7 @@ def test_two_hundred_resets_leave_nothing_behind(tmp_path: Path) -> None:
         assert sum(isinstance(each, type(mission.processor)) for each in gc.get_objects()) <= 2
 
 
-@pytest.mark.parametrize("count", [200, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [60, pytest.param(1000, marks=pytest.mark.slow)])
 def test_many_restarts_of_an_app_leave_nothing_behind(tmp_path: Path, count: int) -> None:
     with make(tmp_path) as mission:
         es = mission.cfe.es

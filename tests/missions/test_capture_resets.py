@@ -27,14 +27,17 @@ def reset_at_random(mission: Mission, random: Random, count: int) -> None:
         mission.processor.psp.restart(reset_type, "the test wants it")
 
 
-@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_nodes_come_back_after_any_reset(tasks: str) -> None:
+@pytest.mark.parametrize(
+    ("tasks", "resets"),
+    [("greenlet", 2), *(pytest.param(tasks, 8, marks=pytest.mark.slow) for tasks in ("thread", "greenlet"))],
+)
+def test_nodes_come_back_after_any_reset(tasks: str, resets: int) -> None:
     drain()
     threads, random = threading.active_count(), Random(5)
     with Mission("capture", console=Console(quiet=True), tasks=tasks) as mission:
         mission.run_for(2)
         modules = len(sys.modules)
-        reset_at_random(mission, random, 8)
+        reset_at_random(mission, random, resets)
         mission.run_for(2)
         assert len(sys.modules) == modules
         reasons = {reset.reason for reset in mission.record.resets}

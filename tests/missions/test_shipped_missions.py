@@ -41,6 +41,7 @@ def topic(flight: Mission, name: str) -> tuple[int, int, int]:
     return route.sent, delivered, limited + overflown
 
 
+@pytest.mark.slow
 def test_capture_catches_the_debris() -> None:
     flight, lines = fly("capture", 21)
     assert any("capture complete: largest joint error 0.0000" in line for line in lines)
@@ -62,6 +63,7 @@ def test_capture_passes_its_own_checks() -> None:
     assert len(outcome.verdicts) > 15
 
 
+@pytest.mark.slow
 def test_hk_carries_the_nodes_housekeeping_to_a_node() -> None:
     _, lines = fly("capture", 12)
     report = next(line for line in lines if "housekeeping 0x089C" in line)

@@ -8,7 +8,7 @@ import pytest
 
 from cfepy.console import Console
 from cfepy.mission import read_mission
-from cfepy.monitors.deadlines import AppDeadline, Check, DeadlineResult, TopicDeadline, time_text
+from cfepy.monitors.deadlines import AppDeadline, Check, DeadlineResult, TopicDeadline
 from cfepy.monitors.demands import demands_of
 from cfepy.monitors.record import DeadlineRecord
 from cfepy.pilot import pilot
@@ -16,6 +16,7 @@ from cfepy.pilot.check import check_mission
 from cfepy.pilot.pilot import Flown
 from cfepy.pilot.plan import RunPlan
 from cfepy.status import UsageError
+from cfepy.units import time_text
 from tests.mission.flights import write_mission
 
 WORKER = "CFE_APP, /cf/worker.so, WORKER_AppMain, WORKER, 50, 16384, 0x0, 0;\n"

@@ -32,6 +32,7 @@ def test_compiled_source_keeps_asserts_and_docstrings() -> None:
         exec(compiled("'doc'\nassert False", "m.py"), {})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("option", ["-O", "-OO"])
 def test_node_is_the_same_under_an_optimizing_python(tmp_path: Path, option: str) -> None:
     (tmp_path / "node.py").write_text(NODE, encoding="utf-8")

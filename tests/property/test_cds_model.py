@@ -97,4 +97,4 @@ class CdsAgainstModel(RuleBasedStateMachine):
 
 
 TestCds = CdsAgainstModel.TestCase
-TestCds.settings = settings(max_examples=60, stateful_step_count=40, deadline=None)
+TestCds.settings = settings(max_examples=25, stateful_step_count=40, deadline=None)

@@ -23,7 +23,7 @@ TYPES = [f"{package}/{name}" for package in shipped().packages() for name in shi
 ROS_PYTHON = "/usr/bin/python3"
 PEER = Path(__file__).parents[1] / "rospy_shim/types/msgs/genpy_peer.py"
 
-_SMALL = settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+_SMALL = settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
 typed_values = st.sampled_from(TYPES).flatmap(lambda name: st.tuples(st.just(name), plain(name)))

@@ -91,14 +91,14 @@ def write(path: Path, source: Path, seed: int, damage: Callable[[bytes, Random],
 SEEDS = st.integers(0, 2**32)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(st.sampled_from(DUMPS), SEEDS, st.booleans())
 def test_dump_files(folder: Path, source: Path, seed: int, as_json: bool) -> None:
     name = write(folder / "dump.log", source, seed, damaged)
     assert command("log", *["--json", "-"] * as_json, name) in STATUSES
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=5, deadline=None)
 @given(
     st.sampled_from(TABLES),
     SEEDS,
@@ -109,7 +109,7 @@ def test_table_files(folder: Path, source: Path, seed: int, action: list[str]) -
     assert command("tbl", *action, name) in STATUSES
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=2, deadline=None)
 @given(st.sampled_from(TABLES), SEEDS)
 def test_table_yaml(folder: Path, source: Path, seed: int) -> None:
     yaml = folder / "table.yaml"
@@ -118,7 +118,7 @@ def test_table_yaml(folder: Path, source: Path, seed: int) -> None:
     assert command("tbl", "build", str(yaml), "-o", str(folder / "out.tbl")) in STATUSES
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=2, deadline=None)
 @given(st.sampled_from(("mission.yaml", "startup.scr")), SEEDS)
 def test_missions(folder: Path, name: str, seed: int) -> None:
     mission = folder / "mission"

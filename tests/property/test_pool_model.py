@@ -57,4 +57,4 @@ class PoolAgainstModel(RuleBasedStateMachine):
 
 
 TestPool = PoolAgainstModel.TestCase
-TestPool.settings = settings(max_examples=60, stateful_step_count=40, deadline=None)
+TestPool.settings = settings(max_examples=25, stateful_step_count=40, deadline=None)

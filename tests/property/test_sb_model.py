@@ -154,4 +154,4 @@ class BusAgainstModel(RuleBasedStateMachine):
 
 
 TestBusAgainstModel = BusAgainstModel.TestCase
-TestBusAgainstModel.settings = settings(max_examples=60, stateful_step_count=40, deadline=None)
+TestBusAgainstModel.settings = settings(max_examples=25, stateful_step_count=40, deadline=None)

@@ -78,7 +78,7 @@ def fly(
     return sides, bench.log, digest
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(st.lists(st.tuples(STEPS, STEPS), min_size=1, max_size=3))
 def test_any_programs(programs: list[tuple[list[Step], list[Step]]]) -> None:
     sides, log, digest = fly(programs, "thread")

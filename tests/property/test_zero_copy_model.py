@@ -89,4 +89,4 @@ class BuffersAgainstModel(RuleBasedStateMachine):
 
 
 TestBuffers = BuffersAgainstModel.TestCase
-TestBuffers.settings = settings(max_examples=40, stateful_step_count=30, deadline=None)
+TestBuffers.settings = settings(max_examples=20, stateful_step_count=30, deadline=None)

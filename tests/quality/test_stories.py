@@ -7,7 +7,7 @@ import pytest
 from dev.quality.bugs import BUGS, Bug
 from dev.quality.stories import read, told
 
-QUICK = ("lock_order", "parameter_update", "lost_wakeup")
+QUICK = ("lock_order", "parameter_update")
 
 
 @pytest.mark.parametrize(

@@ -135,6 +135,7 @@ def test_cEVS3104_sent_counters(flight: Flight) -> None:
     assert housekeeping(flight)["MessageSendCounter"] == 3
 
 
+@pytest.mark.slow
 @covers("cEVS3104.1", "cEVS3105.1")
 def test_cEVS3104_1_sent_counters_stay_at_their_maximum(fly: Fly) -> None:
     flight = fly(pk.HK_TLM_MID, evs_max_app_event_burst=100_000)

@@ -59,7 +59,7 @@ def written(folder: Path, kind: str) -> Path:
     return file
 
 
-@pytest.mark.parametrize("kind", [pytest.param("none", marks=pytest.mark.slow), "bz2", "lz4"])
+@pytest.mark.parametrize("kind", ["bz2", *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("none", "lz4"))])
 def test_rosbag_says_the_same_of_a_bag(tmp_path: Path, kind: str) -> None:
     if not has_rosbag():
         pytest.skip("ROS's own rosbag is not installed (Debian: python3-rosbag), so it cannot read what was written")
@@ -99,6 +99,7 @@ def test_the_package_rosbags_reads_a_bag(tmp_path: Path, kind: str) -> None:
     assert found[-1][1] == 1_099_000_000_005
 
 
+@pytest.mark.slow
 def test_the_original_source_beside_a_node_is_the_one_that_counts(tmp_path: Path) -> None:
     if not has_rosbag():
         pytest.skip("ROS's own rosbag is not installed (Debian: python3-rosbag), so there is no source to bring along")

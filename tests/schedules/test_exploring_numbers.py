@@ -399,6 +399,7 @@ def workers_and_reader(count: int) -> Program:
     return program
 
 
+@pytest.mark.slow
 def test_abreast_pairs_those_who_do_different_things() -> None:
     schedules = [Schedule.parse(f"abreast:{seed}") for seed in range(300)]
     assert sum(fly(workers_and_reader(19), each.policy())[0] == "x" for each in schedules) > 5

@@ -148,7 +148,7 @@ def spec(tmp_path_factory: pytest.TempPathFactory) -> MissionSpec:
 
 
 @given(st.lists(st.lists(st.sampled_from(WORDS), max_size=8), min_size=1, max_size=4))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 def test_any_words_are_a_script_or_a_mistake_with_its_place(spec: MissionSpec, lines: list[list[str]]) -> None:
     text = "\n".join(" ".join(words) for words in lines)
     said = [line for line in (line.partition("#")[0].strip() for line in text.split("\n")) if line]

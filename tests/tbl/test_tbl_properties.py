@@ -194,4 +194,4 @@ class TableLife(RuleBasedStateMachine):
 
 
 TestTableLife = TableLife.TestCase
-TestTableLife.settings = settings(max_examples=40, stateful_step_count=30, deadline=None)
+TestTableLife.settings = settings(max_examples=20, stateful_step_count=30, deadline=None)

@@ -100,6 +100,7 @@ def test_a_task_that_does_not_give_up_the_cpu_fails_its_test_alone(
     )
 
 
+@pytest.mark.slow
 def test_the_command_fails_in_the_same_way(suite: Suite, missions: Path) -> None:
     result = suite(
         WAITS.format(act="flight.set_param('/talker/step', 7)"), "--cfepy-seed", "3", "--cfepy-tasks", "thread"
@@ -235,6 +236,7 @@ def test_the_plugin_knows_the_mark_of_explored_tests() -> None:
     assert plugin.EXPLORE_MARK == exploration.EXPLORE_MARK
 
 
+@pytest.mark.slow
 def test_a_suite_without_missions_loads_nothing_more(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(
         "import sys\n\ndef test_it():\n    print(*(name for name in sys.modules if name.startswith('cfepy.')))\n"
@@ -277,6 +279,7 @@ def test_problems_are_told_with_every_failure(suite: Suite, missions: Path) -> N
     )
 
 
+@pytest.mark.slow
 def test_pytest_finds_it_by_itself_where_it_is_installed(pytester: pytest.Pytester) -> None:
     points = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["entry-points"]["pytest11"]
     installed = pytester.mkdir("cfepy-0.dist-info")

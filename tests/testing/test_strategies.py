@@ -58,6 +58,7 @@ def test_nested_messages_can_be_given(pose: Any) -> None:
     assert len(pose._pack()) == 56
 
 
+@pytest.mark.slow
 def test_messages_shrink() -> None:
     found = find(messages("sensor_msgs/JointState"), lambda message: len(message.position) > 1)
     assert found.position == [0.0, 0.0]
@@ -150,6 +151,7 @@ def test_fault_plans_shrink() -> None:
     }
 
 
+@pytest.mark.slow
 def test_fault_plans_of_a_mission_strike_what_is_there() -> None:
     faults = find(fault_plans(PROBE / "mission"), lambda faults: any("crash" in each for each in faults["faults"]))
     assert faults["faults"][0]["crash"] in ("HEATER", "COUNTER")

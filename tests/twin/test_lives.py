@@ -12,7 +12,7 @@ from dev.twin.lives import LivesCommander
 from dev.twin.lives_flight import settled, simulated
 
 RELEASES = ("7.0.0", pytest.param("7.0.1", marks=pytest.mark.slow))
-ORDINARY = 25
+ORDINARY = 8
 """Steps that every run of the tests flies; the slow ones fly all."""
 
 

@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterable
 from typing import Any, TextIO
 
 from cfepy.cli.table import Table, show_paragraph, show_tables
-from cfepy.monitors import time_text
 from cfepy.pilot import Results
 from cfepy.plugins import Hook
-from cfepy.units import NS_PER_S
+from cfepy.units import NS_PER_S, time_text
 
 REPORT_TABLES: Hook[Callable[[Results], Iterable[Table]]] = Hook("report_tables")
 """Each makes more tables for the end of a report."""

@@ -19,9 +19,9 @@ from cfepy.extra.exploration.run_times import longest_more
 from cfepy.extra.exploration.task_look import AT, ORDERED, PREEMPTED, Row
 from cfepy.extra.exploration.things import is_made_of
 from cfepy.extra.exploration.verdict import DEADLOCK, DIED, RAISED, Failure
-from cfepy.monitors import time_text
 from cfepy.rtos import HOLD
 from cfepy.schedules import plain_name
+from cfepy.units import time_text
 
 _PLACE = re.compile(r"\(([\w.-]+:\d+)\)$")  # of an exception, at the end of its text
 NOTHING: Counter[str] = Counter()

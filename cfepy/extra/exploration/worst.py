@@ -26,10 +26,11 @@ from cfepy.extra.exploration.timeline import Story, story_of
 from cfepy.extra.exploration.trial import Trial, Tried
 from cfepy.extra.exploration.verdict import LONGEST, Failure, Verdict
 from cfepy.mission import Mission
-from cfepy.monitors import RESPONSE, WAIT, LongestWatch, Measure, time_text
+from cfepy.monitors import RESPONSE, WAIT, LongestWatch, Measure
 from cfepy.pilot import SentNames, no_such_app
 from cfepy.rtos import NotingPolicy, Policy
 from cfepy.schedules import Schedule
+from cfepy.units import time_text
 
 FROM_SEEDS = 40  # schedules before the first generation
 NEIGHBOURS, CHANGED, FRESH = 6, 10, 4

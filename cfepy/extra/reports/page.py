@@ -24,9 +24,8 @@ from cfepy.extra.reports.page_story import STORY, PageStory, instant, story_sect
 from cfepy.extra.reports.page_values import value_data, values_section
 from cfepy.ground import SeriesSet, graph_svg
 from cfepy.markup import element, escaped
-from cfepy.monitors import time_text
 from cfepy.pilot import FailureKind, Flown, Results, RunProblem
-from cfepy.units import NS_PER_S
+from cfepy.units import NS_PER_S, time_text
 
 NO_ICON = "data:,"  # a browser would ask for one
 NEVER = ("never", "never judged")

@@ -72,6 +72,7 @@ LIBRARY = """
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tasks", ["thread", pytest.param("greenlet", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("link", ["static", pytest.param("shared", marks=pytest.mark.slow)])
 def test_the_standard_library_and_exceptions(tmp_path: Path, link: str, tasks: str) -> None:
@@ -86,6 +87,7 @@ def test_the_standard_library_and_exceptions(tmp_path: Path, link: str, tasks: s
     assert "needs what nobody has" not in console
 
 
+@pytest.mark.slow
 def test_a_run_is_the_same_each_time(tmp_path: Path) -> None:
     compile_cpp(tmp_path, "TEST", LIBRARY)
     folder = write_mission(tmp_path, "TEST")
@@ -280,6 +282,7 @@ def test_a_recursive_mutex_is_taken_twice_by_its_task_alone(tmp_path: Path) -> N
     assert said(console) == ["main in", "main out", "child in", "child out"]
 
 
+@pytest.mark.slow
 def test_a_computer_without_libstdcpp_says_how_to_link(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     compile_cpp(tmp_path, "TEST", LIBRARY)
     folder = write_mission(tmp_path, "TEST")

@@ -68,7 +68,7 @@ void TEST_Main(void)
 """
 
 
-@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+@pytest.mark.parametrize("tasks", ["thread", pytest.param("greenlet", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("kind", FAULTS)
 def test_a_fault_restarts_the_application_and_the_others_fly_on(tmp_path: Path, kind: str, tasks: str) -> None:
     code, what, where = FAULTS[kind]

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 from cfepy.cli.main import main
 from tests.extra.c.building import compile_c, needs_compiler, write_mission
 
@@ -39,6 +41,7 @@ RACE = """
 """
 
 
+@pytest.mark.slow
 def test_a_lost_update_is_found_and_its_timeline_shows_lines_of_c(tmp_path: Path, capsys) -> None:  # type: ignore[no-untyped-def]
     compile_c(tmp_path, "TEST", RACE)
     folder = write_mission(tmp_path, "TEST")

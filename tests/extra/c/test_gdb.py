@@ -38,6 +38,7 @@ def cfepy(folder: Path, *words: str, typed: str = "") -> str:
     return done.stdout + done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tasks", [pytest.param("thread", marks=pytest.mark.slow), "greenlet"])
 def test_gdb_stops_at_the_main_function_and_sees_lines_and_variables(tmp_path: Path, tasks: str) -> None:
     compile_c(tmp_path, "TEST", SOURCE, "-O0")
@@ -54,6 +55,7 @@ def test_gdb_stops_at_the_main_function_and_sees_lines_and_variables(tmp_path: P
     assert "the same run as run.cfepy" in shown
 
 
+@pytest.mark.slow
 def test_gdb_takes_breakpoints_at_a_time(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", SOURCE, "-O0")
     cfepy(tmp_path, "run", write_mission(tmp_path, "TEST"), "--for", "2", "--record", "run.cfepy")
@@ -66,6 +68,7 @@ def test_gdb_takes_breakpoints_at_a_time(tmp_path: Path) -> None:
     assert "the same run as run.cfepy" in shown
 
 
+@pytest.mark.slow
 def test_one_debugger_at_a_time_and_an_application_that_there_is(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", SOURCE)
     folder = write_mission(tmp_path, "TEST")

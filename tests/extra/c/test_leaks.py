@@ -82,7 +82,7 @@ def test_restarts_leave_nothing_behind(tmp_path: Path, restarts: int) -> None:
         assert ours.now() == before
 
 
-@pytest.mark.parametrize("missions", [10, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("missions", [3, pytest.param(100, marks=pytest.mark.slow)])
 def test_missions_leave_nothing_behind(tmp_path: Path, missions: int) -> None:
     compile_c(tmp_path, "TEST", SOURCE)
     folder = write_mission(tmp_path, "TEST")

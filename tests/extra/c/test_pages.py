@@ -55,7 +55,8 @@ MISTAKES = {
 }
 
 
-@pytest.mark.parametrize("mistake", ["block[0] = 1;", pytest.param([*MISTAKES][1], marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("mistake", MISTAKES)
 @pytest.mark.parametrize("page", [4096, 16384, 65536])
 def test_an_application_flies_guarded(tmp_path: Path, page: int, mistake: str) -> None:
     compile_c(tmp_path, "TEST", SOURCE.replace("MISTAKE", mistake), "-w", f"-Wl,-z,max-page-size={page}")

@@ -56,6 +56,7 @@ def explore(folder: Path, code: str, *options: str) -> list[dict[str, str]]:
     return list(found["failures"])
 
 
+@pytest.mark.slow
 def test_accesses_that_nothing_orders_are_told_with_both_places(tmp_path: Path) -> None:
     [found] = explore(tmp_path, "counter++;")
     assert found["kind"] == "data race"
@@ -256,6 +257,7 @@ ORDERED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "how", [each if each == "a mutex" else pytest.param(each, marks=pytest.mark.slow) for each in ORDERED]
 )
@@ -309,6 +311,7 @@ def test_a_python_application_between_two_tasks_orders_them(tmp_path: Path, rela
     assert flown.mission.record.deaths() == []
 
 
+@pytest.mark.slow
 def test_the_start_of_a_task_orders(tmp_path: Path) -> None:
     assert explore(tmp_path, 'if (who) SAY("%u", (unsigned)lock);') == []
 

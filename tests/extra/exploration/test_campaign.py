@@ -56,7 +56,11 @@ class Backwards:
         """Nothing to end."""
 
 
-@pytest.mark.parametrize("crew", [Inline(), Backwards(), Processes(2)], ids=["inline", "back", "2"])
+@pytest.mark.parametrize(
+    "crew",
+    [Inline(), Backwards(), Processes(1), pytest.param(Processes(2), marks=pytest.mark.slow)],
+    ids=["inline", "back", "1", "2"],
+)
 def test_verdicts_come_in_order_whoever_runs(crew: Crew) -> None:
     trial = FakeTrial(fails=(3, 40), raises=(5,))
     told, tally = run(trial, 100, crew)
@@ -87,7 +91,11 @@ def test_more_schedules_than_may_be_ahead() -> None:
     assert tally.done == len(told) == AHEAD + 10
 
 
-@pytest.mark.parametrize("crew", [Inline(), Backwards(), Processes(2)], ids=["inline", "back", "2"])
+@pytest.mark.parametrize(
+    "crew",
+    [Inline(), Backwards(), pytest.param(Processes(2), marks=pytest.mark.slow)],
+    ids=["inline", "back", "2"],
+)
 def test_the_first_failure_in_order_ends_it(crew: Crew) -> None:
     trial = FakeTrial(fails=(29, 30, 31, 5000))
     told: list[int] = []
@@ -123,6 +131,7 @@ def test_a_search_that_waits_for_verdicts() -> None:
         assert tally.done == 61
 
 
+@pytest.mark.slow
 def test_a_mission_that_cannot_fly_ends_the_campaign() -> None:
     for crew in (Inline(), Processes(2)):
         with pytest.raises(UsageError) as caught:
@@ -159,6 +168,7 @@ def test_a_schedule_is_blamed_for_two_deaths_alone_and_not_for_those_of_others()
     assert bury(3) == [3]
 
 
+@pytest.mark.slow
 def test_what_ends_its_process_once_is_tried_again(tmp_path: Path) -> None:
     notes, log = tmp_path / "notes", tmp_path / "log"
     notes.mkdir()
@@ -178,6 +188,7 @@ def test_what_never_ends_is_a_failure_that_says_where(tmp_path: Path) -> None:
     assert tally.failed == 1
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_costs_nothing() -> None:
     """One is killed in whatever it does, and another one when all schedules that were out then have their verdicts."""
     crew, search = Processes(2), Seeds()
@@ -212,6 +223,7 @@ def test_workers_have_a_hash_seed(hash_seed: str | None, monkeypatch: pytest.Mon
     assert [verdict.trace for _, verdict in told] == [hash_seed or "0"]
 
 
+@pytest.mark.slow
 def test_workers_are_gone_afterwards() -> None:
     crew = Processes(2)
     pids: set[int] = set()
@@ -227,7 +239,7 @@ def test_workers_are_gone_afterwards() -> None:
             os.kill(pid, 0)
 
 
-@pytest.mark.parametrize("jobs", [0, 1])
+@pytest.mark.parametrize("jobs", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_a_second_run_does_only_what_is_missing(tmp_path: Path, jobs: int) -> None:
     def crew() -> Crew:
         return Processes(jobs) if jobs else Inline()
@@ -255,6 +267,7 @@ def test_resuming_more_than_may_be_ahead(tmp_path: Path) -> None:
     assert tally.resumed == AHEAD + 50
 
 
+@pytest.mark.slow
 def test_ctrl_c_keeps_what_was_found(tmp_path: Path) -> None:
     path = tmp_path / "results"
 

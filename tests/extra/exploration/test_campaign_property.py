@@ -81,7 +81,7 @@ def check(told: list[tuple[int, Verdict]]) -> None:
         assert verdict.failed == (number in FAILS)
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(st.integers(0, 2**32), st.integers(1, 60))
 def test_every_seed_counts_once_however_often_it_is_broken_off(seed: int, count: int) -> None:
     random, flown = Random(seed), Counter[int]()

@@ -45,6 +45,7 @@ def test_worker_processes_find_what_this_process_finds() -> None:
     assert len({verdict.schedule for verdict in told}) == 6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [

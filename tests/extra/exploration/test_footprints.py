@@ -40,9 +40,8 @@ def test_a_search_to_a_depth_says_so() -> None:
     assert not any("no others" in line for line in report.breadth.lines())
 
 
-@pytest.mark.parametrize(
-    ("name", "orders"), [("lock_order", 7), pytest.param("mutex_order", 6, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "orders"), [("lock_order", 7), ("mutex_order", 6)])
 def test_all_orders_of_two_locks(name: str, orders: int) -> None:
     report = explored(name)
     seen = report.breadth.seen
@@ -62,6 +61,7 @@ def test_the_memory_of_a_table_is_read_by_who_has_its_address() -> None:
     assert [told.finding.failure.kind for told in report.findings] == [EVENT]
 
 
+@pytest.mark.slow
 def test_the_schedule_of_a_failure_can_be_given() -> None:
     (told,) = explored("lock_order").findings
     schedule = told.finding.verdict.schedule

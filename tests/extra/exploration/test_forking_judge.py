@@ -49,6 +49,7 @@ def crash(tmp_path: Path) -> Trial:
     return Trial(RunPlan((str(tmp_path),), seconds=1.0, tasks="greenlet"))
 
 
+@pytest.mark.slow
 def test_a_forked_flight_has_the_verdict_of_a_whole_one() -> None:
     trial = Trial(RunPlan(("capture",), seconds=0.605, tasks="greenlet"))
     with closing(ForkingJudge(trial)) as pilot:

@@ -103,8 +103,13 @@ def trial(folder: Path, source: str, tasks: str = "greenlet", seconds: float = 1
     return replace(Trial(plan), waits=waits_of(plan, round(seconds * NS_PER_S), None))
 
 
+FAILING = 1
+"""A seed that shows the lost wake-up; others are tried where the points of this mission are no longer the same."""
+
+
 def first_failed(found: Trial) -> Verdict:
-    return next(verdict for seed in range(80) if (verdict := found.run(Schedule.parse(f"pct:{seed}:2:60"))).failed)
+    seeds = (FAILING, *range(80))
+    return next(verdict for seed in seeds if (verdict := found.run(Schedule.parse(f"pct:{seed}:2:60"))).failed)
 
 
 def kinds(found: Trial, schedules: int = 5) -> set[str]:
@@ -113,6 +118,12 @@ def kinds(found: Trial, schedules: int = 5) -> set[str]:
     return {failure.kind for verdict in verdicts for failure in verdict.failures}
 
 
+def test_a_lost_wake_up_is_stuck(tmp_path: Path) -> None:
+    (failure,) = first_failed(trial(tmp_path, missions.LOST_WAKE_UP)).failures
+    assert (failure.kind, failure.who, failure.at_ns) == (STUCK, "PAIR", None)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("order", ["(consume, produce)", "(produce, consume)"])
 def test_a_lost_wake_up_is_found(order: str, tmp_path: Path) -> None:
     found = trial(tmp_path, missions.LOST_WAKE_UP.replace("(consume, produce)", order))
@@ -128,6 +139,7 @@ def test_a_lost_wake_up_is_found(order: str, tmp_path: Path) -> None:
         assert again.trace == failed.trace
 
 
+@pytest.mark.slow
 def test_the_policy_that_decided_confirms_it(tmp_path: Path) -> None:
     found = trial(tmp_path, missions.LOST_WAKE_UP)
     failed = first_failed(found)
@@ -135,6 +147,7 @@ def test_the_policy_that_decided_confirms_it(tmp_path: Path) -> None:
     assert verdict.failures == failed.failures
 
 
+@pytest.mark.slow
 def test_a_forked_flight_finds_it_as_well(tmp_path: Path) -> None:
     found = trial(tmp_path, missions.LOST_WAKE_UP)
     schedules = [Schedule.parse(f"pct:{seed}:2:60:from=540ms") for seed in range(40)]
@@ -155,6 +168,7 @@ def test_it_shrinks_to_one_preemption(tmp_path: Path) -> None:
     assert shrunk.trial.plan == found.plan
 
 
+@pytest.mark.slow
 def test_it_says_how_long_others_wait(tmp_path: Path) -> None:
     found = trial(tmp_path, missions.LOST_WAKE_UP)
     (failure,) = first_failed(found).failures
@@ -164,10 +178,12 @@ def test_it_says_how_long_others_wait(tmp_path: Path) -> None:
     assert failure.text.endswith("; under fifo it never waits there")
 
 
+@pytest.mark.slow
 def test_without_waits_of_the_default_schedule_nothing_is_stuck(tmp_path: Path) -> None:
     assert kinds(replace(trial(tmp_path, missions.LOST_WAKE_UP), waits=None)) == set()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", ["(consume, produce)", "(produce, consume)"])
 def test_one_that_checks_under_the_lock_is_not(order: str, tmp_path: Path) -> None:
     source = missions.LOST_WAKE_UP.replace("(consume, produce)", order)
@@ -177,6 +193,7 @@ def test_one_that_checks_under_the_lock_is_not(order: str, tmp_path: Path) -> No
     assert kinds(trial(tmp_path, source)) == set()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "source", [POOL, EITHER, LATER, AFTER_THE_END], ids=["idle workers", "one of equals", "just later", "after the end"]
 )
@@ -184,8 +201,14 @@ def test_who_waits_by_right_is_not(source: str, tmp_path: Path) -> None:
     assert kinds(trial(tmp_path, source)) == set()
 
 
-def test_a_deadlock_is_told_as_one(tmp_path: Path) -> None:
-    assert kinds(trial(tmp_path, missions.LOCK_ORDER)) == {DEADLOCK}
+@pytest.mark.parametrize("schedules", [2, pytest.param(5, marks=pytest.mark.slow)])
+def test_a_deadlock_is_told_as_one(tmp_path: Path, schedules: int) -> None:
+    assert kinds(trial(tmp_path, missions.LOCK_ORDER), schedules) == {DEADLOCK}
+
+
+@pytest.mark.parametrize("source", [POOL, EITHER], ids=["idle workers", "one of equals"])
+def test_who_waits_by_right_is_not_in_one_schedule(source: str, tmp_path: Path) -> None:
+    assert not trial(tmp_path, source).run(Schedule("random", 0)).failed
 
 
 @pytest.mark.parametrize("command", [RUN, NODE])

@@ -174,6 +174,7 @@ def Ring(cfe):
 """
 
 
+@pytest.mark.slow
 def test_mutexes_in_a_circle_are_one_deadlock_whoever_closes_it(tmp_path: Path) -> None:
     (tmp_path / "apps.py").write_text(MUTEXES, encoding="utf-8")
     (tmp_path / "startup.scr").write_text("CFE_APP, apps, Ring, RING, 50, 8192, 0, 0;\n!\n", encoding="utf-8")

@@ -228,6 +228,7 @@ def test_values_of_usual_depth_and_number_are_read() -> None:
     assert read_body(f"{nested(100)}</methodCall>".encode())[1] == "setParam"
 
 
+@pytest.mark.slow
 def test_many_calls_at_once_are_bounded(run: Joined) -> None:
     one = {"methodName": "getPid", "params": ["/x"]}
     assert len(run.ask(run.host.world.uri, "system.multicall", [one] * 1_000)) == 1_000

@@ -120,10 +120,15 @@ while not rospy.is_shutdown():
     "words",
     [
         ["node", "--for", "100000"],
-        ["node", "--for", "100000", "--tasks", "greenlet"],
-        ["run", "--for", "100000", "--check-determinism", "2"],
-        ["explore", "--for", "3", "--seeds", "100000", "--jobs", "2"],
-        ["explore", "--for", "3", "--seeds", "100000", "--from", "1s"],
+        *(
+            pytest.param(line.split(), marks=pytest.mark.slow)
+            for line in (
+                "node --for 100000 --tasks greenlet",
+                "run --for 100000 --check-determinism 2",
+                "explore --for 3 --seeds 100000 --jobs 2",
+                "explore --for 3 --seeds 100000 --from 1s",
+            )
+        ),
     ],
 )
 def test_a_signal_takes_the_files_of_a_run_away(

@@ -123,7 +123,7 @@ def act(system: Any, opening: Callable[..., Any], folder: str, operation: tuple[
         return str(error)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(operations)
 @example([("chmod", "d", 0o644), ("rename", "d", "b")])
 @example([("chmod", "d", 0o644), ("walk", "d")])

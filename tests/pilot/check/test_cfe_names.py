@@ -126,6 +126,7 @@ def test_all_files_of_a_package_are_read(tmp_path: Path) -> None:
     assert sorted(found) == [("main.py", 4), ("part.py", 3)]
 
 
+@pytest.mark.slow
 def test_there_is_no_false_alarm_in_this_repository() -> None:
     looked_at = 0
     for path in (path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*.py*"))):

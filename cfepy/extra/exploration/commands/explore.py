@@ -19,11 +19,10 @@ from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of_mission
 from cfepy.extra.exploration import WIDTH, Expedition, Finding, Report, Shrunk, Told, Worst
 from cfepy.extra.exploration.commands import DEFAULT_SEEDS
-from cfepy.monitors import time_text
 from cfepy.pilot import RunPlan
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
-from cfepy.units import NS_PER_S
+from cfepy.units import NS_PER_S, time_text
 
 RUNS_THAT_ARE_COMPARED = 2
 INDENT = 2  # of what is told of a failure

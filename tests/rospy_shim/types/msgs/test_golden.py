@@ -114,6 +114,7 @@ def test_md5sums_of_all_services() -> None:
     assert {name: service_class(name)._md5sum for name in golden} == golden
 
 
+@pytest.mark.slow
 def test_every_shipped_type_makes_a_class() -> None:
     library = shipped()
     for package in library.packages():

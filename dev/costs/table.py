@@ -1,0 +1,82 @@
+"""The table of costs, `tests/costs.tsv`: which tests need so much CPU time that the quick loop leaves them out.
+
+A line is a cost in milliseconds and what has it: a case of a test, a test with most of its cases, of which the dearest
+counts, or a file none of whose tests is quick. What is in no line is quick, or was not measured yet.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PATH = ROOT / "tests/costs.tsv"
+DEAR_S = 0.05  # of CPU time: the quick loop has no such test
+MOST_S = 0.5  # of CPU time: such a test is a slow one, or is made cheaper
+
+
+def file_of(test: str) -> str:
+    """The file of a test, relative to the root of the checkout."""
+    return test.partition("::")[0]
+
+
+def function_of(test: str) -> str:
+    """A test without its case."""
+    return test.partition("[")[0]
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """The lines of the table."""
+
+    costs: Mapping[str, float]
+    """CPU time in seconds, by the case, test or file that needs it."""
+
+    @classmethod
+    def read(cls, path: Path = PATH) -> Table:
+        """The table of a file."""
+        rows = (line.split("\t") for line in path.read_text(encoding="utf-8").splitlines())
+        return cls({name: int(cost) / 1000 for cost, name in rows})
+
+    def write(self, path: Path = PATH) -> None:
+        """Keep the table, sorted by what costs, such that a change of one test is a change of one line."""
+        rows = (f"{math.ceil(cost * 1000)}\t{name}\n" for name, cost in sorted(self.costs.items()))
+        path.write_text("".join(rows), encoding="utf-8")
+
+    def __contains__(self, test: object) -> bool:
+        """Whether a test is a dear one, by its id (or a whole file, by its path)."""
+        return isinstance(test, str) and not self.costs.keys().isdisjoint((test, function_of(test), file_of(test)))
+
+    def merged(self, measured: Mapping[str, float]) -> Table:
+        """This table, with other lines for the files that were measured.
+
+        Args:
+            measured: CPU time in seconds of each test that was run, by its id.
+        """
+        files = set(map(file_of, measured))
+        kept = {name: cost for name, cost in self.costs.items() if file_of(name) not in files}
+        return Table(kept | dict(lines(measured)))
+
+
+def lines(measured: Mapping[str, float]) -> Iterator[tuple[str, float]]:
+    """The lines for tests: as few as say the same, with the dearest cost of what they stand for."""
+    for file, tests in grouped(measured, file_of):
+        if all(cost >= DEAR_S for cost in tests.values()):
+            yield file, max(tests.values())
+            continue
+        for function, cases in grouped(tests, function_of):
+            dear = {case: cost for case, cost in cases.items() if cost >= DEAR_S}
+            if 2 * len(dear) >= len(cases):
+                yield function, max(dear.values())
+            else:
+                yield from dear.items()
+
+
+def grouped(tests: Mapping[str, float], name_of: Callable[[str], str]) -> Iterable[tuple[str, dict[str, float]]]:
+    """Tests by what they belong to."""
+    groups: dict[str, dict[str, float]] = {}
+    for test, cost in tests.items():
+        groups.setdefault(name_of(test), {})[test] = cost
+    return groups.items()

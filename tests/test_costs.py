@@ -1,0 +1,117 @@
+"""The table of costs: it says much in few lines, all of them are about tests that there are, and none is too dear."""
+
+from __future__ import annotations
+
+import ast
+import json
+from pathlib import Path
+
+import pytest
+
+from dev.costs import meter
+from dev.costs.table import MOST_S, ROOT, Table, file_of, function_of, lines
+from tests import quick
+
+DEAR, CHEAP = 0.2, 0.01
+MEASURED = {
+    "tests/a.py::test_one": DEAR,
+    "tests/a.py::test_two[x]": CHEAP,
+    "tests/a.py::test_two[y]": DEAR + 0.1,
+    "tests/a.py::test_three[x]": CHEAP,
+    "tests/a.py::test_three[y]": DEAR,
+    "tests/a.py::test_three[z::[1]]": CHEAP,
+    "tests/b.py::TestAll::test_it": DEAR,
+    "tests/c.py::test_one": CHEAP,
+}
+
+
+def test_a_line_is_a_file_a_test_or_a_case() -> None:
+    assert dict(lines(MEASURED)) == {
+        "tests/a.py::test_one": DEAR,
+        "tests/a.py::test_two": DEAR + 0.1,
+        "tests/a.py::test_three[y]": DEAR,
+        "tests/b.py": DEAR,
+    }
+
+
+def test_what_no_line_stands_for_is_quick() -> None:
+    table = Table(dict(lines(MEASURED)))
+    assert [test for test in MEASURED if test not in table] == [
+        "tests/a.py::test_three[x]",
+        "tests/a.py::test_three[z::[1]]",
+        "tests/c.py::test_one",
+    ]
+
+
+def test_only_lines_of_measured_files_change() -> None:
+    table = Table({"tests/a.py": 0.3, "tests/d.py::test_one": 0.3})
+    assert table.merged({"tests/a.py::test_one": CHEAP}).costs == {"tests/d.py::test_one": 0.3}
+
+
+def test_a_table_comes_back_from_its_file(tmp_path: Path) -> None:
+    Table({"tests/b.py": 0.3, "tests/a.py::test_one[x y]": 0.0501}).write(tmp_path / "costs.tsv")
+    assert (tmp_path / "costs.tsv").read_text(encoding="utf-8") == "51\ttests/a.py::test_one[x y]\n300\ttests/b.py\n"
+    assert Table.read(tmp_path / "costs.tsv").costs == {"tests/b.py": 0.3, "tests/a.py::test_one[x y]": 0.051}
+
+
+def test_the_least_of_several_measurements_counts(tmp_path: Path) -> None:
+    rows = [
+        [["a", "b"], "fixture", 0.25],
+        [["a"], "", 0.5],
+        [["a"], "", 0.125],
+        [["b"], "", 1.0],
+        [["c"], "fixture", 9],
+    ]
+    (tmp_path / "1.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
+    assert meter.measured(tmp_path) == {"a": 0.375, "b": 1.25}
+
+
+def test_a_meter_shares_what_fixtures_cost(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = pytester.mkdir("measured")
+    monkeypatch.setenv(meter.FOLDER, str(folder))
+    pytester.makepyfile(
+        """
+        import pytest
+
+        @pytest.fixture(scope="module")
+        def shared():
+            sum(range(3_000_000))
+
+        def test_one(shared): pass
+        def test_two(shared): pass
+        def test_other(): pass
+        """
+    )
+    pytester.inline_run("-p", "dev.costs.meter", "-p", "no:randomly")
+    rows = list(meter.rows(folder))
+    [(users, _, share)] = [row for row in rows if row[1].endswith("::shared")]
+    alone = {tests[0]: cost for tests, part, cost in rows if not part}
+    assert [user.partition("::")[2] for user in users] == ["test_one", "test_two"]
+    assert share > 0
+    assert len(alone) == 3
+    assert meter.measured(folder) == {test: cost + share * (test in users) for test, cost in alone.items()}
+
+
+def test_every_line_is_about_a_test() -> None:
+    known: dict[str, set[str]] = {}
+    for line in quick.TABLE.costs:
+        file, *names = function_of(line).split("::")
+        if file not in known:
+            tree = ast.parse((ROOT / file).read_text(encoding="utf-8"))
+            known[file] = {node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+            known[file] |= {
+                node.targets[0].id
+                for node in tree.body
+                if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)
+            }
+        assert known[file].issuperset(names[:1]), f"{line}: python -m dev.costs {file}"
+
+
+def test_lines_are_about_cases_that_there_are(pytestconfig: pytest.Config) -> None:
+    stale = pytestconfig.stash.get(quick.STALE, [])
+    assert stale == [], f"python -m dev.costs {' '.join(sorted(set(map(file_of, stale))))}"
+
+
+def test_no_test_is_too_dear() -> None:
+    dear = {line: cost for line, cost in quick.TABLE.costs.items() if cost >= MOST_S}
+    assert dear == {}, "make these cheaper, or mark them slow, and measure again: python -m dev.costs FILE"
