@@ -7,7 +7,7 @@ from functools import partial
 
 from benchmarks import floor
 from benchmarks.measure import rate
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.msg import telemetry
 from cfepy.ports import Ports
 from cfepy.psp import BoardProfile, MemoryBudget

@@ -11,9 +11,9 @@ from itertools import pairwise
 from pathlib import Path
 from time import perf_counter
 
-from cfepy.console import Console
 from cfepy.extra.c import build
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 
 HERE = Path(__file__).parent / "compiled_app"
 LINE = "CFE_APP, BENCH, BENCH_Main, BENCH, 50, 16384, 0x0, 0;\n!"

@@ -9,10 +9,10 @@ import tempfile
 from pathlib import Path
 from time import perf_counter
 
-from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
 from cfepy.mission.limits import MissionLimits
 from cfepy.nodes import NodeConfig, RosConfig
+from cfepy.writing.console import Console
 
 SCRIPT = Path(__file__).parent / "nodes" / "member.py"
 NODES = 500

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from time import perf_counter
 
-from cfepy.console import Console
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 
 NODES = Path(__file__).parent / "nodes" / "frames"
 REPEATS = 5

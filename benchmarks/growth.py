@@ -20,12 +20,12 @@ from time import process_time
 
 from benchmarks.bus import make_bus, packet, run
 from benchmarks.measure import contexts_here, machine
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
 from cfepy.mission import Mission, MissionSpec
 from cfepy.mission.limits import MissionLimits
 from cfepy.nodes import NodeConfig, RosConfig
 from cfepy.sb import POLL
+from cfepy.writing.console import Console
 
 SCRIPT = Path(__file__).parent / "nodes" / "ring" / "member.py"
 FIRST_MSG_ID = 0x0880

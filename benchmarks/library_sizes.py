@@ -17,8 +17,8 @@ from pathlib import Path
 from benchmarks.message_sizes import COMPILERS
 from cfepy.extra.c import headers_folder
 from cfepy.extra.convert.build import HEAP_SOURCE, core_flags, library_folder, library_includes, profile_flags
-from cfepy.extra.convert.messages import Profile, write_headers
-from cfepy.extra.convert.sources import collect, message_types
+from cfepy.extra.convert.cpp_sources import collect, message_types
+from cfepy.extra.convert.message_headers import Profile, write_headers
 from rospy_shim.types.msgs import shipped
 
 FLAGS = ("-std=c++17", "-Os", "-ffunction-sections", "-fdata-sections", "-w")

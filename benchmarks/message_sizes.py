@@ -15,8 +15,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cfepy.extra.convert.capacities import Capacities
-from cfepy.extra.convert.messages import Profile, write_headers
-from cfepy.resources import shipped as shipped_files
+from cfepy.extra.convert.message_headers import Profile, write_headers
+from cfepy.reading.resources import shipped as shipped_files
 from rospy_shim.types.msgs import shipped
 from rospy_shim.types.msgs.spec import BUILTINS
 

@@ -8,8 +8,8 @@ import tempfile
 from pathlib import Path
 from time import perf_counter
 
-from cfepy.console import Console
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 
 NODES = Path(__file__).parent / "nodes"
 CAPTURE_S = 60

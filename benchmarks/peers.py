@@ -21,9 +21,9 @@ from time import perf_counter, process_time
 
 from benchmarks.bus import fan_out, one_task, ping_pong
 from benchmarks.measure import rate
-from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
 from cfepy.nodes import NodeConfig
+from cfepy.writing.console import Console
 from dev.host_ports import free_port
 from dev.twin.real import VARIABLE, RealCfe, installed
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 import os
 from contextlib import closing
 
-from cfepy.console import Console
 from cfepy.extra.exploration.fork_server import ForkServer, LateSchedule
 from cfepy.mission import Mission, read_mission
 from cfepy.schedules import Schedule
+from cfepy.writing.console import Console
 
 COUNT = 100
 SHORT_S = 0.2  # of virtual time

@@ -6,9 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 
-from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
 from cfepy.nodes import NodeConfig
+from cfepy.writing.console import Console
 
 NODES = Path(__file__).parent / "nodes" / "services"
 REPEATS = 5

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from types import ModuleType
 
 from cfepy import msg
-from cfepy.config_api import ConfigServices
+from cfepy.config.config_api import ConfigServices
 from cfepy.es import ExecutiveServices
 from cfepy.evs import EventServices
 from cfepy.fs import FileServices

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NoReturn
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.ports import ERROR, INFORMATION, PEND_FOREVER, SYSTEM_CORE_READY, Ports
 
 

@@ -88,22 +88,22 @@ OWN = (
         title="Files of cFE",
         hooks={
             "compiled_code": ".in_missions:compiled_loader",
-            "check_compiled": ".check:check_compiled",
-            "check_profiles": ".check:check_profiles",
+            "check_compiled": ".object_check:check_compiled",
+            "check_profiles": ".object_check:check_profiles",
         },
     ),
     _own(
         "convert",
         commands=("convert",),
         title="ROS nodes in C++",
-        hooks={"build_node": ".flight:build_for_flight", "check_sections": ".capacities:check_cpp_nodes"},
+        hooks={"build_node": ".flight_build:build_for_flight", "check_sections": ".capacities:check_cpp_nodes"},
     ),
     _own(
         "exploration",
         commands=("explore", "faults", "sweep"),
         title="Find races and faults",
         hooks={
-            "explore": ".explored:explore",
+            "explore": ".python_results:explore",
             "explored_tests": ".in_tests:ExploredTests",
             "story_of_run": ".timeline:story_of_run",
         },
@@ -120,13 +120,16 @@ OWN = (
     ),
     _own(
         "debugger",
-        hooks={"replay_options": ".options:add_stops", "replay_stops": ".command:fly_with_debugger"},
+        hooks={"replay_options": ".stop_options:add_stops", "replay_stops": ".command:fly_with_debugger"},
     ),
     _own(
         "ros_host",
-        hooks={"flight_options": ".options:RosMaster", "telemetry_package": ".message_package:telemetry_package"},
+        hooks={
+            "flight_options": ".ros_master_option:RosMaster",
+            "telemetry_package": ".message_package:telemetry_package",
+        },
     ),
-    _own("viewers", hooks={"flight_options": ".options:Viewers"}),
+    _own("viewers", hooks={"flight_options": ".viewer_options:Viewers"}),
 )
 """The add-ons in `cfepy.extra`, whether or not they are installed."""
 

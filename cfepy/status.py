@@ -7,7 +7,7 @@ service keeps its own.
 
 from __future__ import annotations
 
-from cfepy.escapes import visible, visible_line
+from cfepy.writing.escapes import visible, visible_line
 
 
 def _signed(status: int) -> int:

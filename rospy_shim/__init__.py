@@ -3,10 +3,10 @@
 Inside a mission `import rospy_shim as rospy` and `import rospy` both give a node its own rospy. Outside, in a plain
 Python process, this module has rospy's exceptions, times and constants, and every function says how to run the node.
 
-What a node or a tool sees of ROS belongs here, in rooms: `client` is rospy itself, `graph` and `parameters` what all
-nodes of a mission share, `master` their XML-RPC side, `msgs` and `genpy` message classes, `roslaunch` launch files,
-`libraries`, `inner` and `stand_ins` code of nodes, and `runtime` what a mission starts. What a program sees of Python
-is in `cfepy.nodes`; how a mission uses nodes is in `cfepy.mission`, of which nothing here knows. The central file is
+What a node or a tool sees of ROS belongs here, in rooms: `types` is what needs no graph, `client` rospy itself, `graph`
+and `parameters` what all nodes of a mission share, `master` their XML-RPC side, `roslaunch` launch files,
+`rospy_modules` and `stand_ins` code of nodes, and `runtime` what a mission starts. What a program sees of Python is in
+`cfepy.nodes`; how a mission uses nodes is in `cfepy.mission`, of which nothing here knows. The central file is
 `rospy_shim/runtime.py`.
 """
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from cfepy.nodes.synth import proxy
+from cfepy.nodes.made_modules import proxy
 
 _RELEASES = {
     "0.6.0": "genmsg",

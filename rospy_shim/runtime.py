@@ -33,10 +33,10 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from cfepy.app import Cfe
-    from cfepy.console import Console
     from cfepy.nodes import Accesses, Factory, Overlay
     from cfepy.osal import Network
     from cfepy.rtos import Kernel
+    from cfepy.writing.console import Console
     from rospy_shim.graph.outside import OutsideGraph
 
 CRASHED = 139  # 128 + SIGSEGV, as a shell tells it

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.core_app import Replies, serve
 from cfepy.ports import DEBUG, ERROR, INFORMATION, PEND_FOREVER, SYSTEM_CORE_READY, Ports
 

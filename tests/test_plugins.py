@@ -49,6 +49,7 @@ def give(site: Path) -> Give:
     return run
 
 
+@pytest.mark.slow
 def test_an_add_on_of_another_package_has_its_command_and_its_table(site: Path, give: Give) -> None:
     shutil.copytree(EXAMPLE / "cfepy_busiest", site / "cfepy_busiest")
     offer(site, "busiest", "cfepy_busiest:PLUGIN")
@@ -88,6 +89,7 @@ def test_an_add_on_that_cannot_be_used_is_left_out(site: Path, give: Give, text:
     assert (done.returncode, done.stderr) == (0, said)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("words", "status"), [(["--help"], 0), (["run", "lab", "--for", "1", "--quiet"], 2)])
 def test_an_add_on_that_breaks_later_is_named(site: Path, give: Give, words: list[str], status: int) -> None:
     offers = "commands=('odd',), title='Odd', hooks={'report_tables': '.no:tables'}"
@@ -101,6 +103,7 @@ def test_an_add_on_that_breaks_later_is_named(site: Path, give: Give, words: lis
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["run", "explore"])
 def test_a_command_that_is_there_already_cannot_be_added(site: Path, give: Give, name: str) -> None:
     text = f"from cfepy.plugins import Plugin\nPLUGIN = Plugin('odd', 'odd', commands=('odd', '{name}'))"
@@ -139,6 +142,6 @@ def test_each_hook_of_the_code_is_filled_or_documented() -> None:
 
 
 def test_a_plugin_names_its_modules_from_its_package() -> None:
-    plugin = Plugin("x", "cfepy.extra.viewers", hooks={"a": ".options:Viewers", "b": "cfepy.units:NS_PER_S"})
+    plugin = Plugin("x", "cfepy.extra.viewers", hooks={"a": ".viewer_options:Viewers", "b": "cfepy.units:NS_PER_S"})
     assert plugin.load("a").__name__ == "Viewers"
     assert plugin.load("b") == 1_000_000_000

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from cfepy.app import Cfe
+from cfepy.config.versions import version_string
 from cfepy.es import APP_ERROR
 from cfepy.msg import BAD_LENGTH, BAD_MSG_ID, CommandTable
 from cfepy.status import CfeError
-from cfepy.versions import version_string
 
 from . import events as ev
 from . import packets as pk

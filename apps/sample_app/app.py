@@ -11,11 +11,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from cfepy.app import Cfe
+from cfepy.config.versions import version_string
 from cfepy.es import APP_ERROR
 from cfepy.msg import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, CommandTable
 from cfepy.sb import PEND_FOREVER
 from cfepy.status import CfeError
-from cfepy.versions import version_string
 
 from . import events as ev
 from . import packets as pk

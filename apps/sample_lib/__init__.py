@@ -7,8 +7,8 @@ calls them. An app finds one by its name with `cfe.os.symbol_lookup`, which is t
 from __future__ import annotations
 
 from cfepy.app import Cfe
+from cfepy.config.versions import version_string
 from cfepy.status import CFE_SUCCESS
-from cfepy.versions import version_string
 
 VERSION = version_string("Sample Lib")
 BUFFER = "SAMPLE DATA"

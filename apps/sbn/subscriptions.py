@@ -24,7 +24,7 @@ OWN = (evs.LONG_EVENT_MSG_MID, pk.CMD_MID, pk.TLM_MID)
 """MsgIds that peers are never told of."""
 
 
-class Listener(Protocol):
+class SubscribedPeer(Protocol):
     """A peer that wants messages: who it is, what its messages pass, what it wants, and the pipe for that."""
 
     processor_id: int
@@ -116,7 +116,7 @@ class Subscriptions:
 
     # -- of peers ----------------------------------------------------------------------------------------------------
 
-    def from_peer(self, peer: Listener, payload: bytes) -> None:
+    def from_peer(self, peer: SubscribedPeer, payload: bytes) -> None:
         """A peer wants messages (SBN_ProcessSubsFromPeer).
 
         Raises:
@@ -126,7 +126,7 @@ class Subscriptions:
         for each in self._read(peer, payload):
             self._subscribe(peer, _wanted(peer, each.msg_id))
 
-    def _subscribe(self, peer: Listener, msg_id: int) -> None:
+    def _subscribe(self, peer: SubscribedPeer, msg_id: int) -> None:
         if msg_id in peer.subs:
             return
         if len(peer.subs) >= pr.MAX_SUBS:
@@ -140,7 +140,7 @@ class Subscriptions:
             raise
         peer.subs[msg_id] = None
 
-    def unsub_from_peer(self, peer: Listener, payload: bytes) -> None:
+    def unsub_from_peer(self, peer: SubscribedPeer, payload: bytes) -> None:
         """A peer wants messages no more (SBN_ProcessUnsubsFromPeer).
 
         Raises:
@@ -155,7 +155,7 @@ class Subscriptions:
                 text = f"unsubscription from ProcessorID {peer.processor_id}, msg 0x{msg_id:04X} not found"
                 self._cfe.evs.send_info(ev.SUB_EID, f"cannot process {text}")
 
-    def _read(self, peer: Listener, payload: bytes) -> list[pr.Sub]:
+    def _read(self, peer: SubscribedPeer, payload: bytes) -> list[pr.Sub]:
         ident, told = pr.unpack_subscriptions(payload)
         if ident == self._ident:
             return told
@@ -170,7 +170,7 @@ def _subscription(entry: Mapping[str, Any]) -> pr.Sub:
     return pr.Sub(entry["MsgId"], entry["Qos"]["Priority"], entry["Qos"]["Reliability"])
 
 
-def _wanted(peer: Listener, msg_id: int) -> int:
+def _wanted(peer: SubscribedPeer, msg_id: int) -> int:
     """The MsgId on this processor's bus that becomes one that a peer subscribes to."""
     for each in peer.filters:
         msg_id = each.wanted(msg_id, peer.processor_id, peer.spacecraft_id)

@@ -8,11 +8,11 @@ from __future__ import annotations
 from contextlib import suppress
 
 from cfepy.app import Cfe
+from cfepy.config.versions import version_string
 from cfepy.es import APP_ERROR
 from cfepy.msg import local_cmd_topic_id_to_msg_id
 from cfepy.sb import POLL
 from cfepy.status import CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CFE_SUCCESS, CfeError, OsalError
-from cfepy.versions import version_string
 
 from . import schedule
 

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from cfepy.app import Cfe
+from cfepy.config.versions import version_string
 from cfepy.es import APP_ERROR, APP_RUN
 from cfepy.sb import POLL
 from cfepy.status import CFE_SUCCESS, CfeError
-from cfepy.versions import version_string
 
 from . import events as ev
 from . import packets as pk

@@ -6,6 +6,6 @@ files. A running mission does not import apps from here: its loader executes the
 
 from __future__ import annotations
 
-from cfepy.resources import shipped
+from cfepy.reading.resources import shipped
 
 __path__ = [str(shipped("apps"))]

@@ -10,11 +10,11 @@ import contextlib
 import sys
 from typing import TYPE_CHECKING, Protocol, TextIO
 
-from cfepy.cli.failures import tell
 from cfepy.cli.options import LONGEST_S
-from cfepy.escapes import console_line, raw, rich_console
+from cfepy.cli.user_notes import tell
 from cfepy.rtos import Stopwatch
 from cfepy.units import NS_PER_S
+from cfepy.writing.escapes import console_line, raw, rich_console
 
 if TYPE_CHECKING:
     from rich.text import Text

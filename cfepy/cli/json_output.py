@@ -13,8 +13,8 @@ import sys
 from collections.abc import Callable, Iterator
 from typing import Any, Literal, TextIO
 
-from cfepy.cli.failures import check_writable, writing
-from cfepy.escapes import for_data
+from cfepy.cli.user_notes import check_writable, writing
+from cfepy.writing.escapes import for_data
 
 STDOUT = "-"
 _MAY_BE_STDOUT = ("json", "csv", "sarif", "yaml", "output", "dot", "svg")

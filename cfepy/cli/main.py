@@ -18,17 +18,17 @@ from types import TracebackType
 from typing import Any
 
 from cfepy import __version__
-from cfepy.cli.failures import NO_ROOM
 from cfepy.cli.json_output import standard_output
 from cfepy.cli.options import MISSION_HELP
 from cfepy.cli.parser import CommandParser, RootParser
-from cfepy.escapes import keep_output_safe, raw, safe_output
+from cfepy.cli.user_notes import NO_ROOM
 from cfepy.interpreter.early_end import INTERRUPTED as INTERRUPTED
 from cfepy.interpreter.early_end import leave, leave_on_interrupt
 from cfepy.interpreter.garbage import freeze, no_collection
 from cfepy.interpreter.host_system import ending_signals, interrupt_once, leave_dead_terminal, signal_number
 from cfepy.plugins import OWN, Plugin, installed, missing, owner_of
 from cfepy.status import StallError, UsageError
+from cfepy.writing.escapes import keep_output_safe, raw, safe_output
 
 ENDED_WELL = 0
 FOUND_PROBLEMS = 1

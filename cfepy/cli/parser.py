@@ -11,8 +11,8 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from cfepy.escapes import raw
 from cfepy.reading.suggestions import did_you_mean
+from cfepy.writing.escapes import raw
 
 LAUNCH_FILES = (".launch", ".test", ".xml")
 _PACKAGE = re.compile(r"\w[\w-]*")

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 
 OVERWRITE, DISCARD = 0, 1
 """Modes of the system log (CFE_ES_LogMode_*)."""

@@ -13,9 +13,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.fs import FileCategory, parse_input_file_name
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CFE_ES_ERR_APP_CREATE, CfeError
-from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
 CFE_APP = "CFE_APP"
 CFE_LIB = "CFE_LIB"

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
 from cfepy.es.reset_data import DISCARD, OVERWRITE, SysLogData
 from cfepy.ports import Ports
 from cfepy.reading.texts import to_bytes, without_addresses
@@ -14,6 +13,7 @@ from cfepy.status import (
     CFE_SUCCESS,
     CfeError,
 )
+from cfepy.writing.console import Console
 
 TIME_TEXT_SIZE = 24  # CFE_TIME_PRINTED_STRING_SIZE: a printed time and its NUL
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
 from cfepy.es.erlog import MAX_CONTEXT, ExceptionResetLog
 from cfepy.es.perf import PerformanceLog
 from cfepy.es.pools import MemPool
@@ -26,6 +25,7 @@ from cfepy.psp import Psp
 from cfepy.rtos import Kernel, Semaphore
 from cfepy.status import CFE_ES_ERR_NAME_NOT_FOUND, CFE_ES_ERR_RESOURCEID_NOT_VALID, CfeError, OsalError
 from cfepy.units import NS_PER_MS
+from cfepy.writing.console import Console
 
 
 class EsCore:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cfepy.config.versions import MODULES, OSAL_VERSION, PSP_VERSION
 from cfepy.core_app import Replies, serve
 from cfepy.es import events as ev
 from cfepy.es import packets as pk
@@ -13,7 +14,6 @@ from cfepy.es.service import ExecutiveServices
 from cfepy.msg import BAD_CODE, BAD_MSG_ID, DONE, CommandTable
 from cfepy.psp import RST_TYPE_POWERON
 from cfepy.status import CfeError
-from cfepy.versions import MODULES, OSAL_VERSION, PSP_VERSION
 
 _VERSION_PARTS = ("MajorVersion", "MinorVersion", "Revision", "MissionRevision")
 PIPE_NAME = "ES_CMD_PIPE"

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
 from cfepy.evs import packets as pk
 from cfepy.evs.apps import AppEvents
 from cfepy.evs.events import ERR_UNREGISTERED_EVS_APP, ERROR, FILTER_MAX_EID, INFORMATION, SQUELCHED_ERR_EID
@@ -19,6 +18,7 @@ from cfepy.ports import Ports, application_of
 from cfepy.reading.texts import shown, to_bytes
 from cfepy.rtos import Kernel
 from cfepy.status import CFE_EVS_APP_SQUELCHED, CFE_SUCCESS
+from cfepy.writing.console import Console
 
 TRUNCATED = b"$"
 PORTS = (1, 2, 3, 4)

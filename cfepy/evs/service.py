@@ -8,8 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
 from cfepy.core_app import serve
 from cfepy.evs import packets as pk
 from cfepy.evs.apps import AppEvents
@@ -31,6 +30,7 @@ from cfepy.status import (
     CFE_EVS_UNKNOWN_FILTER,
     CfeError,
 )
+from cfepy.writing.console import Console
 
 PIPE_DEPTH = 32
 PIPE_NAME = "EVS_CMD_PIPE"

@@ -5,9 +5,9 @@ attachment, so the mission and its parts know nothing of it. What judges a run, 
 `cfepy.monitors`. The central file is `cfepy/faults/injector.py`.
 """
 
-from cfepy.faults.check import Prepared, check_plan, plan_of, prepare
+from cfepy.faults.fault_plan import Fault, FaultPlan, read_plan
 from cfepy.faults.injector import FaultInjector
-from cfepy.faults.plan import Fault, FaultPlan, read_plan
+from cfepy.faults.plan_check import Prepared, check_plan, plan_of, prepare
 from cfepy.faults.targets import Found, Targets, look_at, random_plan, targets_of
 from cfepy.faults.timing import When
 

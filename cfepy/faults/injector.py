@@ -13,16 +13,16 @@ from random import Random
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.faults.apps import APP_FAULTS, AppFault, Hang, Slow, Strain, Work
-from cfepy.faults.bus import MessageSwitchboard, faulty
-from cfepy.faults.calls import QUEUE_PUT, call_name
-from cfepy.faults.failures import CallFault, Fill, Puts, failing, refusing, why_not_called
+from cfepy.faults.app_faults import APP_FAULTS, AppFault, Hang, Slow, Strain, Work
+from cfepy.faults.bus_faults import MessageSwitchboard, faulty
+from cfepy.faults.call_faults import QUEUE_PUT, call_name
+from cfepy.faults.failing_calls import CallFault, Fill, Puts, failing, refusing, why_not_called
+from cfepy.faults.fault_names import MissionNames
+from cfepy.faults.fault_plan import DATAGRAMS, Fault, FaultPlan
+from cfepy.faults.fault_report import FaultReport
 from cfepy.faults.kinds import APP, APP_OPTIONS, KINDS
-from cfepy.faults.messages import DATAGRAM_FAULTS, MESSAGE_FAULTS, MessageFault, Setting, strike_datagrams
-from cfepy.faults.names import MissionNames
-from cfepy.faults.plan import DATAGRAMS, Fault, FaultPlan
-from cfepy.faults.processor import MEMORY_FAULTS, Drift, Jump, LostSignal, ProcessorFault
-from cfepy.faults.report import FaultReport
+from cfepy.faults.message_faults import DATAGRAM_FAULTS, MESSAGE_FAULTS, MessageFault, Setting, strike_datagrams
+from cfepy.faults.processor_faults import MEMORY_FAULTS, Drift, Jump, LostSignal, ProcessorFault
 from cfepy.faults.timing import Agenda, Gate, OpenCalls, asker
 from cfepy.mission import Mission, Processor
 from cfepy.rtos import Kernel, WaitList

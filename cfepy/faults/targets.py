@@ -11,13 +11,13 @@ from functools import lru_cache
 from random import Random
 from typing import Any
 
-from cfepy.console import Console
-from cfepy.faults.names import MissionNames
-from cfepy.faults.plan import Fault, FaultPlan
+from cfepy.faults.fault_names import MissionNames
+from cfepy.faults.fault_plan import Fault, FaultPlan
 from cfepy.faults.timing import When
 from cfepy.ground import ROS
 from cfepy.mission import CORE_APPS, Mission, MissionSpec, PacketWatch, Seen
 from cfepy.units import NS_PER_MS, NS_PER_S
+from cfepy.writing.console import Console
 
 LOW, MEDIUM, HIGH = "low", "medium", "high"
 INTENSITIES = {LOW: 2, MEDIUM: 5, HIGH: 12}

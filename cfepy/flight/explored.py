@@ -11,10 +11,10 @@ from cfepy.flight.expectations import counted
 from cfepy.flight.plans import MissionWords, RunOptions, plan_of
 from cfepy.flight.run import Run
 from cfepy.flight.start import fly_plan
-from cfepy.markup import code, folded, headline, lines_of, trouble
 from cfepy.pilot import RunPlan
 from cfepy.plugins import Hook
 from cfepy.schedules import Schedule
+from cfepy.writing.markup import code, folded, headline, lines_of, trouble
 
 DEFAULT_SEEDS = 100
 EXPLORE: Hook[Callable[..., Explored]] = Hook("explore")

@@ -6,7 +6,7 @@
 
 Times are virtual, in seconds. Expectations look every 10 ms of virtual time, and at everything since the test last did
 something to the mission, so after one command several may stand in any order. `RosSide` finds mistakes of the test in
-messages, parameters and service calls; `cfepy.mission.acts` then carries them out.
+messages, parameters and service calls; `cfepy.mission.host_actions` then carries them out.
 """
 
 from __future__ import annotations

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cfepy.ground import DecodedEvent, SeriesSet
-from cfepy.markup import code, folded, headline, lines_of, rows_of, trouble
 from cfepy.plugins import Hook
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
+from cfepy.writing.markup import code, folded, headline, lines_of, rows_of, trouble
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

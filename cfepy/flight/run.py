@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cfepy.es import STATE_NAMES
-from cfepy.escapes import visible
 from cfepy.flight.log import FlightLog, Packet
 from cfepy.flight.message_library import library_near
 from cfepy.flight.notebook import Picture, page_of_run, picture
@@ -22,6 +21,7 @@ from cfepy.mission import Mission, endless_waits
 from cfepy.monitors import Heard
 from cfepy.pilot import AppResult, Flown, Results, RunPlan, TopicResult, mark, problems_of
 from cfepy.units import NS_PER_S
+from cfepy.writing.escapes import visible
 
 __tracebackhide__ = True  # pytest shows the line of the test
 LAST_LINES = 10  # of the console, in the text of a failure

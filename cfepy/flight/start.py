@@ -11,12 +11,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Unpack
 
 from cfepy.attachment import Attachment
-from cfepy.console import Console
 from cfepy.flight.log import FlightLog
 from cfepy.flight.plans import MissionOptions, MissionWords, RunOptions, fault_attachments, plan_of
 from cfepy.flight.run import Run
 from cfepy.pilot import Host, LiveRun, RunPlan, fly
 from cfepy.rtos import Stopwatch
+from cfepy.writing.console import Console
 
 if TYPE_CHECKING:
     from cfepy.flight.flight import Flight

@@ -9,7 +9,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.fs import filename, header
 from cfepy.fs.background import BackgroundWriter, FileWrite
 from cfepy.fs.header import HEADER_SIZE, TIMESTAMP_OFFSET, FileHeader

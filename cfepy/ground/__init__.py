@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cfepy.ground.names import ROS, LiveNames, kind_of, names_in, names_of
+from cfepy.ground.mission_names import ROS, LiveNames, kind_of, names_in, names_of
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from cfepy.ground.dictionary import Decoded, Dictionary, dictionary_of, table_type, table_types
     from cfepy.ground.events import EVENT_IDS, EVENT_TYPES, DecodedEvent
     from cfepy.ground.fields import MessageDecoder, steps_of, value_at
-    from cfepy.ground.graph.drawing import graph_svg
-    from cfepy.ground.graph.model import MissionGraph, graph_of
-    from cfepy.ground.graph.texts import graph_dot, graph_text
     from cfepy.ground.json_messages import message_from_json
     from cfepy.ground.json_packets import EVENTS, PACKETS, event_json, log_schema, packet_json, packet_schema
     from cfepy.ground.link import CI_PORT, TO_PORT, GroundLink
@@ -41,6 +38,9 @@ if TYPE_CHECKING:
     )
     from cfepy.ground.survey import LOOK_S, MidRow, Survey, lock_path, lock_text, locked, spread_out, surveyed_topics
     from cfepy.ground.topics import Topic, library_of, plain, topic_id, topics_of
+    from cfepy.ground.traffic_graph.drawing import graph_svg
+    from cfepy.ground.traffic_graph.graph_texts import graph_dot, graph_text
+    from cfepy.ground.traffic_graph.model import MissionGraph, graph_of
     from cfepy.ground.values import flat, int_of, line_of, number_of, packet_of, text_of, unknown_field
 
 __all__ = [
@@ -151,12 +151,12 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "steps_of",
                 "value_at",
             ),
-            ".graph.drawing": ("graph_svg",),
-            ".graph.model": (
+            ".traffic_graph.drawing": ("graph_svg",),
+            ".traffic_graph.model": (
                 "MissionGraph",
                 "graph_of",
             ),
-            ".graph.texts": (
+            ".traffic_graph.graph_texts": (
                 "graph_dot",
                 "graph_text",
             ),

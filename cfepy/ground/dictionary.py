@@ -15,16 +15,17 @@ from typing import Any, NamedTuple
 
 from cfepy import msg, tbl
 from cfepy.fs import HEADER_SIZE, TABLE_HEADER_SIZE
-from cfepy.ground.names import CORE_PACKETS
+from cfepy.ground.mission_names import CORE_PACKETS
 from cfepy.ground.topics import Topic
 from cfepy.ground.values import int_of, line_of, texts_of
-from cfepy.mission import NODE_SYMBOL, MissionSpec, read_mission, sources
+from cfepy.mission import NODE_SYMBOL, MissionSpec, read_mission
+from cfepy.mission import app_sources as sources
 from cfepy.mission.python_code import ModuleNames, execute, find_declarations
 from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Command, Layout, Telemetry
 from cfepy.reading.contained_files import is_contained
 from cfepy.reading.input_files import open_input
+from cfepy.reading.resources import shipped
 from cfepy.reading.suggestions import did_you_mean
-from cfepy.resources import shipped
 from cfepy.status import CfeError, UsageError
 from cfepy.tbl import TableType
 

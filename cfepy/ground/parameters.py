@@ -17,7 +17,7 @@ from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import TABLE_BYTES
 from cfepy.reading.marked_yaml import load
 from cfepy.status import UsageError
-from rospy_shim.parameters import files
+from rospy_shim.parameters import table_files as files
 from rospy_shim.parameters.table import extent
 from rospy_shim.parameters.tree import ParameterTree
 

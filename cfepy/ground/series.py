@@ -22,13 +22,13 @@ from cfepy.ground.dictionary import Dictionary, dictionary_of
 from cfepy.ground.fields import MessageDecoder, array_of, columns_of, names_in, path_of, steps_of, unit_at, values_at
 from cfepy.ground.topics import topics_of
 from cfepy.ground.values import unknown_field
-from cfepy.markup import headline, rows_of
 from cfepy.mission import Mission, PacketWatch, Seen, TopicMessage, TopicWatch, matches
 from cfepy.msg import TLM_HEADER_SIZE, Command, Telemetry, get_fcn_code, get_header_size, get_msg_time
 from cfepy.reading.suggestions import like
 from cfepy.sb import SoftwareBus
 from cfepy.status import CfeError, UsageError
 from cfepy.units import NS_PER_S
+from cfepy.writing.markup import headline, rows_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -14,11 +14,11 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from cfepy.console import Console
-from cfepy.ground.names import kind_of, names_in
+from cfepy.ground.mission_names import kind_of, names_in
 from cfepy.ground.topics import Topic, topics_of
 from cfepy.mission import LOCK_FILE, NODE_SYMBOL, Mission, MissionSpec, PacketWatch, Seen
 from cfepy.nodes import RosConfig
+from cfepy.writing.console import Console
 
 LOOK_S = 10.0
 _HEAD = "# MsgIds of ROS topics and services, written by `cfepy mids --lock`. Keep this file: ids in it never move.\n"

@@ -21,8 +21,8 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from cfepy import __version__
 from cfepy.ground.dictionary import Dictionary
 from cfepy.ground.topics import Topic, library_of
-from cfepy.markup import printable
 from cfepy.msg import TLM_HEADER_SIZE, Cell, Command, Layout, Telemetry, ValueNames
+from cfepy.writing.markup import printable
 
 LITTLE = "leastSignificantByteFirst"
 UTF_8_NUL = "00"

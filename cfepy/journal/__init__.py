@@ -1,20 +1,20 @@
 """Journals: a run written down so that it can be done again, on this computer or another, and compared with others.
 
 What belongs here defines what a journal holds and its file (`journal`), writes it while a run goes on (`recorder`), or
-does the run again and compares (`stage`, `replay`, `header_diff`). How a run is flown belongs to `cfepy.pilot`; input
-from outside belongs to `cfepy.mission`. Commands that show journals are in `cfepy.cli`. The central file is
+does the run again and compares (`replay_files`, `replay`, `header_diff`). How a run is flown belongs to `cfepy.pilot`;
+input from outside belongs to `cfepy.mission`. Commands that show journals are in `cfepy.cli`. The central file is
 `cfepy/journal/journal.py`.
 """
 
 from __future__ import annotations
 
-from cfepy.journal.facts import environ_of, versions
+from cfepy.journal.computer_facts import environ_of, versions
 from cfepy.journal.header_diff import differences
 from cfepy.journal.journal import Journal, is_journal, read_journal
 from cfepy.journal.mission_files import CARRIED, Carrier, MissionFile, ReadFiles, files_of
 from cfepy.journal.recorder import JournalRecorder, record
 from cfepy.journal.replay import Replay, ReplayVerdict, replay
-from cfepy.journal.stage import HiddenRoot, moved_environ, settled, staged
+from cfepy.journal.replay_files import HiddenRoot, moved_environ, settled, staged
 
 __all__ = [
     "CARRIED",

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
 from typing import Any
 
-from cfepy.journal.looks import KINDS
+from cfepy.journal.snapshots import KINDS
 from cfepy.pilot import RunPlan
 from cfepy.reading.contained_files import is_contained
 from cfepy.reading.input_limits import JOURNAL_FILE_BYTES, JOURNAL_VALUES

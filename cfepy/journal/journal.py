@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.journal.frame_check import FORMAT, check_values, problem_of
-from cfepy.journal.looks import PathLook
 from cfepy.journal.mission_files import MissionFile, hash_of
+from cfepy.journal.snapshots import PathLook
 from cfepy.mission import Arrival
 from cfepy.pilot import STALLED, SUDDEN, Results, RunPlan
 from cfepy.reading.input_files import open_input
@@ -111,7 +111,7 @@ class End:
     """The end of a run.
 
     Attributes:
-        reason: OVER, INTERRUPTED, BROKEN_OFF or STALLED (`cfepy.pilot.course`).
+        reason: OVER, INTERRUPTED, BROKEN_OFF or STALLED (`cfepy.pilot.run_loop`).
         until_ns: the virtual time until which it was let go on at last.
         visits: the how manyeth time in a row that was until this very time, from 1.
         now_ns: virtual time at the end, after the nodes have shut down.

@@ -22,10 +22,10 @@ from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import Any
 
-from cfepy.journal.facts import own_places
+from cfepy.journal.computer_facts import own_places
 from cfepy.mission import MissionSpec
 from cfepy.nodes import ASKED, LISTED, MADE, NEEDED
-from cfepy.nodes.sources import AGAIN
+from cfepy.nodes.node_sources import AGAIN
 from cfepy.reading.input_files import open_input, read_limited
 from cfepy.status import UsageError
 

@@ -14,8 +14,8 @@ from types import TracebackType
 from typing import Any
 
 from cfepy.attachment import Attachment
+from cfepy.journal.computer_facts import environ_of, host_facts, versions
 from cfepy.journal.decisions import JournalPolicy, settings_of
-from cfepy.journal.facts import environ_of, host_facts, versions
 from cfepy.journal.journal import (
     ANSWER,
     CHECK,
@@ -32,8 +32,8 @@ from cfepy.journal.journal import (
     digest_of,
     is_journal,
 )
-from cfepy.journal.looks import MOST_LOOKS, look_at
 from cfepy.journal.mission_files import CARRIED, MOST_FILES, Carrier, ReadFiles, files_of
+from cfepy.journal.snapshots import MOST_LOOKS, look_at
 from cfepy.mission import Mission, outside
 from cfepy.pilot import Flown, RunPlan, fly
 from cfepy.rtos import Policy

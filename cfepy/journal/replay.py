@@ -13,16 +13,16 @@ from hashlib import blake2b
 from itertools import repeat
 
 from cfepy.attachment import Attachment
-from cfepy.console import Console
 from cfepy.journal.decisions import RetoldPolicy
 from cfepy.journal.journal import Checkpoint, End, Journal, digest_of
-from cfepy.journal.stage import HiddenRoot, Stage, staged
+from cfepy.journal.replay_files import HiddenRoot, Stage, staged
 from cfepy.mission import Arrival, Mission
 from cfepy.osal import Place, Stream
 from cfepy.pilot import SUDDEN, Course, Flown, Host, Results, fly
 from cfepy.rtos import Policy
 from cfepy.script import ScriptRun
 from cfepy.trace import ONLY_COMPARED, TimedRecords, Trace
+from cfepy.writing.console import Console
 
 Describe = Callable[[TimedRecords], list[str]]
 """Makes lines of text of records."""

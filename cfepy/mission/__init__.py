@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
-    from cfepy.mission.acts import CALL, FILE, PACKET, PARAM, PUBLISH, ROS, HostCall
     from cfepy.mission.compiled_code import find_compiled
     from cfepy.mission.cpp_nodes import (
         ARENA_BYTES,
@@ -26,19 +25,7 @@ if TYPE_CHECKING:
     )
     from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, endless_waits
     from cfepy.mission.failed_code import FailedCode, RaisedError, TracebackReader
-    from cfepy.mission.finding import (
-        LOCK_FILE,
-        STARTUP_SCRIPT,
-        cpp_nodes_of,
-        cpp_nodes_source,
-        find_script,
-        is_node,
-        mission_file_of,
-        read_lock,
-        read_mission,
-        read_sections,
-        shipped_missions,
-    )
+    from cfepy.mission.host_actions import CALL, FILE, PACKET, PARAM, PUBLISH, ROS, HostCall
     from cfepy.mission.launch import (
         COMPILED_STACK_BYTES,
         KEPT_ENVIRONMENT,
@@ -58,12 +45,25 @@ if TYPE_CHECKING:
     from cfepy.mission.loader import NODE_SYMBOL
     from cfepy.mission.mission import Mission
     from cfepy.mission.mission_file import MissionSections, read_mission_file
+    from cfepy.mission.mission_lookup import (
+        LOCK_FILE,
+        STARTUP_SCRIPT,
+        cpp_nodes_of,
+        cpp_nodes_source,
+        find_script,
+        is_node,
+        mission_file_of,
+        read_lock,
+        read_mission,
+        read_sections,
+        shipped_missions,
+    )
     from cfepy.mission.outside import Arrival, OutsideStream
     from cfepy.mission.packet_watch import HOST, PacketWatch, Seen, hearing, receivers
-    from cfepy.mission.pieces import FIRST_PIECE_NS, PieceLength
     from cfepy.mission.processor import CORE_APPS, UNIX_AT_CFE_EPOCH, Processor
     from cfepy.mission.python_code import find_code, find_node
     from cfepy.mission.record import DataRace, Overwrite, Reset, StackUse, Traffic
+    from cfepy.mission.run_pieces import FIRST_PIECE_NS, PieceLength
     from cfepy.mission.settings import with_settings
     from cfepy.mission.spec import BuiltProgram, MissionSpec
     from cfepy.mission.sweep_section import SweepConfig
@@ -156,7 +156,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
-            ".acts": (
+            ".host_actions": (
                 "CALL",
                 "FILE",
                 "PACKET",
@@ -185,7 +185,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "RaisedError",
                 "TracebackReader",
             ),
-            ".finding": (
+            ".mission_lookup": (
                 "LOCK_FILE",
                 "STARTUP_SCRIPT",
                 "cpp_nodes_of",
@@ -231,7 +231,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "hearing",
                 "receivers",
             ),
-            ".pieces": (
+            ".run_pieces": (
                 "FIRST_PIECE_NS",
                 "PieceLength",
             ),

@@ -3,8 +3,8 @@
 Who could end a wait is known for locks (who holds them), for calls of services (who works on them), for the semaphores
 and condition variables of OSAL (the applications that made them or asked for their ids), and for what a node makes of
 Python's locks: conditions, events, queues, the ends of threads. There it is whoever can still get hold of the lock
-(`cfepy.nodes.reach`), a callback for messages included. A wait for a pipe, a queue of OSAL's, a socket or a time is
-ended from outside.
+(`cfepy.nodes.reachable_objects`), a callback for messages included. A wait for a pipe, a queue of OSAL's, a socket or a
+time is ended from outside.
 """
 
 from __future__ import annotations

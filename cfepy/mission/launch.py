@@ -22,7 +22,7 @@ from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
-    from rospy_shim.roslaunch.plan import LaunchPlan
+    from rospy_shim.roslaunch.launch_plan import LaunchPlan
 
 PRIORITY, STACK_BYTES, RESTART_NOTHING = 100, 16384, 0
 COMPILED_STACK_BYTES = 65536  # the streams of C++ need more than C does
@@ -101,7 +101,7 @@ def read_launch(file: Path, args: Mapping[str, str] | None = None, build: NodeBu
     Raises:
         UsageError: it is wrong, or has no node that can run here.
     """
-    from rospy_shim.roslaunch.plan import plan_of
+    from rospy_shim.roslaunch.launch_plan import plan_of
 
     plan = plan_of(file, args or {}, dict(os.environ), cwd=Path.cwd(), with_compiled=build is not None)
     built, left_out = built_programs(plan, build)
@@ -184,7 +184,7 @@ def with_launch_files(
     Raises:
         UsageError: one of them is wrong.
     """
-    from rospy_shim.roslaunch.plan import plan_of
+    from rospy_shim.roslaunch.launch_plan import plan_of
 
     environ = mission_environment()
     nodes, params, notes = dict(spec.ros.nodes), dict(spec.ros.params), list(spec.notes)
@@ -241,7 +241,7 @@ def node_script(words: Sequence[str]) -> tuple[Path, list[str]]:
         otherwise = "give one, or a package and the name of a node in it"
         hint = did_you_mean(words[0], files_near(Path(words[0]), (".py",)), otherwise)
         raise UsageError(f"there is no such script; {hint}", file=words[0])
-    from rospy_shim.roslaunch.plan import node_file
+    from rospy_shim.roslaunch.launch_plan import node_file
 
     return node_file(words[0], words[1], Path.cwd() / words[1], os.environ), list(words[2:])
 
@@ -256,7 +256,7 @@ def spec_of_node(words: Sequence[str], build: NodeBuilder | None = None) -> Miss
     Raises:
         UsageError: there is none, or it cannot be built.
     """
-    from rospy_shim.roslaunch.plan import node_environment, node_in_cpp
+    from rospy_shim.roslaunch.launch_plan import node_environment, node_in_cpp
 
     environ = node_environment(os.environ, os.environ.get("ROS_NAMESPACE", "/"))
     is_pair = build is not None and len(words) > 1 and not os.path.isfile(words[0])
@@ -275,7 +275,7 @@ def spec_of_node(words: Sequence[str], build: NodeBuilder | None = None) -> Miss
 
 def spec_of_script(script: Path, words: Sequence[str]) -> MissionSpec:
     """The mission that one node is, with its arguments."""
-    from rospy_shim.roslaunch.plan import app_name, node_environment
+    from rospy_shim.roslaunch.launch_plan import app_name, node_environment
 
     environ = node_environment(os.environ, os.environ.get("ROS_NAMESPACE", "/"))
     app = app_name(script.stem)

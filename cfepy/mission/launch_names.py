@@ -23,7 +23,7 @@ def launch_file_of_package(text: str) -> Path | None:
     package, blank, name = text.partition(" ")
     if not blank or "/" in package or not name.endswith(LAUNCH_FILES):
         return None
-    from rospy_shim.roslaunch.plan import launch_file
+    from rospy_shim.roslaunch.launch_plan import launch_file
 
     return launch_file(package, name, Path.cwd() / name, os.environ)
 

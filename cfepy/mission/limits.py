@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
-from cfepy.config import IDENTITIES, PlatformConfig
+from cfepy.config.platform import IDENTITIES, PlatformConfig
 from cfepy.ids import SERIAL_MAX
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.psp import LIMIT_NAMES, BoardProfile, Limit, read_limit

@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import PurePosixPath
 from typing import Protocol
 
-from cfepy.console import Console
 from cfepy.rtos import TaskExit
 from cfepy.status import OS_ERROR, OsalError
+from cfepy.writing.console import Console
 
 NODE_SYMBOL = "__main__"
 NO_SYMBOL = "NULL"

@@ -18,17 +18,16 @@ from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 from cfepy.app import Cfe
 from cfepy.attachment import Attachment
-from cfepy.console import Console
 from cfepy.interpreter.own_code import is_own_code
-from cfepy.mission.acts import HostActs
 from cfepy.mission.failed_code import FailedCode
-from cfepy.mission.finding import read_mission
+from cfepy.mission.host_actions import HostActs
 from cfepy.mission.loader import NODE_SYMBOL
+from cfepy.mission.mission_lookup import read_mission
 from cfepy.mission.outside import Outside
-from cfepy.mission.pieces import HeldBack, PieceLength, is_to_be_held_back
 from cfepy.mission.processor import Machine, Processor, RunFiles
 from cfepy.mission.python_code import find_code
 from cfepy.mission.record import Reset, RunRecord
+from cfepy.mission.run_pieces import HeldBack, PieceLength, is_to_be_held_back
 from cfepy.mission.spec import MissionSpec
 from cfepy.nodes import Accesses
 from cfepy.osal import FileSystem, Network
@@ -39,6 +38,7 @@ from cfepy.schedules import make_kernel
 from cfepy.status import StallError
 from cfepy.trace import Trace
 from cfepy.units import NS_PER_MS, NS_PER_S
+from cfepy.writing.console import Console
 
 if TYPE_CHECKING:
     from cfepy.nodes import Overlay

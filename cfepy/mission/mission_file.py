@@ -2,7 +2,7 @@
 
 The file is read once, by `read_mission_file`: before a run its first mistake is raised, `cfepy check` has all of them
 kept. docs/mission_file.md describes it. The sections that say what must hold of a run (`DEMANDS`) are kept as they
-stand; `cfepy.monitors.demands` reads them.
+stand; `cfepy.monitors.run_rules` reads them.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.mission.cpp_nodes import CppNodesConfig, read_cpp_nodes
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.parameter_files import merged, read_files, read_tree
@@ -22,7 +23,6 @@ from cfepy.mission.sweep_section import SweepConfig, read_sweep
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import BridgedPacket, NodeConfig, RosBridge, RosConfig, TopicConfig
 from cfepy.reading.marked_yaml import Marked, Mistakes, load
-from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
 DEMANDS = ("invariants", "results", "deadlines", "inversions")
 """Sections that say what must hold of a run."""

@@ -25,7 +25,7 @@ class Arrival(NamedTuple):
     DATAGRAM: port of the mission, host and port of the sender, data. CALL: the outside connects: port, host and port
     of the caller. ANSWER: the mission connects: host and port of both sides, whether it was answered.
     Of a connection, by its number from 0: BYTES that came, how many the outside has TAKEN, that the outside ENDED what
-    it sends, that it CLOSED the connection. ACT: an act on the mission itself (`cfepy.mission.acts`):
+    it sends, that it CLOSED the connection. ACT: an act on the mission itself (`cfepy.mission.host_actions`):
     name and values of the act.
     """
 

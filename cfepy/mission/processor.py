@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cfepy.app import Cfe
-from cfepy.config import PlatformConfig
-from cfepy.config_api import ConfigServices
-from cfepy.console import Console
+from cfepy.config.config_api import ConfigServices
+from cfepy.config.platform import PlatformConfig
 from cfepy.es import Boot, CoreApp, EsTask, ExecutiveServices, ObjectTable
 from cfepy.evs import EventServices
 from cfepy.fs import FileServices
@@ -41,6 +40,7 @@ from cfepy.sb import SbTask, SoftwareBus
 from cfepy.tbl import TableServices
 from cfepy.time import TimeServices
 from cfepy.units import NS_PER_S
+from cfepy.writing.console import Console
 
 if TYPE_CHECKING:
     from cfepy.nodes import Overlay, Universe

@@ -20,7 +20,6 @@ from pathlib import Path, PurePosixPath
 from types import ModuleType
 from typing import Any
 
-from cfepy.console import Console
 from cfepy.es import SymbolError
 from cfepy.mission.compiled_code import find_compiled
 from cfepy.mission.loader import NO_SYMBOL, NODE_SYMBOL, Code, Finder, MainCode, RemovedCodeError
@@ -28,9 +27,10 @@ from cfepy.nodes import AppModules
 from cfepy.osal import FileSystem
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import PYTHON_BYTES
-from cfepy.resources import shipped
+from cfepy.reading.resources import shipped
 from cfepy.rtos import TaskExit
 from cfepy.status import OS_ERROR, OsalError
+from cfepy.writing.console import Console
 
 CODE_SUFFIXES = ("", ".so", ".py", ".obj", ".o")
 NODE_SUFFIX = ".so"  # what ES puts after a name that has no suffix

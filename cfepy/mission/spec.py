@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
+from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.es import StartupEntry
 from cfepy.es import entries as read_entries
 from cfepy.interpreter.cached import CachedProperty
@@ -18,7 +19,6 @@ from cfepy.nodes import CppNode, NodeConfig, RosConfig
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import STARTUP_BYTES
 from cfepy.reading.marked_yaml import Marked
-from cfepy.versions import DEFAULT_RELEASE, RELEASES
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,9 +80,9 @@ class MissionSpec:
         cpp_nodes: how its nodes in C++ are built.
         built: nodes in C++ that were built for it, by cFE name.
         demands: sections of the mission file that say what must hold of a run, as they stand there;
-            `cfepy.monitors.demands` reads them.
+            `cfepy.monitors.run_rules` reads them.
         sweep: what a rate means in it, for `cfepy sweep`.
-        ids: what the run gives it of `cfepy.config.IDENTITIES`, in place of its own.
+        ids: what the run gives it of `cfepy.config.platform.IDENTITIES`, in place of its own.
         beside: the missions that fly beside it: what their applications declare can be seen in this one, too.
     """
 

@@ -7,7 +7,7 @@ import traceback
 from pathlib import Path
 
 from cfepy.interpreter.own_code import PACKAGE, source_file
-from cfepy.nodes.report import strip
+from cfepy.nodes.node_tracebacks import strip
 from cfepy.reading.texts import without_addresses
 
 SHARED = str(Path(PACKAGE) / "share")

@@ -15,15 +15,15 @@ from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.monitors.deadlines import Check, DeadlineResult, Overrun
-    from cfepy.monitors.demands import Demands, demands_of, judges_of, read_demands
+    from cfepy.monitors.durations import RESPONSE, WAIT, LongestWatch, Measure
     from cfepy.monitors.inversions import InversionWatch
     from cfepy.monitors.liveness import Lack, Limits, LivenessWatch
-    from cfepy.monitors.measures import RESPONSE, WAIT, LongestWatch, Measure
-    from cfepy.monitors.messages import Heard, MessageWatch
+    from cfepy.monitors.observed_messages import Heard, MessageWatch
     from cfepy.monitors.observer import Observer, Sent, app_of
     from cfepy.monitors.predicate import Predicate, short, shortened
     from cfepy.monitors.race_watch import RaceWatch
     from cfepy.monitors.record import DeadlineRecord, InvariantRecords
+    from cfepy.monitors.run_rules import Demands, demands_of, judges_of, read_demands
     from cfepy.monitors.selected_results import FILE, OUTPUT, SelectedResult
     from cfepy.monitors.traffic_watch import Arrivals, TrafficWatch
 
@@ -66,7 +66,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         __name__,
         {
             ".deadlines": ("Check", "DeadlineResult", "Overrun"),
-            ".demands": (
+            ".run_rules": (
                 "Demands",
                 "demands_of",
                 "judges_of",
@@ -78,7 +78,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "Limits",
                 "LivenessWatch",
             ),
-            ".measures": (
+            ".durations": (
                 "RESPONSE",
                 "WAIT",
                 "LongestWatch",
@@ -87,7 +87,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".record": ("DeadlineRecord", "InvariantRecords"),
             ".selected_results": ("FILE", "OUTPUT", "SelectedResult"),
             ".race_watch": ("RaceWatch",),
-            ".messages": (
+            ".observed_messages": (
                 "Heard",
                 "MessageWatch",
             ),

@@ -14,7 +14,7 @@ from typing import Any
 from cfepy.attachment import Attachment
 from cfepy.mission import Mission, MissionSpec, Processor, app_traceback, described, matches
 from cfepy.monitors.invariants import CAUSE, Answer, Invariant, Selection, code_of
-from cfepy.monitors.messages import Heard, MessageWatch
+from cfepy.monitors.observed_messages import Heard, MessageWatch
 from cfepy.monitors.predicate import LATEST, short
 from cfepy.monitors.record import InvariantRecord, InvariantRecords, Violation
 from cfepy.sb import SoftwareBus

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.interpreter.syntax_trees import compiled
-from cfepy.mission import sources
+from cfepy.mission import app_sources as sources
 from cfepy.monitors.predicate import LATEST, Predicate
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.reading.input_files import read_limited

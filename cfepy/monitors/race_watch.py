@@ -1,8 +1,9 @@
 """`RaceWatch`: two accesses of mission code to one thing, one of them a write, that nothing orders.
 
-It looks on at one run with vector clocks (`cfepy.schedules.races`). What orders tasks is what hands something on: a
-lock, a semaphore, a queue, a message, a table, the start of a task, the call of a waker. That one task happened to run
-before another is no order; on a computer with more cores, or with another load, they might run the other way round.
+It looks on at one run with vector clocks (`cfepy.schedules.vector_clocks`). What orders tasks is what hands something
+on: a lock, a semaphore, a queue, a message, a table, the start of a task, the call of a waker. That one task happened
+to run before another is no order; on a computer with more cores, or with another load, they might run the other way
+round.
 """
 
 from __future__ import annotations

@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from cfepy.nodes.accesses import WHOLE, Accesses, Observer, Touch
     from cfepy.nodes.app_modules import AppModules, make_app_universe
     from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
-    from cfepy.nodes.reach import held_by, is_private, reaches
-    from cfepy.nodes.refused import RefusedError
+    from cfepy.nodes.reachable_objects import held_by, is_private, reaches
+    from cfepy.nodes.refused_modules import RefusedError
     from cfepy.nodes.universe import Factory, ProcessNumbers, StartThread, Universe, process_number
 
 __all__ = [
@@ -73,8 +73,8 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".accesses": ("WHOLE", "Touch", "Accesses", "Observer"),
             ".app_modules": ("AppModules", "make_app_universe"),
             ".files": ("ASKED", "LISTED", "MADE", "NEEDED", "PREFIX", "Overlay", "below_root"),
-            ".reach": ("held_by", "is_private", "reaches"),
-            ".refused": ("RefusedError",),
+            ".reachable_objects": ("held_by", "is_private", "reaches"),
+            ".refused_modules": ("RefusedError",),
             ".universe": (
                 "Factory",
                 "StartThread",

@@ -20,7 +20,7 @@ from types import ModuleType
 from typing import IO, TYPE_CHECKING, Any
 
 from cfepy.interpreter.host_system import check_own_builtins
-from cfepy.nodes.sources import code_of_source
+from cfepy.nodes.node_sources import code_of_source
 
 if TYPE_CHECKING:
     from cfepy.nodes.accesses import Accesses
@@ -158,9 +158,9 @@ class AppModules:
 
 def os_module(universe: Universe) -> ModuleType:
     """`os` of applications: the host's, over the files of the run."""
+    from cfepy.nodes.made_modules import rebind
     from cfepy.nodes.stdlib.os_module import paths
     from cfepy.nodes.stdlib.users import identity
-    from cfepy.nodes.synth import rebind
 
     def write(fd: int, data: Any) -> int:
         written = os.write(fd, data)
@@ -183,7 +183,7 @@ def numpy_module(universe: Universe) -> ModuleType:
     import numpy
 
     from cfepy.nodes.files.shared import array_files
-    from cfepy.nodes.synth import proxy
+    from cfepy.nodes.made_modules import proxy
 
     return proxy(numpy, __getattr__=lambda name: getattr(numpy, name), **array_files(universe, numpy))
 
@@ -192,7 +192,7 @@ def logging_module(universe: Universe) -> ModuleType:
     """The host's `logging`, whose handlers write the run's files; the loggers are the host's."""
     import logging
 
-    from cfepy.nodes.synth import rebind
+    from cfepy.nodes.made_modules import rebind
 
     open_file, path = vars(universe.builtins)["open"], universe.importer.load("os.path")
 
@@ -210,7 +210,7 @@ def logging_module(universe: Universe) -> ModuleType:
 
 def importlib_module(universe: Universe) -> ModuleType:
     """The host's `importlib`, whose `import_module` gives an application its own modules."""
-    from cfepy.nodes.synth import proxy
+    from cfepy.nodes.made_modules import proxy
 
     def import_module(name: str, package: str | None = None) -> ModuleType:
         is_own = name.partition(".")[0] in REPLACED
@@ -230,8 +230,8 @@ def make_app_universe(**options: Any) -> Universe:
     Args:
         options: of `Universe`.
     """
-    from cfepy.nodes.sharing import Provision
-    from cfepy.nodes.stdlib.table import FIXES, MADE
+    from cfepy.nodes.module_origins import Provision
+    from cfepy.nodes.stdlib.replacements import FIXES, MADE
     from cfepy.nodes.universe import Universe
 
     own = {

@@ -2,7 +2,7 @@
 
 Names are looked up in this order: the node's table; modules that were given to the universe (rospy, message packages);
 modules made for it (`time`, `_thread`, `os`, ...); the node's own folders; the libraries that its owner provides; the
-standard library and the installed packages, executed afresh or shared as `cfepy.nodes.sharing` says. The host's
+standard library and the installed packages, executed afresh or shared as `cfepy.nodes.module_origins` says. The host's
 `sys.modules` is never changed. A few modules are late: their code runs when a name in them is first looked for, as with
 `importlib.util.LazyLoader`. A thread that imports a module which another thread is still executing waits for it, as in
 Python itself.
@@ -22,9 +22,9 @@ from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from types import CodeType, ModuleType
 from typing import TYPE_CHECKING, Any
 
-from cfepy.nodes import sharing
-from cfepy.nodes.sources import code_of_file, code_of_library
-from cfepy.nodes.synth import proxy
+from cfepy.nodes import module_origins as sharing
+from cfepy.nodes.made_modules import proxy
+from cfepy.nodes.node_sources import code_of_file, code_of_library
 from cfepy.rtos import WaitList
 
 if TYPE_CHECKING:

@@ -23,15 +23,15 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from cfepy.interpreter.host_system import check_own_builtins
 from cfepy.nodes.files import OpenFiles
 from cfepy.nodes.importer import Factory, Importer
-from cfepy.nodes.report import traceback_text
-from cfepy.nodes.sharing import Provision
-from cfepy.nodes.sources import doubts_of
+from cfepy.nodes.module_origins import Provision
+from cfepy.nodes.node_sources import doubts_of
+from cfepy.nodes.node_tracebacks import traceback_text
 from cfepy.nodes.stdlib import os_module, signal_module, sys_module, time_module
 from cfepy.nodes.stdlib.descriptors import SocketTable
 from cfepy.nodes.stdlib.locks import make_lock_types
+from cfepy.nodes.stdlib.replacements import for_nodes
 from cfepy.nodes.stdlib.signal_module import NodeInterrupt
 from cfepy.nodes.stdlib.streams import ConsoleStream, NoInput, TypedInput
-from cfepy.nodes.stdlib.table import for_nodes
 from cfepy.rtos import Task, TaskExit
 
 if TYPE_CHECKING:

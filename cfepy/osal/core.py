@@ -11,8 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, NoReturn, Protocol, TypeVar
 
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
 from cfepy.ids import OS_TIMEBASE_BASE, IdTable, get_base, name_size
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.limits import (
@@ -34,6 +33,7 @@ from cfepy.status import (
     OS_ERROR,
     OsalError,
 )
+from cfepy.writing.console import Console
 
 
 class Deleted:

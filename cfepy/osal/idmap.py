@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from cfepy.config.versions import OSAL_VERSION, VersionFunctions
 from cfepy.ids import equal, from_integer, get_base, is_defined, to_integer
 from cfepy.osal.core import Core, OsObject, Setup
 from cfepy.osal.limits import (
@@ -14,7 +15,6 @@ from cfepy.osal.limits import (
 )
 from cfepy.reading.texts import to_bytes
 from cfepy.status import OS_ERR_INVALID_ID, OsalError, name_of, status_to_decimal, to_signed
-from cfepy.versions import OSAL_VERSION, VersionFunctions
 
 
 class IdMapApi(VersionFunctions, Core):

@@ -1,6 +1,6 @@
 """Fixed numbers of OSAL's interface, under NASA's names: time-outs, sizes, file modes (osapi-*.h, osconfig.h).
 
-Numbers that a platform may change (how many queues, how many tasks) are in `cfepy.config`.
+Numbers that a platform may change (how many queues, how many tasks) are in `cfepy.config.platform`.
 """
 
 from __future__ import annotations

@@ -14,8 +14,7 @@ from collections.abc import Callable
 from itertools import chain
 from typing import Any, NamedTuple
 
-from cfepy.config import IDENTITIES, PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import IDENTITIES, PlatformConfig
 from cfepy.ids import (
     OS_BINSEM_BASE,
     OS_CONDVAR_BASE,
@@ -49,6 +48,7 @@ from cfepy.osal.timers import TimerApi
 from cfepy.reading.texts import to_bytes
 from cfepy.rtos import CpuCosts, Kernel, WaitList
 from cfepy.status import OS_ERR_NOT_IMPLEMENTED, OS_ERROR, OS_INVALID_POINTER, OS_SUCCESS, OsalError
+from cfepy.writing.console import Console
 
 EXIT_SUCCESS, EXIT_FAILURE = 0, 1
 
@@ -282,7 +282,7 @@ class Osal(ShellApi, ApplicationApi, DiskApi, IdMapApi):
 
     Args:
         kernel: the simulated real-time kernel.
-        config: limits (cfepy.config).
+        config: limits (cfepy.config.platform).
         console: where `printf` writes.
         files: the virtual file system; None makes one with an empty /cf and /ram.
         network: what sockets are plugged into; None makes one of its own.

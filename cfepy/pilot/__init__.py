@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
-    from cfepy.pilot.check import MissionProblem, check_mission, problem_of
-    from cfepy.pilot.company import boot_of
-    from cfepy.pilot.course import BOOT_S, DEFAULT_S, STALLED, SUDDEN, Course
     from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
+    from cfepy.pilot.mission_check import MissionProblem, check_mission, problem_of
     from cfepy.pilot.never_judged import SentNames, no_such_app
+    from cfepy.pilot.peers import boot_of
     from cfepy.pilot.pilot import BootError, Flown, Host, LiveRun, booting, fly, takeoff
     from cfepy.pilot.plan import LAUNCH, NODE, RUN, RunPlan, builder, built_node
     from cfepy.pilot.problems import RunProblem, failures_of, is_reported, problems_of, problems_so_far
     from cfepy.pilot.results import ENDED, NOT_STARTED, AppResult, Results, TopicResult, mark, never_happened
+    from cfepy.pilot.run_loop import BOOT_S, DEFAULT_S, STALLED, SUDDEN, Course
 
 __all__ = [
     "BOOT_S",
@@ -68,9 +68,9 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
-            ".check": ("MissionProblem", "check_mission", "problem_of"),
-            ".company": ("boot_of",),
-            ".course": (
+            ".mission_check": ("MissionProblem", "check_mission", "problem_of"),
+            ".peers": ("boot_of",),
+            ".run_loop": (
                 "BOOT_S",
                 "DEFAULT_S",
                 "STALLED",

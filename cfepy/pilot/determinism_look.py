@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 from cfepy.interpreter.own_code import is_library, is_shown, is_standard
 from cfepy.interpreter.syntax_trees import parsed_input
-from cfepy.nodes.sources import own_files
+from cfepy.nodes.node_sources import own_files
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import PYTHON_BYTES
 from cfepy.trace import TimedRecords, Trace

@@ -18,16 +18,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict, Unpack
 
 from cfepy.attachment import Attachment
-from cfepy.console import Console
 from cfepy.interpreter.cached import CachedProperty
 from cfepy.mission import Mission, MissionSpec, endless_waits
-from cfepy.pilot.course import BROKEN_OFF, INTERRUPTED, OVER, STALLED, Course
 from cfepy.pilot.plan import RunPlan
 from cfepy.pilot.problems import RunProblem, problems_of
 from cfepy.pilot.results import Mark, Results, never_happened
+from cfepy.pilot.run_loop import BROKEN_OFF, INTERRUPTED, OVER, STALLED, Course
 from cfepy.rtos import LastResort, Policy
 from cfepy.status import CfeError, StallError, UsageError
 from cfepy.trace import Trace
+from cfepy.writing.console import Console
 
 if TYPE_CHECKING:
     from cfepy.script import Outcome, ScriptRun
@@ -90,7 +90,7 @@ class Flown:
         at: its state when its time was over.
         trace: the digest of the run; empty when it was broken off.
         outcome: of its script, None without one.
-        reason: how it ended (`cfepy.pilot.course`).
+        reason: how it ended (`cfepy.pilot.run_loop`).
         known: what its user should know, and was known before the run.
     """
 
@@ -349,7 +349,7 @@ def _company(plan: RunPlan, spec: MissionSpec, mission: Mission, course: Course)
     if not plan.beside or not course.takes_company:
         yield runs
         return
-    from cfepy.pilot.company import Companion, Company
+    from cfepy.pilot.peers import Companion, Company
 
     members = [Companion("", mission, 0, mission.run_until, list)]
     with ExitStack() as flights:

@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cfepy.attachment import Attachment
-from cfepy.config import IDENTITIES, MOST_ID
+from cfepy.config.platform import IDENTITIES, MOST_ID
 from cfepy.interpreter.host_system import command_line
 from cfepy.mission import CppNodesConfig, MissionSpec, cpp_nodes_of, read_mission
 from cfepy.nodes import CppNode
-from cfepy.pilot.course import BOOT_S, DEFAULT_S, LONGEST_S, NODE_S
+from cfepy.pilot.run_loop import BOOT_S, DEFAULT_S, LONGEST_S, NODE_S
 from cfepy.plugins import Hook
 from cfepy.rtos import AUTO, STALL_S
 from cfepy.schedules import Schedule
@@ -182,7 +182,7 @@ class RunPlan:
         """
         found = []
         for text in self.beside:
-            from cfepy.pilot.company import boot_of
+            from cfepy.pilot.peers import boot_of
 
             mission, begins_ns = boot_of(text)
             if mission in self.words:

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from cfepy.console import Console
 from cfepy.status import CFE_PSP_NO_EXCEPTION_DATA, OsalError
+from cfepy.writing.console import Console
 
 MAX_EXCEPTION_ENTRIES = 4  # CFE_PSP_MAX_EXCEPTION_ENTRIES of the Linux PSP
 EXCEPTION_ID_BASE = 0x111_0000

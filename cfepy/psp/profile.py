@@ -8,11 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
-from cfepy.config import COUNTED_BY_ID, IDENTITIES, MAY_BE_ZERO, MOST_ID, NOT_LIMITS, PlatformConfig
+from cfepy.config.platform import COUNTED_BY_ID, IDENTITIES, MAY_BE_ZERO, MOST_ID, NOT_LIMITS, PlatformConfig
 from cfepy.ids import SERIAL_MAX
 from cfepy.reading.marked_yaml import Marked, load
+from cfepy.reading.resources import shipped
 from cfepy.reading.suggestions import did_you_mean
-from cfepy.resources import shipped
 from cfepy.rtos import CpuCosts
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S, PS_PER_NS

@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
+from cfepy.config.versions import PSP_VERSION, VersionFunctions
 from cfepy.osal import Osal, OsTime, time_from_total_nanoseconds
 from cfepy.psp import addresses as endian
 from cfepy.psp.addresses import MEM_ATTR_READWRITE, MEM_EEPROM, MEM_RAM, EepromSpace, PortSpace
@@ -29,7 +29,7 @@ from cfepy.status import (
     status_to_decimal,
 )
 from cfepy.units import NS_PER_S, NS_PER_US
-from cfepy.versions import PSP_VERSION, VersionFunctions
+from cfepy.writing.console import Console
 
 RST_TYPE_PROCESSOR = 1
 RST_TYPE_POWERON = 2

@@ -44,8 +44,8 @@ if TYPE_CHECKING:
     from cfepy.rtos.scheduler import SLICE_NS
     from cfepy.rtos.semaphore import Semaphore
     from cfepy.rtos.stall_signals import LastResort
-    from cfepy.rtos.starters import StartersFirst
     from cfepy.rtos.task import FOREVER, PLACE, TIMEOUT, Task, TaskExit
+    from cfepy.rtos.task_starters import StartersFirst
     from cfepy.rtos.wait_graph import Wait, circles, endless
     from cfepy.rtos.wait_list import WaitList
     from cfepy.rtos.watchdog import STALL_S, StallWatch
@@ -159,7 +159,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".scheduler": ("SLICE_NS",),
             ".semaphore": ("Semaphore",),
             ".stall_signals": ("LastResort",),
-            ".starters": ("StartersFirst",),
+            ".task_starters": ("StartersFirst",),
             ".task": (
                 "FOREVER",
                 "PLACE",

@@ -10,8 +10,8 @@ from random import Random
 from typing import Any
 
 from cfepy.rtos.policy import AskingPolicy, Decision, Policy, Question
-from cfepy.rtos.starters import StartersFirst
 from cfepy.rtos.task import Task
+from cfepy.rtos.task_starters import StartersFirst
 
 HOLD_ODDS = 16  # one in so many chances to hold a task up is taken: time would else run away from the work
 STAY_ODDS = (0.0, 0.5, 0.7)  # that the running task stays, where there are points between calls

@@ -98,7 +98,8 @@ class Policy:
         any_priority: candidates are all ready tasks, not only those of the most urgent priority.
         hold_ns: a task may be held up until the next timer is due, if that is within so many ns; 0 for never.
         connect_ns: a connection between two nodes may take up to so many ns; 0 leaves it as the mission has it.
-        points: where mission code lets others in besides calls (`cfepy.schedules.points`); empty for nowhere.
+        points: where mission code lets others in besides calls (`cfepy.schedules.preemption_points`); empty for
+            nowhere.
     """
 
     def __init__(self, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0, points: str = "") -> None:

@@ -22,13 +22,13 @@ from dataclasses import dataclass, field
 from types import CodeType, FrameType
 from typing import NamedTuple
 
-from cfepy.escapes import visible
 from cfepy.rtos.context import frame_of_thread, insist, raise_in_thread
 from cfepy.rtos.kernel import Kernel
 from cfepy.rtos.stall_signals import LastResort, Waker
 from cfepy.rtos.task import Task, TaskExit
 from cfepy.status import StallError
 from cfepy.units import NS_PER_S
+from cfepy.writing.escapes import visible
 
 STALL_S = 10.0
 LOOK_S, SOON_S = 0.25, 0.05  # wall time between two looks; when the run is being ended

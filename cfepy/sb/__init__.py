@@ -16,8 +16,8 @@ from cfepy.ports import PEND_FOREVER
 if TYPE_CHECKING:
     from cfepy.sb.buffers import BUFFER_BYTES
     from cfepy.sb.bus import POLL, SoftwareBus
+    from cfepy.sb.direct_subscriber import Outlet
     from cfepy.sb.message_buffer import MessageBuffer
-    from cfepy.sb.outlet import Outlet
     from cfepy.sb.packet_listener import listened
     from cfepy.sb.packets import COMMANDS, ONESUB_TLM, SUBSCRIPTION, TELEMETRY, UNSUBSCRIPTION
     from cfepy.sb.pipe import NOBODY_HEARD, Pipe
@@ -57,7 +57,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "SoftwareBus",
             ),
             ".message_buffer": ("MessageBuffer",),
-            ".outlet": ("Outlet",),
+            ".direct_subscriber": ("Outlet",),
             ".packet_listener": ("listened",),
             ".packets": (
                 "COMMANDS",

@@ -6,7 +6,7 @@ Python: what they would take is counted, a message in several pipes once, and ad
 
 from __future__ import annotations
 
-from cfepy.config import SB_LARGEST_BLOCK_MORE, SB_MEM_BLOCK_SIZES, PlatformConfig
+from cfepy.config.platform import SB_LARGEST_BLOCK_MORE, SB_MEM_BLOCK_SIZES, PlatformConfig
 from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.msg import PRIMARY_HEADER_SIZE, Packet, get_size, set_msg_time
 from cfepy.osal import ObjectSizes

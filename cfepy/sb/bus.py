@@ -14,7 +14,7 @@ import struct
 from collections.abc import Callable
 from typing import Any, ClassVar
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.msg import CMD_HEADER_SIZE, compute_checksum
 from cfepy.osal import ObjectSizes

@@ -9,7 +9,7 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass, field, fields
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.ids import SB_PIPEID_BASE, IdTable
 from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.msg import Packet
@@ -80,7 +80,7 @@ class BusCore:
     Attributes:
         routing: the routing table; `routes` is its dictionary.
         subscriptions: pairs of MsgId and pipe.
-        outlets: how many there ever were (`cfepy.sb.outlet`).
+        outlets: how many there ever were (`cfepy.sb.direct_subscriber`).
         reporting: whether each subscription is told to other processors.
         put_hook: stands before each put into a pipe; None on a bus that nobody watches or disturbs.
     """

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
-    from cfepy.schedules.abreast import Abreast
     from cfepy.schedules.exploring import CallObserver, CallPointKernel, ExploringKernel
     from cfepy.schedules.kernels import make_kernel
     from cfepy.schedules.moves import Move, MoveNumbers, MovePolicy, MovesToMake, plain_name
-    from cfepy.schedules.points import ATTRIBUTES, CALLS, LINES, Points
-    from cfepy.schedules.races import Race, RaceSide, VectorClocks
+    from cfepy.schedules.preemption_points import ATTRIBUTES, CALLS, LINES, Points
     from cfepy.schedules.schedule import DEPTH, ORDER, STEPS, Schedule
+    from cfepy.schedules.side_by_side import Abreast
+    from cfepy.schedules.vector_clocks import Race, RaceSide, VectorClocks
 
 __all__ = [
     "ATTRIBUTES",
@@ -47,12 +47,12 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
-            ".abreast": ("Abreast",),
+            ".side_by_side": ("Abreast",),
             ".exploring": ("CallObserver", "CallPointKernel", "ExploringKernel"),
             ".kernels": ("make_kernel",),
             ".moves": ("Move", "MoveNumbers", "MovePolicy", "MovesToMake", "plain_name"),
-            ".points": ("ATTRIBUTES", "CALLS", "LINES", "Points"),
-            ".races": ("Race", "RaceSide", "VectorClocks"),
+            ".preemption_points": ("ATTRIBUTES", "CALLS", "LINES", "Points"),
+            ".vector_clocks": ("Race", "RaceSide", "VectorClocks"),
             ".schedule": ("DEPTH", "ORDER", "STEPS", "Schedule"),
         },
     )

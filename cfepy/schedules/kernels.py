@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from cfepy.rtos import Kernel, Policy
-from cfepy.schedules.points import CALLS, Points
+from cfepy.schedules.preemption_points import CALLS, Points
 from cfepy.trace import Trace
 
 

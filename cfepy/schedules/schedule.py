@@ -4,7 +4,7 @@
     random:7                any of the candidates, by seed 7
     pct:7:3                 PCT, seed 7, for bugs of depth 3 (`cfepy.rtos.policies.PCT`)
     pct:7:3:5000            the same for runs of about 5000 decisions
-    abreast:7               side by side, by seed 7 (`cfepy.schedules.abreast.Abreast`)
+    abreast:7               side by side, by seed 7 (`cfepy.schedules.side_by_side.Abreast`)
     at:42=1,97=2            fifo, but at decision 42 candidate 1, and at decision 97 candidate 2
     moves:A@650/add.publish=B
                             fifo, but where A, from 650 ms on, calls publish in its function add, B runs
@@ -14,8 +14,8 @@ Every kind but fifo takes options at its end: `any` (tasks of less urgent priori
 `fair=50` (a task that could run is passed over in at most 50 decisions), `hold=500us` (the running task may be held up
 until the next timer is due, if that is within 500 us), `connect=50ms` (a connection between two ROS nodes may take up
 to 50 ms), `points=attributes` or `points=lines,arm` (tasks may be interrupted between the calls of their code as well:
-`cfepy.schedules.points`), and `from=600ms` (fifo up to 600 ms after the start of the run; what comes before still
-counts as decisions).
+`cfepy.schedules.preemption_points`), and `from=600ms` (fifo up to 600 ms after the start of the run; what comes before
+still counts as decisions).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from cfepy.schedules.points import Points
+from cfepy.schedules.preemption_points import Points
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS, time_word
 
@@ -149,7 +149,7 @@ class Schedule:
         if self.kind == "random":
             return SeededRandom(self.seed, *self.settings)
         if self.kind == "abreast":
-            from cfepy.schedules.abreast import Abreast
+            from cfepy.schedules.side_by_side import Abreast
 
             return Abreast(self.seed, *self.settings)
         if self.kind == "pct":

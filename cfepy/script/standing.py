@@ -12,7 +12,7 @@ from pathlib import Path
 from cfepy.mission import MissionSpec
 from cfepy.rtos import ENDLESS
 from cfepy.script.conditions import Scene
-from cfepy.script.run import Outcome, ScriptRun, StepVerdict
+from cfepy.script.script_run import Outcome, ScriptRun, StepVerdict
 from cfepy.script.text import Step, parse_script
 from cfepy.status import UsageError
 

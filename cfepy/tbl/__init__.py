@@ -1,8 +1,8 @@
 """Table Services (CFE_TBL): named blocks of parameters that the ground loads, validates, activates and dumps.
 
 What belongs here registers, loads and keeps tables, and reads and writes table files as bytes. The YAML form of table
-files is in `cfepy.ground.files`. The five services do not import each other; what TBL needs of the others it finds in
-its `Ports`. The central file is `cfepy/tbl/services.py`.
+files is in `cfepy.ground.cfe_files`. The five services do not import each other; what TBL needs of the others it finds
+in its `Ports`. The central file is `cfepy/tbl/services.py`.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.ids import UNDEFINED
 from cfepy.msg import sys_time_fields
 from cfepy.ports import Ports

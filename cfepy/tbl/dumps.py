@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.fs import HEADER_SIZE, TABLE_HEADER_SIZE, FileHeader, write_table_file
 from cfepy.ids import TBL_DUMPCTRLID_BASE, UNDEFINED, IdTable
 from cfepy.ports import Ports

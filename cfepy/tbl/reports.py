@@ -7,7 +7,7 @@ table. For commands about one table the caller has no name, and a table that is 
 
 from __future__ import annotations
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.ports import Ports
 from cfepy.tbl import events as ev
 from cfepy.tbl.dumps import DumpRefused

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.core_app import serve
 from cfepy.fs import SUBTYPE_TBL_REG, FileWriteEvent, FileWriteMetaData, calculate_crc, dump_file_name
 from cfepy.ids import UNDEFINED

@@ -15,7 +15,7 @@ from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.flight import ExpectationError, Flight
-    from cfepy.testing.exploration import explore
+    from cfepy.testing.explore_mark import explore
     from cfepy.testing.missions import Missions
 
 __all__ = ["ExpectationError", "Flight", "Missions", "explore"]
@@ -25,7 +25,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         __name__,
         {
             "cfepy.flight": ("ExpectationError", "Flight"),
-            ".exploration": ("explore",),
+            ".explore_mark": ("explore",),
             ".missions": ("Missions",),
         },
     )

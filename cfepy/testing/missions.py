@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from cfepy.attachment import Attachment
-from cfepy.escapes import visible
 from cfepy.flight import SEED, ExpectationError, Faults, Flight, fault_attachments, fault_text, schedule_of
 from cfepy.interpreter.host_system import command_line
 from cfepy.interpreter.own_code import source_file
@@ -24,6 +23,7 @@ from cfepy.rtos import AUTO, NotingPolicy, Policy
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 from cfepy.testing.hypothesis_tests import ExampleTests
+from cfepy.writing.escapes import visible
 
 if TYPE_CHECKING:
     from cfepy.testing.journals import FlightJournals

@@ -15,7 +15,7 @@ import pytest
 if TYPE_CHECKING:
     from cfepy.testing.missions import Missions
 
-EXPLORE_MARK = "cfepy_explore"  # as in `cfepy.testing.exploration`, which is loaded for tests that have it
+EXPLORE_MARK = "cfepy_explore"  # as in `cfepy.testing.explore_mark`, which is loaded for tests that have it
 CURRENT = pytest.StashKey[pytest.Item]()
 """In the stash of the configuration: the test that runs."""
 

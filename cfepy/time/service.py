@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.ids import ES_APPID_BASE, to_index
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel, Semaphore

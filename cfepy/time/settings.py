@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.status import UsageError
 from cfepy.time.systime import SysTime, micro2sub_secs, to_ticks
 from cfepy.units import US_PER_S

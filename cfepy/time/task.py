@@ -6,7 +6,7 @@ CFE_TIME_Local1HzTask and the timer "cFS-1Hz".
 
 from __future__ import annotations
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.core_app import serve
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel, Semaphore

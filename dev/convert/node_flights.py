@@ -6,10 +6,10 @@ import os
 from pathlib import Path
 from unittest.mock import patch
 
-from cfepy.console import Console
 from cfepy.extra.convert import build_for_flight
 from cfepy.mission import Mission
 from cfepy.mission.launch import read_launch
+from cfepy.writing.console import Console
 from dev.convert.twin_flights import TWINS
 
 NODES = Path(__file__).parents[2] / "tests/extra/convert/nodes"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from cfepy.extra.convert import Profile
-from cfepy.extra.convert.check import RULES
+from cfepy.extra.convert.node_check import RULES
 from dev.convert.survey import DOCUMENT, between
 
 BEGIN, END = "<!-- rules: made by python -m dev.convert.rules -->", "<!-- end of rules -->"

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from unittest.mock import patch
 
-from cfepy.console import Console
 from cfepy.extra.convert import build_for_flight
 from cfepy.mission import Mission, read_mission
+from cfepy.writing.console import Console
 
 PACKAGE = "small"
 ARENA_BYTES = 1 << 22

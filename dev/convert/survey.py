@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.extra.convert import Profile
-from cfepy.extra.convert.check import ABOUT_HEADERS, Level, RuleFinding, check_program, programs_of
+from cfepy.extra.convert.node_check import ABOUT_HEADERS, Level, RuleFinding, check_program, programs_of
 from cfepy.status import UsageError
 
 LIST = Path(__file__).parent / "survey.tsv"

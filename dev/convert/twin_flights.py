@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import NamedTuple
 from unittest.mock import patch
 
-from cfepy.console import Console
 from cfepy.extra.convert import build_for_flight
 from cfepy.mission import Mission
 from cfepy.mission.launch import read_launch
+from cfepy.writing.console import Console
 from rospy_shim.types.msgs import shipped
 
 TWINS = Path(__file__).parents[2] / "tests/extra/convert/twins"

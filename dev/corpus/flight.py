@@ -11,8 +11,8 @@ from string import ascii_uppercase
 from typing import Any
 
 from cfepy.cli.run.outputs import SavedRunFiles
-from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
+from cfepy.writing.console import Console
 from dev.corpus.scenarios import Program, Scenario
 from dev.corpus.sources import Sources
 from dev.corpus.verdict import Outcome

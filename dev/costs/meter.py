@@ -1,14 +1,17 @@
 """A plugin of pytest that measures what each test costs: `-p dev.costs.meter`, in all processes of pytest-xdist.
 
-A cost is the CPU time of set-up, call and teardown, of this process and of those that it started and waited for: other
-than time on a clock on the wall, it is much the same while the computer has other things to do. What a fixture of a
-module or of the whole session costs is shared by all tests that use it: chance decides which of them is the first.
+A cost is the CPU time of set-up, call and teardown, of this process and of those that it started and waited for:
+other than time on a clock on the wall, it counts nothing of other programs, though a busy computer adds to it. What a
+fixture of a module or of the whole session costs is shared by all its users, since chance decides which of them is
+the first.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import resource
+import time
 from collections.abc import Generator, Iterable, Iterator
 from pathlib import Path
 
@@ -20,7 +23,8 @@ FOLDER = "CFEPY_COSTS"
 
 def cpu_time() -> float:
     """The CPU time of this process and of the children that it waited for, in seconds."""
-    return sum(os.times()[:4])
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + children.ru_utime + children.ru_stime  # os.times counts in steps of 10 ms
 
 
 class Meter:
@@ -79,7 +83,7 @@ def measured(folder: Path) -> dict[str, float]:
 
 
 def rows(folder: Path) -> Iterator[tuple[list[str], str, float]]:
-    """What the meters wrote: tests, the part of their cost (a fixture, or nothing for the test itself), the cost."""
+    """What the meters wrote: tests, the part of their cost (a fixture, or "" for the test itself), and the cost."""
     for path in sorted(folder.glob("*.jsonl")):
         for line in path.read_text(encoding="utf-8").splitlines():
             tests, part, cost = json.loads(line)

@@ -16,37 +16,38 @@ from typing import Any, NamedTuple
 from cfepy.cli.ros.rostest import read_results as read_test_results
 from cfepy.es.startup_script import check, entries
 from cfepy.extra.c.engine import compiler
-from cfepy.extra.c.toolchain.sources import read_cmake_lists
-from cfepy.extra.convert.check.source import read_source
-from cfepy.extra.convert.names import SourceNames, names_of
+from cfepy.extra.c.toolchain.source_files import read_cmake_lists
+from cfepy.extra.convert.cpp_sources import collect, main_form
+from cfepy.extra.convert.node_check.source import read_source
 from cfepy.extra.convert.output import write_files
 from cfepy.extra.convert.packages import program_of, read_package
 from cfepy.extra.convert.project import cmake_word
-from cfepy.extra.convert.sources import collect, main_form
+from cfepy.extra.convert.source_names import SourceNames, names_of
 from cfepy.extra.debugger.breakpoints import breakpoints
 from cfepy.extra.exploration.results_file import read_failures, read_results
 from cfepy.extra.exploration.verdict import Failure, Verdict
-from cfepy.faults.plan import read_plan
+from cfepy.faults.fault_plan import read_plan
 from cfepy.ground.bag import BagReader
+from cfepy.ground.cfe_files import table_yaml
+from cfepy.ground.cfe_files.dump_files import read_dump
+from cfepy.ground.cfe_files.table_file import defects_of, document, take_apart
 from cfepy.ground.dictionary import Dictionary, dictionary_of, table_types
 from cfepy.ground.fields import steps_of, value_at
-from cfepy.ground.files import table_yaml
-from cfepy.ground.files.dump_files import read_dump
-from cfepy.ground.files.table_file import defects_of, document, take_apart
-from cfepy.ground.names import constants_in
+from cfepy.ground.mission_names import constants_in
 from cfepy.ground.parameters import of_files
 from cfepy.ground.recording import summary_of
 from cfepy.ground.values import packet_of
 from cfepy.ground.xtce import xtce_of
 from cfepy.journal import read_journal
-from cfepy.mission import MissionSpec, read_mission, sources
-from cfepy.mission.finding import read_lock
+from cfepy.mission import MissionSpec, read_mission
+from cfepy.mission import app_sources as sources
 from cfepy.mission.mission_file import read_mission_file
+from cfepy.mission.mission_lookup import read_lock
 from cfepy.monitors import read_demands
 from cfepy.msg import Layout, Telemetry
-from cfepy.pilot.check import check_mission
-from cfepy.pilot.check.cfe_names import wrong_names
 from cfepy.pilot.determinism_look import suspects
+from cfepy.pilot.mission_check import check_mission
+from cfepy.pilot.mission_check.cfe_names import wrong_names
 from cfepy.psp.profile import load_profile
 from cfepy.reading.marked_yaml import Mistakes, load
 from cfepy.reading.plain_xml import XmlError, plain_xml
@@ -60,8 +61,8 @@ from rospy_shim.roslaunch.reader import read
 from rospy_shim.roslaunch.values import from_yaml
 from rospy_shim.types.expression import ExpressionError, plain_text, value_of
 from rospy_shim.types.msgs import Packages, check_definitions
+from rospy_shim.types.msgs.definition_sources import Definition, Texts
 from rospy_shim.types.msgs.library import Library, from_full_text, shipped
-from rospy_shim.types.msgs.sources import Definition, Texts
 
 ROOT = Path(__file__).parents[2]
 DATA = ROOT / "tests/data"

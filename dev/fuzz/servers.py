@@ -17,7 +17,6 @@ from tempfile import mkdtemp
 from typing import Any
 from xmlrpc.client import dumps
 
-from cfepy.console import Console
 from cfepy.extra.ros_host import RosHost, ServedMaster
 from cfepy.extra.ros_host.tcpros import frame, pack_header
 from cfepy.extra.viewers.foxglove import FoxgloveViewer
@@ -25,6 +24,7 @@ from cfepy.extra.viewers.listen import Admission, ListenPlace
 from cfepy.extra.viewers.rosbridge import RosbridgeServer
 from cfepy.io import HostNetwork, PeerCounts
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 
 LOOPBACK = "127.0.0.1"
 PIECE_NS = 2_000_000

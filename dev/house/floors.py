@@ -13,8 +13,8 @@ from dev.house.tree import Tree
 
 FLOORS: tuple[tuple[str, ...], ...] = (
     (
-        *("status", "ids", "units", "trace", "console", "config", "config_api", "ports", "core_app", "versions"),
-        *("resources", "markup", "escapes", "plugins", "reading", "interpreter"),
+        *("status", "ids", "units", "trace", "ports", "core_app", "plugins", "config", "reading", "writing"),
+        "interpreter",
     ),
     ("rtos",),
     ("osal",),

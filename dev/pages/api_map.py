@@ -20,9 +20,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
-from cfepy.console import Console
 from cfepy.extra.c.api import function_names
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from dev.pages.api_names import python_name
 
 ROOT = Path(__file__).parents[2]

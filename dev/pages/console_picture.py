@@ -10,8 +10,8 @@ from textual.pilot import Pilot
 
 from cfepy.cli.ground.console import Opening
 from cfepy.cli.ground.console.screen import ConsoleScreen
-from cfepy.cli.host import Interrupts
 from cfepy.cli.main import parser_for
+from cfepy.cli.watched_host import Interrupts
 
 POLL_S = 0.01
 Use = Callable[[ConsoleScreen, Pilot[None]], Awaitable[None]]

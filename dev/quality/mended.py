@@ -14,9 +14,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+from cfepy.extra.exploration.deadlock import waits_of
 from cfepy.extra.exploration.fork_server import ForkingJudge
 from cfepy.extra.exploration.search import make_search
-from cfepy.extra.exploration.stuck import waits_of
 from cfepy.extra.exploration.trial import Trial
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.schedules import Schedule

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cfepy.extra.exploration import verdict
-from cfepy.extra.exploration.stuck import waits_of
+from cfepy.extra.exploration.deadlock import waits_of
 from cfepy.extra.exploration.trial import Trial
 from cfepy.pilot.plan import RunPlan
 from cfepy.schedules import Schedule

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from cfepy.extra.exploration.expedition import DEFAULT_SEEDS
+from cfepy.extra.exploration.exploration import DEFAULT_SEEDS
 from cfepy.extra.exploration.shrink import Shrinker, budget_of
 from cfepy.extra.exploration.verdict import Verdict
 from dev.quality.bugs import Bug, reference_trial

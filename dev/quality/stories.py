@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.extra.exploration.moves import MoveNotingPolicy
+from cfepy.extra.exploration.made_moves import MoveNotingPolicy
 from cfepy.extra.exploration.timeline import Story as Told
 from cfepy.extra.exploration.timeline import story_of
 from cfepy.rtos import Policy

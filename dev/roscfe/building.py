@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import pytest
 
-from cfepy.resources import shipped
+from cfepy.reading.resources import shipped
 
 CPP = os.environ.get("CXX", "c++").split()
 ROSCFE = shipped("roscfe")

@@ -20,10 +20,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from unittest.mock import patch
 
-from cfepy.console import Console
 from cfepy.extra.convert import build_for_flight
 from cfepy.mission import Mission
 from cfepy.mission.launch import read_launch
+from cfepy.writing.console import Console
 from dev.host_ports import free_port
 from dev.roscfe.building import compile_program
 

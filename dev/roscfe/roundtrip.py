@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.extra.convert.capacities import Capacities
-from cfepy.extra.convert.messages import Profile, write_headers
+from cfepy.extra.convert.message_headers import Profile, write_headers
 from dev.roscfe.building import HERE, ROSCPP, TARGETS, Target, compile_program
 from dev.roscfe.random_messages import LIBRARY, Source, all_types, capacities
 

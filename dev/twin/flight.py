@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import NamedTuple, Protocol, TypeVar
 
 from apps import to_lab
-from cfepy.console import Console
 from cfepy.es import packets as es
 from cfepy.evs import packets as evs
 from cfepy.ground.link import GroundLink
@@ -19,6 +18,7 @@ from cfepy.mission import Mission
 from cfepy.sb import packets as sb
 from cfepy.tbl import packets as tbl
 from cfepy.time import packets as time_packets
+from cfepy.writing.console import Console
 from dev.twin import masks, mission
 from dev.twin.commands import APPS, BACKGROUND, CONTROL, HOUSEKEEPING, PLAIN, RESET, Step
 from dev.twin.real import BOOT_LIMIT_S, CI_PORT, TO_PORT, RealCfe

@@ -12,13 +12,13 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from cfepy.console import Console
 from cfepy.es import packets as es
 from cfepy.evs import packets as evs
 from cfepy.mission import Mission, PacketWatch, Seen
 from cfepy.msg import command
 from cfepy.status import CfeError
 from cfepy.tbl import packets as pk
+from cfepy.writing.console import Console
 from dev.twin.tables_steps import CALL, CLOSE, COMMAND, READ, REGISTRY, REMOVE, RESET, RESTART, WRITE, Step
 
 Answer = list[str]

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.status import CfeError
 from cfepy.trace import UNSENT
-from rospy_shim.client import connecting
-from rospy_shim.client.leftovers import Leftovers, half_of
+from rospy_shim.client import connection_setup as connecting
+from rospy_shim.client.failed_messages import Leftovers, half_of
 from rospy_shim.client.message import packer, serialized
 from rospy_shim.client.topic_side import OUTBOUND, TopicConnection, TopicSide, bus_of
 from rospy_shim.types.exceptions import ROSException, ROSSerializationException

@@ -29,7 +29,7 @@ _LOG_FUNCTIONS = tuple(
 _NAME_CONSTANTS = ("ANYTYPE", "GLOBALNS", "REMAP", "SEP", "SERVICE_ANYTYPE", "TOPIC_ANYTYPE")
 Makers = dict[str, Callable[[], Any]]
 Live = dict[str, tuple[object, str]]
-INNER = Path(__file__).parents[1] / "inner"
+INNER = Path(__file__).parents[1] / "rospy_modules"
 """Modules of rospy that are ordinary code of nodes, executed afresh in each universe."""
 _SUBMODULES = ("logger_level_service_caller", "rosconsole", "service")  # of those in INNER, what `import rospy` shows
 _IMPORTED = (

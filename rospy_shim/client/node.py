@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any
 from cfepy.rtos import Mutex, Task
 from cfepy.status import CfeError
 from rospy_shim.client.client import Client
-from rospy_shim.client.life import Life
 from rospy_shim.client.link import Link, link_class
 from rospy_shim.client.logs import Logs
 from rospy_shim.client.params import Params
 from rospy_shim.client.rostime import RosClock
 from rospy_shim.client.service import Service, make_service
 from rospy_shim.client.service_proxy import AnswerPipes, make_service_proxy, wait_for_service
+from rospy_shim.client.shutdown import Life
 from rospy_shim.client.subscription import Subscription
 from rospy_shim.client.timer import make_rate, make_timer
 from rospy_shim.client.topics import make_publisher, make_subscriber

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from cfepy.rtos import WaitList
 from cfepy.units import NS_PER_S
-from rospy_shim.client.life import SPIN_NS
+from rospy_shim.client.shutdown import SPIN_NS
 from rospy_shim.types import genpy
 from rospy_shim.types.exceptions import ROSInitException, ROSInterruptException, ROSTimeMovedBackwardsException
 

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from cfepy.nodes.report import traceback_parts
+from cfepy.nodes.node_tracebacks import traceback_parts
 from cfepy.rtos import TIMEOUT, WaitList
 from cfepy.status import CfeError
 from rospy_shim.client.message import packer, unpacker

@@ -10,9 +10,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
-from cfepy.nodes.report import traceback_text
+from cfepy.nodes.node_tracebacks import traceback_text
 from cfepy.status import CfeError
-from rospy_shim.client import connecting
+from rospy_shim.client import connection_setup as connecting
 from rospy_shim.client.message import packer, unpacker
 from rospy_shim.client.topic_side import INBOUND, TopicConnection, TopicSide
 from rospy_shim.types.exceptions import ROSException

@@ -1,8 +1,8 @@
 """ROS nodes outside of the mission, as its graph sees them: with publishers, subscribers and services like all others.
 
 `OutsideGraph` is what programs on this computer do to the graph, in plain values, so that a journal has all of it and a
-replay does it again (`cfepy.mission.acts`). What the mission has for them goes to `OutsideGraph.way_out`; a replay has
-none. Nothing here waits for them: a message for an outside subscriber is handed on at once.
+replay does it again (`cfepy.mission.host_actions`). What the mission has for them goes to `OutsideGraph.way_out`; a
+replay has none. Nothing here waits for them: a message for an outside subscriber is handed on at once.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from rospy_shim.client.subscription import NO_PIPE
 from rospy_shim.graph.compiled import DeclaredType
 from rospy_shim.graph.graph import MOST_NAMES, ServiceCall
 from rospy_shim.graph.outside_nodes import OutsideLink, OutsideNode, OutsideService, OutsideSubscription
-from rospy_shim.master.calls import call
+from rospy_shim.master.xmlrpc_calls import call
 from rospy_shim.types.exceptions import ServiceException
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from cfepy.rtos import Kernel
     from rospy_shim.graph.graph import Graph, Header, ServiceEntry, TopicEntry
     from rospy_shim.master import Switchboard
-    from rospy_shim.master.calls import Answer
+    from rospy_shim.master.xmlrpc_calls import Answer
 
 PACE_NS = 100_000  # between two looks whether a service has room for the next packet of a request
 PRIORITY = 100  # of a task that calls a compiled node's service, as a node's

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from rospy_shim.master import calls
-from rospy_shim.master.calls import Answer, answers
+from rospy_shim.master import xmlrpc_calls as calls
 from rospy_shim.master.registrations import uri_of
 from rospy_shim.master.slave_api import TRANSPORT, NodeApi, service_header
+from rospy_shim.master.xmlrpc_calls import Answer, answers
 
 if TYPE_CHECKING:
     from rospy_shim.graph.compiled import CompiledNode

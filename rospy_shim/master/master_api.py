@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rospy_shim.master import calls
-from rospy_shim.master.calls import Answer, answers
+from rospy_shim.master import xmlrpc_calls as calls
 from rospy_shim.master.registrations import Entries, Registrations
+from rospy_shim.master.xmlrpc_calls import Answer, answers
 from rospy_shim.parameters.tree import ParameterTree
 from rospy_shim.parameters.values import marshalled
 from rospy_shim.types.names import PRIV_NAME, SEP

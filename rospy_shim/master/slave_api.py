@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from rospy_shim.master import calls
-from rospy_shim.master.calls import Answer, InvalidArgument, answers
+from rospy_shim.master import xmlrpc_calls as calls
 from rospy_shim.master.registrations import uri_of
+from rospy_shim.master.xmlrpc_calls import Answer, InvalidArgument, answers
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node

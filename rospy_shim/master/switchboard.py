@@ -15,12 +15,12 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from cfepy.nodes.refused import RefusedError
-from rospy_shim.master.calls import UnknownMethod, call
+from cfepy.nodes.refused_modules import RefusedError
 from rospy_shim.master.compiled_api import CompiledApi
 from rospy_shim.master.master_api import MasterApi
 from rospy_shim.master.registrations import uri_of
 from rospy_shim.master.slave_api import SlaveApi
+from rospy_shim.master.xmlrpc_calls import UnknownMethod, call
 from rospy_shim.parameters.values import DateTime
 
 if TYPE_CHECKING:

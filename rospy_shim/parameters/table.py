@@ -10,7 +10,7 @@ import struct
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.msg import Command, Layout, Telemetry
 from cfepy.tbl import TableType
 from rospy_shim.parameters.values import parts_of, value_of

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from cfepy.nodes import NodeConfig
 from cfepy.units import NS_PER_MS, NS_PER_S
+from rospy_shim.roslaunch.launch_plan import Planner, ScriptError, plan_of
 from rospy_shim.roslaunch.model import LaunchNode
-from rospy_shim.roslaunch.plan import Planner, ScriptError, plan_of
 from rospy_shim.roslaunch.substitution import SubstitutionError, Substitutions, UnsetArgument, World
 from rospy_shim.types.msgs import Packages
 

@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from cfepy.console import Console
 from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission
 from cfepy.msg import Telemetry
+from cfepy.writing.console import Console
 
 STARTUP = """\
 CFE_APP, ci_lab, CI_LAB_AppMain, CI_LAB, 60, 16384, 0x0, 0;

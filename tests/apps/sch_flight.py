@@ -7,12 +7,12 @@ from pathlib import Path
 
 from apps.sch import packets as pk
 from apps.sch.definition import activity, message_image, schedule_image
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.mission.packet_watch import PacketWatch, Seen
 from cfepy.msg import command, init
 from cfepy.tbl import build
 from cfepy.units import NS_PER_MS, NS_PER_S
+from cfepy.writing.console import Console
 
 FIRST, SECOND, THIRD = 0x18F1, 0x18F2, 0x18F3
 MESSAGES = {1: init(FIRST, 8), 2: init(SECOND, 8), 3: command(THIRD, 5, b"\1\2"), 4: init(0x1896, 8)}

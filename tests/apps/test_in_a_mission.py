@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from apps.sample_app.app import VERSION_TEXT
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.msg import command
 from cfepy.tbl import packets, read
+from cfepy.writing.console import Console
 
 STARTUP = """\
 CFE_APP, sample_app,  SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;

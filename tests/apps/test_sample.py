@@ -8,12 +8,12 @@ import pytest
 
 from apps.sample_app import COMMANDS, TABLES, TELEMETRY, SAMPLE_APP_Main, packets
 from apps.sample_app.tables import sample_app_tbl
-from cfepy.console import Console
 from cfepy.es import APP_ERROR, APP_EXIT
 from cfepy.mission import Mission
 from cfepy.msg import get_msg_id
 from cfepy.status import CFE_SB_BAD_ARGUMENT
 from cfepy.tbl import TableImage, build
+from cfepy.writing.console import Console
 from tests.apps.conftest import APPS, AppBench, cmd
 
 

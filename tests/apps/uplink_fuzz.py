@@ -18,13 +18,13 @@ from random import Random
 import pytest
 
 from apps.ci_lab import packets as ci_lab
-from cfepy.console import Console
 from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission
 from cfepy.msg import CommandTable, get_msg_id, get_size
 from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, DONE, Dispatch
 from cfepy.sb.routing import Destination
 from cfepy.units import NS_PER_MS
+from cfepy.writing.console import Console
 
 DATA = Path(__file__).parents[1] / "data"
 STARTUP = """\

@@ -160,7 +160,7 @@ def test_with_a_script_a_board_and_a_schedule(tmp_path: Path, capsys: pytest.Cap
     [
         (["--json", "x"], "--json: does not go with --check-determinism"),
         (["--realtime"], "--realtime: does not go with --check-determinism"),
-        (["--board", "none"], "none"),
+        pytest.param(["--board", "none"], "none", marks=pytest.mark.slow),
     ],
 )
 def test_bad_usage(tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], said: str) -> None:
@@ -183,6 +183,7 @@ def test_impossible_numbers_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
     assert "'1' is not a number of runs; give 2 to 64" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_file_in_the_working_directory_is_no_module_of_the_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

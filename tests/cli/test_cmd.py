@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cfepy.cli.ground.target import RemoteHost, host_of
+from cfepy.cli.ground.command_target import RemoteHost, host_of
 from cfepy.cli.main import main
 from cfepy.io.udp import UdpListener
 from cfepy.status import UsageError

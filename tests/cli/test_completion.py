@@ -38,6 +38,7 @@ def test_all_commands(monkeypatch: pytest.MonkeyPatch) -> None:
     assert set(told("cfepy ", monkeypatch)) == own
 
 
+@pytest.mark.slow
 def test_every_option_of_every_command(monkeypatch: pytest.MonkeyPatch) -> None:
     for words, parser in parsers().items():
         shown = told(f"cfepy {words} --", monkeypatch)

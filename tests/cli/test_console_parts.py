@@ -12,7 +12,7 @@ from cfepy.cli.ground.console.completion import Completer
 from cfepy.cli.ground.console.pages import CHANGED, PacketBoard, Row
 from cfepy.cli.ground.console.plain import text_of_row
 from cfepy.cli.ground.console.saved import SavedScript, time_text, without_when
-from cfepy.cli.host import Interrupts, WatchedHost
+from cfepy.cli.watched_host import Interrupts, WatchedHost
 from cfepy.es.packets import HK_TLM
 from cfepy.evs.packets import LONG_EVENT_MSG
 from cfepy.ground import dictionary_of, packet_of

@@ -11,14 +11,14 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.cli.host import Interrupts
 from cfepy.cli.main import main
+from cfepy.cli.watched_host import Interrupts
 from cfepy.ground.bag import BagReader
 from cfepy.interpreter import early_end
 from cfepy.interpreter.host_system import interrupt_once
 from cfepy.journal import read_journal
-from cfepy.mission.pieces import HeldBack
-from cfepy.resources import import_path
+from cfepy.mission.run_pieces import HeldBack
+from cfepy.reading.resources import import_path
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="signals are those of POSIX")
 
@@ -167,6 +167,7 @@ def assert_whole(bag: Path, journal: Path) -> None:
     assert end.trace
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 3])
 def test_sighup_finishes_bag_and_journal(tmp_path: Path, count: int) -> None:
     process, bag, journal = flying(tmp_path)
@@ -179,6 +180,7 @@ def test_sighup_finishes_bag_and_journal(tmp_path: Path, count: int) -> None:
     assert_whole(bag, journal)
 
 
+@pytest.mark.slow
 def test_sighup_is_ignored_below_nohup() -> None:
     process = started("--for", "100000", below=["nohup"])
     read_to(process, "phase approach")
@@ -189,6 +191,7 @@ def test_sighup_is_ignored_below_nohup() -> None:
     assert process.returncode == 130
 
 
+@pytest.mark.slow
 def test_a_terminal_that_is_closed_finishes_bag_and_journal(tmp_path: Path) -> None:
     pty = pytest.importorskip("pty")
     bag, journal, saved = tmp_path / "run.bag", tmp_path / "run.cfepy", tmp_path / "saved"
@@ -216,6 +219,7 @@ def test_a_terminal_that_is_closed_finishes_bag_and_journal(tmp_path: Path) -> N
     assert saved.is_dir()
 
 
+@pytest.mark.slow
 def test_a_reader_that_went_away_leaves_a_whole_journal(tmp_path: Path) -> None:
     process, bag, journal = flying(tmp_path)
     assert process.stdout is not None

@@ -86,6 +86,7 @@ def test_the_report_does_not_depend_on_the_number_of_processes(late: Path, capsy
     assert "failure 1" in alone
 
 
+@pytest.mark.slow
 def test_it_stops_with_the_first_failure_when_asked(late: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = (late, "--for", 0.7, "--policy", "dfs", "--depth", 1, "--seeds", 100, "--shrink", 0, "--jobs", 1)
     assert explore(*words, "--until-failure") == FOUND_PROBLEMS
@@ -158,7 +159,7 @@ def test_an_error_of_cfepy_is_no_success(
     def broken(*_: object) -> object:
         raise ZeroDivisionError("a bug in cfepy")
 
-    monkeypatch.setattr("cfepy.extra.exploration.expedition.make_crew", lambda *_: Inline())
+    monkeypatch.setattr("cfepy.extra.exploration.exploration.make_crew", lambda *_: Inline())
     monkeypatch.setattr(Trial, "run", broken)
     assert explore(late, "--for", 0.7, "--seeds", 3) == FOUND_PROBLEMS
     out = capsys.readouterr().out
@@ -210,6 +211,7 @@ def test_numbers_that_cannot_be(late: Path, option: str) -> None:
     assert caught.value.code == BAD_USAGE
 
 
+@pytest.mark.slow
 def test_ctrl_c_while_shrinking_leaves_the_report(
     late: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -92,6 +92,7 @@ def test_a_command_of_a_script_gets_lost(tmp_path: Path, capsys: pytest.CaptureF
     assert [line.split()[0] for line in out.splitlines() if "CFE_ES 3" in line] == ["FAILED", "ok"]
 
 
+@pytest.mark.slow
 def test_check_compares_a_plan_with_the_mission(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "plan.yaml"
     path.write_text(
@@ -113,6 +114,7 @@ def test_check_compares_a_plan_with_the_mission(tmp_path: Path, capsys: pytest.C
     assert "plan.yaml:2: [0].every: " in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_the_command_lists_targets_and_makes_plans(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert main(["faults", "lab"]) == 0
     out = capsys.readouterr().out

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli import main as entry
-from cfepy.cli.failures import writing
 from cfepy.cli.main import main
+from cfepy.cli.user_notes import writing
 from cfepy.status import UsageError
 
 TABLE = str(Path(__file__).parents[1] / "data/hk_cpy_tbl.tbl")

@@ -10,7 +10,7 @@ import pytest
 
 from cfepy.cli.main import main
 from cfepy.extra.c import Options, build
-from cfepy.extra.c.toolchain.sources import read_cmake_lists
+from cfepy.extra.c.toolchain.source_files import read_cmake_lists
 from tests.extra.c.building import needs_compiler
 
 pytestmark = needs_compiler

@@ -247,7 +247,13 @@ def test_faults_that_do_not_fit_or_never_strike(
     assert ") never happened: " in said
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize(
+    "command",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] * ("--check-determinism" in name))  # which starts processes
+        for name in COMMANDS
+    ],
+)
 def test_a_script_with_a_mistake(
     command: str,
     words: dict[str, list[str]],

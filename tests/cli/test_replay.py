@@ -14,7 +14,7 @@ import pytest
 
 from cfepy.cli.main import main
 from cfepy.journal.journal import FrameWriter, read_frames
-from cfepy.resources import import_path
+from cfepy.reading.resources import import_path
 from tests.journal.missions import paths, race
 from tests.mission.flights import write_mission
 
@@ -100,6 +100,7 @@ def test_a_node_is_replayed_with_its_own_exit_of_the_command(
     assert "the same run as ../node.cfepy" in again.err
 
 
+@pytest.mark.slow
 def test_a_paced_run_that_ctrl_c_ended_is_replayed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     command = ["run", "lab", "--realtime", "5", "--port", "1234=0", "--record", "a.cfepy"]
     environment = {**os.environ, "PYTHONPATH": import_path(), "PYTHONUNBUFFERED": "1"}

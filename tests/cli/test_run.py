@@ -273,9 +273,7 @@ def test_a_terminal_gets_a_status_line_and_the_same_digest(
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
 def test_ctrl_c_ends_a_run_with_its_report(make_mission: Write, options: tuple[str, ...], how: signal.Signals) -> None:
     process = start("run", str(make_mission("Quiet")), *options)
-    assert process.stdout is not None
-    while "OPERATIONAL" not in process.stdout.readline():
-        pass
+    read_up_to(process, "OPERATIONAL")
     process.send_signal(how)
     out, err = process.communicate()
     assert process.returncode == 130
@@ -305,9 +303,7 @@ def test_ctrl_c_ends_the_run_whatever_a_task_does(make_mission: Write, body: str
     folder = make_mission("Quiet")
     (folder / "apps.py").write_text(f"def Quiet(cfe):\n{body}", encoding="utf-8")
     process = start("run", str(folder), "--for", "1000000", "--tasks", tasks)
-    assert process.stdout is not None
-    while "Loading file" not in process.stdout.readline():
-        pass
+    read_up_to(process, "Loading file")
     process.send_signal(signal.SIGINT)
     out, err = process.communicate()
     assert process.returncode == 130
@@ -325,6 +321,12 @@ def test_a_reader_that_went_away_is_no_error(make_mission: Write) -> None:
     assert "Traceback" not in process.stderr.read()
     process.stderr.close()
     assert process.wait() == 0
+
+
+def read_up_to(process: subprocess.Popen[str], text: str) -> None:
+    """Read what a command prints until a line has a text; fail if it ends before."""
+    assert process.stdout is not None
+    assert any(text in line for line in process.stdout), process.communicate()[1]
 
 
 def start(*arguments: str) -> subprocess.Popen[str]:

@@ -59,6 +59,7 @@ def app(folder: Path) -> str:
     return str(folder)
 
 
+@pytest.mark.slow
 def test_a_run_and_its_replay_end_as_failed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     journal = str(tmp_path / "run.cfepy")
     words = [app(tmp_path), "--for", "2", "--stall", "0.2"]

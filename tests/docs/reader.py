@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cfepy.extra.c.build_cache import cache_folder
-from cfepy.resources import import_path
+from cfepy.reading.resources import import_path
 from tests.docs.pages import ROOT
 from tests.docs.scene import Scene, scene_of
 

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.app import Cfe
-from cfepy.console import Console
 from cfepy.es.records import StartParams
 from cfepy.mission import Mission
 from cfepy.status import OS_ERROR, OsalError
+from cfepy.writing.console import Console
 
 Main = Callable[[Cfe], Any]
 

@@ -32,6 +32,10 @@ POOL_AT = 12 + ENTRIES * RECORD.size
 FIRST_BLOCK = 0x150001
 
 
+EACH_OR_SOME = pytest.mark.parametrize("step", [5, pytest.param(1, marks=pytest.mark.slow)])
+"""Every bit is left to the slow tests."""
+
+
 def test_data_outlive_a_reset() -> None:
     board = Board()
     handle, status = board.cds.register(10, "APP.Data", is_table=False)
@@ -171,8 +175,9 @@ def test_without_damage_all_is_found() -> None:
     assert board.log == []
 
 
-def test_no_flip_of_a_bit_is_ever_taken_for_data() -> None:
-    for bit in flips(0, TAIL) + flips(SIZE - 8, SIZE):
+@EACH_OR_SOME
+def test_no_flip_of_a_bit_is_ever_taken_for_data(step: int) -> None:
+    for bit in [*flips(0, TAIL), *flips(SIZE - 8, SIZE)][::step]:
         board = after_flip(bit)
         for name, content in found(board).items():
             assert content in (GOOD[name], CFE_ES_CDS_BLOCK_CRC_ERR), f"bit {bit}: {name} is {content!r}"
@@ -186,8 +191,9 @@ def test_every_flip_in_the_signatures_and_the_size_of_the_registry_makes_the_cds
         assert status_of(lambda: board.cds.named("A.Gone")) == CFE_ES_ERR_NAME_NOT_FOUND  # noqa: B023
 
 
-def test_every_flip_in_the_registry_costs_that_entry_alone() -> None:
-    for bit in flips(12, POOL_AT):
+@EACH_OR_SOME
+def test_every_flip_in_the_registry_costs_that_entry_alone(step: int) -> None:
+    for bit in list(flips(12, POOL_AT))[::step]:
         board = after_flip(bit)
         slot = (bit // 8 - 12) // RECORD.size
         assert f"Entry {slot} of the CDS registry" in board.log[0], f"bit {bit}"

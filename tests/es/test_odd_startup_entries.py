@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.es.startup_script import check
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 IDLE = """

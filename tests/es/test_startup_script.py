@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from cfepy import status
+from cfepy.config.versions import RELEASES
 from cfepy.es.startup_script import CFE_APP, CFE_LIB, BadLine, StartupEntry, check, parse, strtoul
-from cfepy.versions import RELEASES
 
 BAD_SCRIPT = b"""\
 CFE_LIB, cfe_assert,  CFE_Assert_LibInit, ASSERT_LIB,  0,   0,     0x0, 0;

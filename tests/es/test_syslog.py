@@ -6,8 +6,7 @@ from typing import Any
 
 import pytest
 
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
 from cfepy.es.reset_data import DISCARD, OVERWRITE, SysLogData
 from cfepy.es.syslog import SystemLog
 from cfepy.status import (
@@ -17,6 +16,7 @@ from cfepy.status import (
     CFE_SUCCESS,
     CfeError,
 )
+from cfepy.writing.console import Console
 
 STAMP = "1980-012-14:03:20.00000"
 

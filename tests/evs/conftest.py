@@ -7,8 +7,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import pytest
 
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
 from cfepy.evs import EventServices
 from cfepy.evs import packets as pk
 from cfepy.fs.services import FileServices
@@ -17,6 +16,7 @@ from cfepy.osal import FileSystem, Osal
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
 from cfepy.status import CFE_ES_ERR_NAME_NOT_FOUND, CFE_ES_ERR_RESOURCEID_NOT_VALID, CfeError
+from cfepy.writing.console import Console
 
 Result = TypeVar("Result")
 EVS_ID, APP_ID, MUTE_ID = 0x110001, 0x110006, 0x110007

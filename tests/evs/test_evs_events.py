@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cfepy import evs
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.evs import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.evs import packets as pk
 from cfepy.msg import TLM_HEADER_SIZE

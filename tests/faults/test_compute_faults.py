@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.faults import FaultPlan
-from cfepy.faults.check import check_plan
+from cfepy.faults.plan_check import check_plan
 from cfepy.mission import read_mission
 from cfepy.status import UsageError
 from tests.faults.worlds import SOURCE, TAKER, fly, row, told, values

@@ -6,7 +6,7 @@ from random import Random
 
 import pytest
 
-from cfepy.faults.messages import damaged
+from cfepy.faults.message_faults import damaged
 
 DATA = bytes(range(16))
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.faults import FaultInjector, FaultPlan, check_plan, look_at, plan_of, prepare, random_plan
 from cfepy.mission import Mission, read_mission
 from cfepy.pilot.pilot import fly
@@ -12,6 +11,7 @@ from cfepy.pilot.plan import RunPlan
 from cfepy.pilot.results import Results, mark
 from cfepy.rtos.errors import InjectedCrash
 from cfepy.status import CfeError, UsageError
+from cfepy.writing.console import Console
 
 
 def flown(name: str, plan: FaultPlan, seconds: float, tasks: str = "thread") -> Results:

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.es.records import STATE_NAMES
 from cfepy.faults import FaultInjector, FaultPlan
 from cfepy.mission import Mission
 from cfepy.osal.network import Datagram, Place
 from cfepy.status import CfeError
+from cfepy.writing.console import Console
 from tests.faults.worlds import fly, row, told, values
 from tests.mission.flights import write_mission
 
@@ -205,6 +205,7 @@ def failures(folder: Path, *faults: dict[str, object]) -> list[str]:
     return [line.removeprefix("WORKER ") for line in told(mission, "WORKER ")]
 
 
+@pytest.mark.slow
 def test_the_nth_call_fails(tmp_path: Path) -> None:
     mine = {"app": "WORKER"}
     assert failures(tmp_path, {"fail": "OS_QueuePut", "number": 3, **mine}) == [

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.faults import FaultInjector, FaultPlan
 from cfepy.mission import Mission
 from cfepy.mission.launch import read_launch
+from cfepy.writing.console import Console
 from tests.faults.worlds import fly, row
 
 STARTUP = """

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from cfepy.console import Console
 from cfepy.faults import FaultInjector, FaultPlan
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 STARTUP = """

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import cfepy
-from cfepy import markup
+from cfepy.writing import markup
 from dev.pages import notebook
 
 FAILS = """

@@ -79,6 +79,7 @@ def test_values_over_time(run: cfepy.Run) -> None:
         run.topic("/joint_state")
 
 
+@pytest.mark.slow
 def test_a_journal_is_replayed(run: cfepy.Run, tmp_path_factory: pytest.TempPathFactory) -> None:
     journal = next(tmp_path_factory.getbasetemp().glob("runs*/run.cfepy"))
     again = cfepy.replay(journal)

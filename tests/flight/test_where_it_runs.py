@@ -173,6 +173,7 @@ def test_after_a_fork(tasks: str, counter: str, usual: str) -> None:
     assert in_fork(digest, counter, tasks) == usual
 
 
+@pytest.mark.slow
 @needs_fork
 @each_kind_of_task
 def test_after_a_fork_beside_a_mission_that_flies(tasks: str, counter: str, usual: str) -> None:

@@ -9,12 +9,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from cfepy.app import Cfe
-from cfepy.console import Console
 from cfepy.es import SYSTEM_OPERATIONAL
 from cfepy.es.records import Entry, Loader
 from cfepy.mission import Mission
 from cfepy.rtos import TaskExit
 from cfepy.status import CFE_SUCCESS, CfeError, OsalError
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 CMD_MID, TLM_MID = 0x1802, 0x0802

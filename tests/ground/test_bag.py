@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cfepy.console import Console
 from cfepy.ground.bag import BagReader, BagRecorder, is_bag
 from cfepy.ground.mcap_recorder import recorder_of
 from cfepy.mission import Mission, MissionSpec
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 from rospy_shim.types.config import RosConfig, TopicConfig
 from rospy_shim.types.msgs import message_class
 from tests.disk import room_for

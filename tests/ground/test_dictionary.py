@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.ground.dictionary import Dictionary, declared, dictionary_of, table_types
 from cfepy.ground.survey import surveyed_topics
 from cfepy.ground.topics import Topic, topic_id, topics_of
@@ -16,6 +15,7 @@ from cfepy.mission import Mission, read_mission
 from cfepy.mission.packet_watch import PacketWatch, Seen
 from cfepy.msg import Command, Layout, Telemetry, command, telemetry
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 APP = """

@@ -10,7 +10,7 @@ import pytest
 from cfepy.es.packets import PERF_ENTRY, PERF_METADATA
 from cfepy.fs import FileHeader
 from cfepy.fs.header import SUBTYPE_ES_PERFDATA, SUBTYPE_TBL_IMG
-from cfepy.ground.files.dump_files import EXIT_BIT, DumpFile, read_dump, timings, value_at
+from cfepy.ground.cfe_files.dump_files import EXIT_BIT, DumpFile, read_dump, timings, value_at
 from cfepy.status import UsageError
 
 DATA = Path(__file__).parents[1] / "data"

@@ -1,4 +1,4 @@
-"""Every file that the core services of a mission write on command, read back by `cfepy.ground.files.dump_files`."""
+"""Every file that the core services of a mission write on command, read back by `cfepy.ground.cfe_files.dump_files`."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.es import packets as es
 from cfepy.evs import packets as evs
-from cfepy.ground.files.dump_files import DumpFile, read_dump, timings
+from cfepy.ground.cfe_files.dump_files import DumpFile, read_dump, timings
 from cfepy.mission import Mission
 from cfepy.sb import packets as sb
 from cfepy.tbl import packets as tbl
+from cfepy.writing.console import Console
 
 STARTUP = "CFE_APP, sample_app, SAMPLE_APP_Main, SAMPLE_APP, 50, 16384, 0x0, 0;\n!\n"
 SAMPLE_NOOP, SAMPLE_PERF_ID = bytes.fromhex("1882c00000010000"), 91

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 from cfepy.ground import MissionGraph, graph_dot, graph_svg, graph_text
-from cfepy.ground.graph.model import APP, CORE, NODE, Channel, Offer, Taker, Unit
+from cfepy.ground.traffic_graph.model import APP, CORE, NODE, Channel, Offer, Taker, Unit
 
 SVG = "{http://www.w3.org/2000/svg}"
 GRAPH = MissionGraph(

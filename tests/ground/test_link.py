@@ -6,11 +6,11 @@ import pytest
 
 from apps.ci_lab import packets as ci_lab
 from apps.to_lab import packets as to_lab
-from cfepy.console import Console
 from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission
 from cfepy.msg import command
 from cfepy.osal.network import Datagram, Place
+from cfepy.writing.console import Console
 
 ENABLE = to_lab.OUTPUT_ENABLE.packet(dest_IP="10.0.0.7")
 PROCESSOR_RESET = bytes(command(0x1806, 2, b"\1\0"))

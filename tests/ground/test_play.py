@@ -9,11 +9,11 @@ import pytest
 
 from cfepy.cli.main import main, parser_for
 from cfepy.cli.options import plan_of
-from cfepy.console import Console
 from cfepy.ground.bag import BagReader, storage
 from cfepy.ground.mcap_writer import McapWriter
 from cfepy.pilot import NODE, RunPlan, fly
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 from rospy_shim.types.msgs import message_class
 
 HEARS = """

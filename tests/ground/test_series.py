@@ -160,6 +160,7 @@ def test_an_mcap_file_has_packets_as_the_run_has(tmp_path: Path) -> None:
         bag_series(file, ["CFE_ES_HK_TM.SysLogBytesUsed"]).found("CFE_ES_HK_TM.SysLogBytesUsed")
 
 
+@pytest.mark.slow
 def test_a_table(recorded: Recorded) -> None:
     series = recorded.of_run.series("/joint_states")
     pytest.importorskip("pandas")

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
-from cfepy.console import Console
-from cfepy.ground.names import constants_in, core_names, names_of
+from cfepy.ground.mission_names import constants_in, core_names, names_of
 from cfepy.ground.survey import LOOK_S, MidRow, Survey
 from cfepy.mission import Mission, read_mission
-from cfepy.pilot.check import check_mission
+from cfepy.pilot.mission_check import check_mission
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 from tests.rospy_shim.graph.test_msg_ids import FIRST, SECOND
 
@@ -54,6 +54,13 @@ def test_names_in_an_apps_source(tmp_path: Path) -> None:
     )
     assert list(constants_in(file)) == [("CMD_MID", 0x1890), ("HK_TLM_MID", 0x0891)]
     assert list(constants_in("installed.module")) == []
+
+
+@pytest.mark.parametrize("text", ["CMD_MID=0x1890", "CMD_MID \\\n    = 0x1890", "(CMD_MID) = 0x1890"])
+def test_constants_are_found_however_they_are_assigned(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "packets.py"
+    file.write_text(f"import math\n{text}\n")
+    assert list(constants_in(file)) == [("CMD_MID", 0x1890)]
 
 
 def test_names_of_a_mission() -> None:

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from cfepy.fs import FileHeader, TableHeader
 from cfepy.fs.header import SUBTYPE_TBL_IMG
+from cfepy.ground.cfe_files import table_yaml
+from cfepy.ground.cfe_files.table_file import TableContents, document, take_apart
 from cfepy.ground.dictionary import table_types
-from cfepy.ground.files import table_yaml
-from cfepy.ground.files.table_file import TableContents, document, take_apart
 from cfepy.msg import Layout
 from cfepy.status import UsageError
 from cfepy.tbl import TableType

@@ -13,7 +13,6 @@ import pytest
 from space_packet_parser.xtce.definitions import XtcePacketDefinition
 from space_packet_parser.xtce.validation import validate_xtce
 
-from cfepy.console import Console
 from cfepy.ground.dictionary import Dictionary, dictionary_of
 from cfepy.ground.topics import Topic, topics_of
 from cfepy.ground.values import flat, named_fields
@@ -21,6 +20,7 @@ from cfepy.ground.xtce import NAMESPACE, cells_with_padding, xtce_name, xtce_of
 from cfepy.mission import Mission, read_mission
 from cfepy.mission.packet_watch import PacketWatch, Seen
 from cfepy.msg import Command, Layout, MsgType, Telemetry, get_type, telemetry
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 STARTUP = """

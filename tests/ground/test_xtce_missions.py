@@ -18,7 +18,7 @@ from cfepy.ground.dictionary import Dictionary, dictionary_of
 from cfepy.ground.xtce import xtce_of
 from cfepy.mission import read_mission
 from cfepy.msg import Telemetry
-from cfepy.resources import shipped
+from cfepy.reading.resources import shipped
 from tests.ground.random_packets import DECLARED, random_telemetry, telemetry_values
 
 MISSIONS = sorted(script.parent.name for script in shipped("missions").glob("*/startup.scr"))

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.interpreter import host_system
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 

@@ -15,12 +15,12 @@ from pathlib import Path
 import pytest
 
 from apps.to_lab import packets as to_lab
-from cfepy.console import Console
 from cfepy.io.host_network import TCP, HostNetwork
 from cfepy.mission import Mission
 from cfepy.msg import command
 from cfepy.status import UsageError
 from cfepy.trace import Trace
+from cfepy.writing.console import Console
 from tests.io.echo import ECHO, LOOPBACK, PATIENCE_NS, pacer
 
 LAB = """\

@@ -6,9 +6,9 @@ import socket
 import textwrap
 from pathlib import Path
 
-from cfepy.console import Console
 from cfepy.io.host_network import TCP
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.io.test_host_network import LAB, LOOPBACK, session
 
 NODE = "CFE_APP, node.py, __main__, NODE, 100, 16384, 0x0, 0;\n!\n"

@@ -12,16 +12,16 @@ from typing import Any
 import pytest
 
 from cfepy.attachment import Attachment
-from cfepy.console import Console
 from cfepy.ground.link import GroundLink
 from cfepy.journal import JournalRecorder, read_journal, record, replay
 from cfepy.journal.journal import MARK, FrameWriter, JournalError, read_frames
 from cfepy.mission import Mission
 from cfepy.pilot.pilot import fly
 from cfepy.pilot.results import Results
-from cfepy.resources import import_path
+from cfepy.reading.resources import import_path
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
+from cfepy.writing.console import Console
 from tests.journal.missions import paths, race
 from tests.journal.replays import plan_for
 
@@ -210,6 +210,7 @@ class Killer(Attachment):
         mission.kernel.spawn("KILLER", die)
 
 
+@pytest.mark.slow
 def test_a_killed_process_leaves_a_journal(tmp_path: Path) -> None:
     code = (
         "import sys\nfrom cfepy.journal import record\nfrom tests.journal.replays import plan_for\n"

@@ -10,16 +10,18 @@ import pytest
 from cfepy.journal import read_journal, record, replay
 from cfepy.pilot.plan import LAUNCH, NODE, RunPlan
 from cfepy.pilot.results import Results
-from cfepy.resources import shipped
+from cfepy.reading.resources import shipped
 from tests.journal.missions import SHIPPED, SMALL, paths
 from tests.journal.replays import assert_replays, plan_for
 
 SCHEDULES = ("fifo", "pct:2:3:300", "random:1:hold=200us", "at:5=1,9=1")
 
 
-@pytest.mark.parametrize("mission", SHIPPED)
+@pytest.mark.parametrize(
+    "mission", [pytest.param(each, marks=[pytest.mark.slow] * (each == "capture")) for each in SHIPPED]
+)
 def test_shipped_missions(mission: str, tmp_path: Path) -> None:
-    assert_replays(plan_for(mission, 1.1), tmp_path)
+    assert_replays(plan_for(mission, 0.8), tmp_path)
 
 
 @pytest.mark.parametrize("mission", SMALL)
@@ -42,6 +44,7 @@ def test_a_script_is_done_again(tmp_path: Path) -> None:
     assert outcome.ok
 
 
+@pytest.mark.slow
 def test_faults_happen_again(tmp_path: Path) -> None:
     faults = tmp_path / "faults.yaml"
     faults.write_text(
@@ -59,6 +62,7 @@ def test_the_seed_counts(tmp_path: Path) -> None:
     assert [replay(read_journal(tmp_path / f"{seed}.cfepy")).flown.trace for seed in (1, 2)] == [one.trace, other.trace]
 
 
+@pytest.mark.slow
 def test_a_node_and_a_launch_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     paths(tmp_path)
     (tmp_path / "both.launch").write_text(
@@ -85,7 +89,7 @@ def test_a_node_and_a_launch_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.parametrize("change", ["edited", "gone"])
-@pytest.mark.parametrize("mission", [*SMALL, "capture"])
+@pytest.mark.parametrize("mission", [*SMALL, pytest.param("capture", marks=pytest.mark.slow)])
 def test_the_files_of_the_journal_are_enough(mission: str, change: str, tmp_path: Path) -> None:
     folder = tmp_path / "mission"
     if mission == "capture":

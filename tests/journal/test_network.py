@@ -12,14 +12,14 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.io.host_network import TCP, HostNetwork
 from cfepy.journal import Journal, JournalRecorder, read_journal, replay
 from cfepy.mission import Mission, outside
-from cfepy.pilot.course import BROKEN_OFF, INTERRUPTED, Course
 from cfepy.pilot.pilot import Flown
 from cfepy.pilot.plan import RunPlan
+from cfepy.pilot.run_loop import BROKEN_OFF, INTERRUPTED, Course
 from cfepy.units import NS_PER_S
+from cfepy.writing.console import Console
 from tests.io.echo import ECHO, FAST, LOOPBACK, PATIENCE_NS, pacer
 from tests.journal.replays import assert_same_again, plan_for
 

@@ -10,11 +10,11 @@ import sys
 
 from apps.to_lab import packets as to_lab
 from cfepy import msg
-from cfepy.console import Console
 from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission
 from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.rtos import SeededRandom
+from cfepy.writing.console import Console
 
 ES_CMD = 0x1806
 RESTART, NOOP = 2, 0

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy import msg
-from cfepy.console import Console
 from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission
 from cfepy.units import NS_PER_S
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 DATA = Path(__file__).parents[1] / "data"

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.es.records import RUNNING
 from cfepy.mission import Mission
 from cfepy.rtos.context import drain
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 APP = "CFE_APP, {0}, {0}_main, {1}, 50, 16384, 0x0, {2};\n"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cfepy.console import Console
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 STARTUP = "CFE_APP, app, MAIN, APP, 50, 4096, 0x0, 0;\n"

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.mission.console import golden, ours
 
 APPS = {

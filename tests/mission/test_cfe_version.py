@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.es import packets as es
 from cfepy.mission import Mission, PacketWatch, Seen, read_mission
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 CALLS = {

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 STARTUP = """
@@ -21,7 +21,7 @@ STARTUP = """
 """
 PROGRAM = """
 import sys
-from cfepy.console import Console
+from cfepy.writing.console import Console
 from cfepy.mission import Mission
 with Mission(sys.argv[1], console=Console(quiet=True), tasks=sys.argv[2]) as mission:
     mission.run_for(float(sys.argv[3]))
@@ -42,7 +42,7 @@ def digest(folder: str, tasks: str, slices: list[float]) -> str:
         return mission.trace.digest()
 
 
-@pytest.mark.parametrize("seconds", [5, pytest.param(25, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("seconds", [2, pytest.param(25, marks=pytest.mark.slow)])
 def test_both_contexts_and_any_slicing_give_one_trace(folder: str, seconds: int) -> None:
     slices = [[seconds], [seconds / 2] * 2, [0.1] * (seconds * 10), [seconds * 0.4, 0.0, seconds * 0.6]]
     assert len({digest(folder, tasks, cut) for tasks in ("thread", "greenlet") for cut in slices}) == 1

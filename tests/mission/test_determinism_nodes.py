@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
-from cfepy.console import Console
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 
 NODES = Path(__file__).parent / "busy_nodes"
 

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.es import packets as es
 from cfepy.evs import packets as evs
 from cfepy.mission import Mission
 from cfepy.msg import Command
 from cfepy.sb import packets as sb
 from cfepy.tbl import packets as tbl
+from cfepy.writing.console import Console
 
 BLOCK = 512
 FILE = "/ram/d.dat"

@@ -10,7 +10,6 @@ import pytest
 import cfepy
 from apps.to_lab.packets import OUTPUT_ENABLE
 from cfepy.cli.main import main
-from cfepy.console import Console
 from cfepy.es.packets import RESTART
 from cfepy.evs.packets import LONG_EVENT_MSG
 from cfepy.ground.link import GroundLink
@@ -18,6 +17,7 @@ from cfepy.journal import record
 from cfepy.mission import Mission
 from cfepy.pilot import RunPlan
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 from tests.journal.replays import assert_replays
 from tests.mission.flights import write_mission
 
@@ -96,6 +96,7 @@ def test_they_stay_over_a_reset(tmp_path: Path) -> None:
         assert any(" 67/1/CI_LAB 3: " in line for line in mission.console.lines[before:])
 
 
+@pytest.mark.slow
 def test_the_plan_says_them_and_a_journal_keeps_them(tmp_path: Path) -> None:
     plan = RunPlan(("lab",), seconds=1, spacecraft_id=67, processor_id=2)
     assert plan.command_line() == "cfepy run --for 1 --processor-id 2 --spacecraft-id 67 lab"

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
 from cfepy.mission.launch import spec_of
-from cfepy.pilot.check import check_mission
+from cfepy.pilot.mission_check import check_mission
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 from rospy_shim.types.config import NodeConfig
 
 SAY = "import rospy\nrospy.init_node('say')\nprint(rospy.get_name(), rospy.get_param('/shared', None))\n"

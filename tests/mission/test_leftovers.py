@@ -10,13 +10,13 @@ from collections.abc import Iterator
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.extra.exploration.trial import Trial
 from cfepy.mission import Mission, read_mission
 from cfepy.nodes import Universe
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Kernel
 from cfepy.schedules import Schedule
+from cfepy.writing.console import Console
 
 FLIGHTS = 6
 SECONDS = 0.65  # capture's nodes have begun
@@ -51,7 +51,7 @@ def fly(seconds: float = SECONDS, tasks: str = "thread") -> Mission:
     return mission
 
 
-@pytest.mark.parametrize("flights", [3, pytest.param(FLIGHTS, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("flights", [2, pytest.param(FLIGHTS, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
 def test_missions_do_not_pile_up(tasks: str, flights: int) -> None:
     for _ in range(flights):

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission.loader import NODE_SYMBOL, BuiltInApps, ModuleLoader
 from cfepy.mission.python_code import Code, NodeScripts, PythonLoader, RemovedCodeError, python_finders
 from cfepy.nodes import AppModules, make_app_universe
 from cfepy.osal import FileSystem
 from cfepy.status import OS_ERROR, OsalError
+from cfepy.writing.console import Console
 
 HANDLE = object()
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.pilot.results import Results, mark
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 APP = "CFE_APP, app, Main, APP, 50, 16384, 0x0, 0;\n"

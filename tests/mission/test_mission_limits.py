@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
 from cfepy.mission import Mission, read_mission
 from cfepy.mission.limits import ROS_ROOM, MissionLimits, limits_for
-from cfepy.pilot.check import check_mission
+from cfepy.pilot.mission_check import check_mission
 from cfepy.psp.profile import load_profile
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 LINUX, RX64M = load_profile("linux"), load_profile("rx64m")
@@ -53,6 +53,7 @@ def test_any_number_of_nodes_has_room(nodes: int) -> None:
     assert all(value < 0xFFFF for name, value in limits_for(nodes).items() if name != "sb_buf_memory_bytes")
 
 
+@pytest.mark.slow
 def test_fifty_nodes_fly_with_one_line_in_the_mission_file(tmp_path: Path) -> None:
     startup = "".join(f"CFE_APP, n, __main__, N{number}, 100, 4096, 0, 0;\n" for number in range(50))
     node = """

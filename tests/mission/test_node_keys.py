@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 
 TELEOP = """
 import sys, tty

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.mission.packet_watch import PacketWatch, Seen
 from cfepy.msg import get_sequence_count, validate_checksum
 from cfepy.sb import Outlet
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 APP = """

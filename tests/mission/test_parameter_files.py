@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.mission import read_mission
-from cfepy.pilot.check import check_mission
+from cfepy.pilot.mission_check import check_mission
 from cfepy.status import UsageError
 from rospy_shim.types.config import ROSCORE_PARAMS
 from tests.mission.flights import write_mission

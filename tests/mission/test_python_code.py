@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.es.packets import RESTART_APP, START_APP
 from cfepy.mission import Mission
 from cfepy.mission.python_code import find_virtual_code
 from cfepy.osal import FileSystem
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 

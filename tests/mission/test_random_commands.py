@@ -9,7 +9,6 @@ from random import Random
 import pytest
 
 from cfepy import msg
-from cfepy.console import Console
 from cfepy.ground.dictionary import dictionary_of
 from cfepy.ground.link import GroundLink
 from cfepy.ids import OS_STREAM_BASE
@@ -18,6 +17,7 @@ from cfepy.msg import Command
 from cfepy.msg.layout import Cell
 from cfepy.rtos.context import drain
 from cfepy.sb import SoftwareBus
+from cfepy.writing.console import Console
 
 APPS = {
     "SAMPLE_APP": ("SAMPLE_APP_Main", "/cf/sample_app.so"),
@@ -151,13 +151,13 @@ def _left_of_core(name: str, board: str | None) -> dict[str, object]:
         return left(mission)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "board", "count"),
     [
-        ("lab", None, 100),
-        pytest.param("lab", None, 400, marks=pytest.mark.slow),
-        pytest.param("lab", "rx64m", 400, marks=pytest.mark.slow),
-        pytest.param("sched", None, 400, marks=pytest.mark.slow),
+        ("lab", None, 400),
+        ("lab", "rx64m", 400),
+        ("sched", None, 400),
     ],
 )
 def test_hundreds_of_commands(name: str, board: str | None, count: int) -> None:

@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 
 from cfepy import msg
-from cfepy.console import Console
 from cfepy.ids import get_base
 from cfepy.mission import Mission
 from cfepy.osal.limits import OS_OBJECT_CREATOR_ANY
 from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR, PanicError
 from cfepy.rtos.context import drain
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 KEEPER = """

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
 from cfepy.rtos import NotingPolicy, Policy
 from cfepy.schedules import Schedule
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 pytest.importorskip("greenlet")

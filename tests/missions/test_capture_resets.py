@@ -10,10 +10,10 @@ from random import Random
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
 from cfepy.rtos.context import drain
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 NODES = ("ARM", "MAIN_CTRL", "ARM_HEALTH", "HK_MONITOR")
@@ -27,17 +27,15 @@ def reset_at_random(mission: Mission, random: Random, count: int) -> None:
         mission.processor.psp.restart(reset_type, "the test wants it")
 
 
-@pytest.mark.parametrize(
-    ("tasks", "resets"),
-    [("greenlet", 2), *(pytest.param(tasks, 8, marks=pytest.mark.slow) for tasks in ("thread", "greenlet"))],
-)
-def test_nodes_come_back_after_any_reset(tasks: str, resets: int) -> None:
+@pytest.mark.slow
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_nodes_come_back_after_any_reset(tasks: str) -> None:
     drain()
     threads, random = threading.active_count(), Random(5)
     with Mission("capture", console=Console(quiet=True), tasks=tasks) as mission:
         mission.run_for(2)
         modules = len(sys.modules)
-        reset_at_random(mission, random, resets)
+        reset_at_random(mission, random, 8)
         mission.run_for(2)
         assert len(sys.modules) == modules
         reasons = {reset.reason for reset in mission.record.resets}

@@ -8,7 +8,7 @@ from cfepy.extra.exploration import Expedition
 from cfepy.pilot import RunPlan
 from cfepy.pilot.pilot import fly
 from cfepy.pilot.results import Results
-from cfepy.resources import shipped
+from cfepy.reading.resources import shipped
 from cfepy.schedules import Schedule
 
 LATE = Schedule.parse("random:2:hold=1ms")

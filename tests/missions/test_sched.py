@@ -9,12 +9,12 @@ import pytest
 
 from apps.sch import packets as sch
 from cfepy.cli.main import main
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.mission.packet_watch import PacketWatch, Seen
-from cfepy.resources import shipped
+from cfepy.reading.resources import shipped
 from cfepy.tbl import build
 from cfepy.units import NS_PER_S
+from cfepy.writing.console import Console
 
 FOLDER = shipped("missions") / "sched"
 COMBINED, SAMPLE_HK = 0x089C, 0x0883

@@ -11,15 +11,15 @@ import pytest
 
 from apps.to_lab import packets as to_lab
 from cfepy.cli.main import main
-from cfepy.console import Console
 from cfepy.ground import dictionary_of, topics_of
 from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission, PacketWatch, Seen, read_mission, shipped_missions
 from cfepy.msg import MsgType, get_type
 from cfepy.pilot import pilot
 from cfepy.pilot.plan import RunPlan
-from cfepy.resources import shipped
+from cfepy.reading.resources import shipped
 from cfepy.tbl import build
+from cfepy.writing.console import Console
 
 MISSIONS = shipped("missions")
 

@@ -6,17 +6,17 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import read_mission
 from cfepy.monitors.deadlines import AppDeadline, Check, DeadlineResult, TopicDeadline
-from cfepy.monitors.demands import demands_of
 from cfepy.monitors.record import DeadlineRecord
+from cfepy.monitors.run_rules import demands_of
 from cfepy.pilot import pilot
-from cfepy.pilot.check import check_mission
+from cfepy.pilot.mission_check import check_mission
 from cfepy.pilot.pilot import Flown
 from cfepy.pilot.plan import RunPlan
 from cfepy.status import UsageError
 from cfepy.units import time_text
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 WORKER = "CFE_APP, /cf/worker.so, WORKER_AppMain, WORKER, 50, 16384, 0x0, 0;\n"

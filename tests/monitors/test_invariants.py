@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
-from cfepy.monitors.demands import demands_of, judges_of
 from cfepy.monitors.record import InvariantRecord, InvariantRecords
-from cfepy.pilot.check import check_mission
+from cfepy.monitors.run_rules import demands_of, judges_of
+from cfepy.pilot.mission_check import check_mission
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 
 COUNTER = """
 import rospy

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.monitors import InversionWatch
 from cfepy.monitors.record import Inversion, InversionRecord
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 STARTUP = """

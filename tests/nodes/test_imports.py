@@ -8,7 +8,8 @@ import types
 
 import pytest
 
-from cfepy.nodes import Universe, sharing
+from cfepy.nodes import Universe
+from cfepy.nodes import module_origins as sharing
 from cfepy.rtos import Kernel
 
 

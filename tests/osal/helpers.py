@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
 from cfepy.osal import Osal
 from cfepy.rtos import Kernel
 from cfepy.trace import Trace
+from cfepy.writing.console import Console
 
 MS = 1_000_000
 

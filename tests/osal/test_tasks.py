@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.ids import OS_TASK_BASE, get_base
 from cfepy.osal.tasks import TaskProperties
 from cfepy.rtos import CpuCosts

@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from cfepy.extra.exploration.results_file import keep_failure
-from cfepy.resources import import_path
+from cfepy.reading.resources import import_path
 from cfepy.schedules import Schedule
 
 ROOT = Path(__file__).parents[2]

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission
-from cfepy.resources import import_path
+from cfepy.reading.resources import import_path
+from cfepy.writing.console import Console
 
 pytestmark = pytest.mark.slow
 WITHOUT = Path(__file__).with_name("without.py")

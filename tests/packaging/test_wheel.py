@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from cfepy import __version__
-from cfepy.console import Console
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.extra.c.building import needs_compiler
 
 ROOT = Path(__file__).parents[2]

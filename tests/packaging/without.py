@@ -94,8 +94,8 @@ def main() -> None:
     system, mission_name, seconds = sys.argv[1:]
     take_away(system)
     import_all(system)
-    from cfepy.console import Console
     from cfepy.mission import Mission
+    from cfepy.writing.console import Console
 
     with Mission(mission_name, console=Console(quiet=True)) as mission:
         mission.run_for(float(seconds))

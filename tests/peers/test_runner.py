@@ -81,6 +81,7 @@ def peer_of(path: str, kind: str, passed: int | None = None, **fields: object) -
     return replace(basis, **fields)  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_tests_of_all_kinds_are_found_and_counted(sources: Sources) -> None:
     verdict = run(peer_of("own/test/unit/test_all.py", UNIT, 3), sources)
     assert verdict.reason == ""
@@ -101,6 +102,7 @@ def test_a_file_that_cannot_be_imported(sources: Sources) -> None:
     assert not verdict.good
 
 
+@pytest.mark.slow
 def test_launch_files_run_as_rostest_does(sources: Sources) -> None:
     verdict = run(peer_of("own/test/check.test", ROSTEST, 1), sources)
     assert verdict.passed == 1

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
-from cfepy.markup import escaped
 from cfepy.pilot import RunPlan, fly
+from cfepy.writing.markup import escaped
 from tests.mission.flights import write_mission
 
 STARTUP = "CFE_APP, talker.py, __main__, TALKER, 100, 16384, 0x0, 0;\n!"

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.pilot.results import AppResult, Results, TopicResult, mark
 from cfepy.rtos import AUTO, task_kind
+from cfepy.writing.console import Console
 
 APP = """
 def Sender(cfe):

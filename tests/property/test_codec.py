@@ -23,12 +23,13 @@ TYPES = [f"{package}/{name}" for package in shipped().packages() for name in shi
 ROS_PYTHON = "/usr/bin/python3"
 PEER = Path(__file__).parents[1] / "rospy_shim/types/msgs/genpy_peer.py"
 
-_SMALL = settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+_SMALL = settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
 typed_values = st.sampled_from(TYPES).flatmap(lambda name: st.tuples(st.just(name), plain(name)))
 
 
+@pytest.mark.slow
 @_SMALL
 @given(typed_values)
 def test_round_trip(typed: tuple[str, Any]) -> None:
@@ -55,6 +56,7 @@ def test_remembered_strings_change_nothing(lists: list[list[str]]) -> None:
         decoded.name.append("mine")
 
 
+@pytest.mark.slow
 @_SMALL
 @given(typed_values, st.data())
 def test_cut_off_bytes_never_crash(typed: tuple[str, Any], data: st.DataObject) -> None:
@@ -111,6 +113,7 @@ def test_like_real_genpy(peer: Peer, typed: tuple[str, Any]) -> None:
     assert {"hex": message._pack().hex(), "text": str(message), "md5sum": message._md5sum} == theirs
 
 
+@pytest.mark.slow
 @_SMALL
 @given(typed=typed_values, data=st.data())
 def test_damaged_bytes_like_real_genpy(peer: Peer, typed: tuple[str, Any], data: st.DataObject) -> None:

@@ -118,7 +118,8 @@ def test_table_yaml(folder: Path, source: Path, seed: int) -> None:
     assert command("tbl", "build", str(yaml), "-o", str(folder / "out.tbl")) in STATUSES
 
 
-@settings(max_examples=2, deadline=None)
+@pytest.mark.slow
+@settings(max_examples=5, deadline=None)
 @given(st.sampled_from(("mission.yaml", "startup.scr")), SEEDS)
 def test_missions(folder: Path, name: str, seed: int) -> None:
     mission = folder / "mission"

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.psp.measured import LONG_BYTES, SHORT_BYTES, Measured
 from cfepy.psp.profile import BoardProfile
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 MEASURE = f"""

@@ -6,13 +6,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
 from cfepy.osal import Osal
 from cfepy.psp import BoardProfile, MemoryBudget, OverBudget, load_profile, object_sizes
 from cfepy.psp.profile import MemoryCosts, MemoryRegion
 from cfepy.rtos import CpuCosts, Kernel
 from cfepy.status import CfeError
+from cfepy.writing.console import Console
 
 SMALL = BoardProfile("small", sram=(MemoryRegion("main", 900), MemoryRegion("standby", 100)))
 

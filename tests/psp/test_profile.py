@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.config import MAY_BE_ZERO, PlatformConfig
+from cfepy.config.platform import MAY_BE_ZERO, PlatformConfig
 from cfepy.psp.profile import DEFAULT_NODE_CALL_NS, MemoryRegion, available_boards, load_profile
 from cfepy.status import UsageError
 

@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from cfepy.config import PlatformConfig
-from cfepy.console import Console
+from cfepy.config.platform import PlatformConfig
 from cfepy.osal import Osal
 from cfepy.psp import BoardProfile, Psp, RestartType, Retained
 from cfepy.rtos import Kernel
 from cfepy.status import CFE_PSP_ERROR, CfeError, OsalError
+from cfepy.writing.console import Console
 
 MS = 1_000_000
 TEST_BOARD = BoardProfile("test")

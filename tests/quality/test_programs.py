@@ -59,4 +59,4 @@ def test_the_default_policy_finds_it_and_the_schedule_shows_it_again_on_threads(
 @pytest.mark.slow
 @EACH
 def test_mended_it_never_fails(program: Program, tmp_path: Path) -> None:
-    assert not [verdict for verdict in verdicts(program, tmp_path, 25) if verdict.failed or verdict.trouble]
+    assert not [verdict for verdict in verdicts(program, tmp_path, 10) if verdict.failed or verdict.trouble]

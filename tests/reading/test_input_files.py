@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 OPENERS = {
     # reads or writes what cfepy itself made, or what its user's own options name for writing
     "cfepy/cli/json_output.py": "writes",
-    "cfepy/cli/failures.py": "writes",
+    "cfepy/cli/user_notes.py": "writes",
     "cfepy/plugins.py": "what pip wrote of installed packages",
     "cfepy/cli/main.py": "the device that swallows all",
     "cfepy/cli/files/log.py": "writes",
@@ -43,11 +43,11 @@ OPENERS = {
     "cfepy/extra/c/engine.py": "cfepy's own sources",
     "cfepy/extra/c/toolchain/headers.py": "cfepy's own headers",
     "cfepy/extra/convert/project.py": "cfepy's own sources, and headers that it has made",
-    "cfepy/extra/convert/messages.py": "headers that it has made",
+    "cfepy/extra/convert/message_headers.py": "headers that it has made",
     "cfepy/extra/convert/build.py": "what the compiler wrote, and headers that it has made",
-    "cfepy/extra/convert/check/compiler.py": "what the compiler wrote",
+    "cfepy/extra/convert/node_check/compiler.py": "what the compiler wrote",
     "cfepy/mission/mission.py": "tables of shipped applications",
-    "cfepy/pilot/check/cfe_names.py": "cfepy's own sources",
+    "cfepy/pilot/mission_check/cfe_names.py": "cfepy's own sources",
     "cfepy/extra/reports/page.py": "cfepy's own page",
     "cfepy/extra/convert/configurations.py": "in the text of a program that is started",
 }

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 from cfepy.app import Cfe
-from cfepy.console import Console
 from cfepy.evs import packets as evs_packets
 from cfepy.mission import Mission
 from cfepy.msg import Command, Telemetry, get_msg_id
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
 Result = TypeVar("Result")

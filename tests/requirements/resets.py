@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cfepy.console import Console
 from cfepy.es import packets as pk
 from cfepy.mission import Mission
 from cfepy.psp.psp import RST_TYPE_POWERON, RST_TYPE_PROCESSOR
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 from tests.requirements.ground import Ground
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.es import packets as pk
 from cfepy.fs import read_header
 from cfepy.mission import Mission
 from cfepy.msg import Command
 from cfepy.psp.profile import load_profile
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 from tests.requirements.covers import covers
 from tests.requirements.ground import Ground

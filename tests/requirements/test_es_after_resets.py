@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 
 from cfepy.attachment import Attachment
-from cfepy.console import Console
 from cfepy.es import packets as pk
 from cfepy.evs import packets as evs
 from cfepy.ids import OS_TASK_BASE
@@ -20,6 +19,7 @@ from cfepy.sb import packets as sb
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CfeError
 from cfepy.tbl import packets as tbl
 from cfepy.time import packets as time
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 from tests.requirements.covers import covers
 from tests.requirements.flight import POWERON_RESET, PROCESSOR_RESET, Flight

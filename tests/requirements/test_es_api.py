@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 from cfepy.app import Cfe
-from cfepy.console import Console
 from cfepy.es.records import (
     APP_EXIT,
     APP_RUN,
@@ -23,6 +22,7 @@ from cfepy.es.records import (
 from cfepy.fs import CRC_8, CRC_16, CRC_32, CRC_NONE
 from cfepy.mission import Mission
 from cfepy.status import CFE_ES_ERR_NAME_NOT_FOUND, CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_OPERATION_TIMED_OUT
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 from tests.requirements.asking import Make, ask, idle
 from tests.requirements.covers import covers

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.es import packets as pk
 from cfepy.fs import read_header
 from cfepy.mission import Mission
 from cfepy.status import CFE_ES_ERR_SYS_LOG_FULL, CFE_ES_ERR_SYS_LOG_TRUNCATED, CFE_SUCCESS
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 from tests.requirements.covers import covers
 from tests.requirements.ground import Ground

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.es import packets as pk
 from cfepy.fs import read_header
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 from tests.requirements.covers import covers
 from tests.requirements.ground import Ground

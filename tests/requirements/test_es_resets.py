@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.es import packets as pk
 from cfepy.mission import Mission
 from cfepy.psp.psp import (
@@ -17,6 +16,7 @@ from cfepy.psp.psp import (
     RST_SUBTYPE_UNDEFINED_RESET,
 )
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CfeError
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 from tests.requirements.covers import covers
 from tests.requirements.flight import POWERON_RESET, PROCESSOR_RESET, Flight

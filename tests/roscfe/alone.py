@@ -12,9 +12,9 @@ from pathlib import Path
 
 from cfepy.extra.c import headers_folder
 from cfepy.extra.convert.build import WITHOUT_TYPES, WRAPPED, library_includes, library_sources, profile_flags
+from cfepy.extra.convert.cpp_sources import collect, message_types
 from cfepy.extra.convert.entry import FREE_ROWS, NodeEntry, main_header
-from cfepy.extra.convert.messages import Profile, write_headers
-from cfepy.extra.convert.sources import collect, message_types
+from cfepy.extra.convert.message_headers import Profile, write_headers
 from dev.roscfe.building import FLIGHT_FLAGS, HERE, STRICT_FLAGS, Target, compile_objects, link_program
 from dev.roscfe.probing import REMAPS, marked
 from dev.roscfe.random_messages import LIBRARY

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from cfepy.extra.convert.messages import Profile, write_headers
+from cfepy.extra.convert.message_headers import Profile, write_headers
 from rospy_shim.types.msgs import library_of, shipped
 from tests.ros_libraries.world import universe
 from tests.roscfe.compiling import BOOST, HEADERS, ROSCFE, STRICT, compiled

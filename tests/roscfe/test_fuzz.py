@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.extra.convert.messages import Profile
+from cfepy.extra.convert.message_headers import Profile
 from dev.roscfe.building import needs_cpp
 from dev.roscfe.random_messages import LIBRARY, all_types
 from dev.roscfe.roundtrip import Program, frames_of, hash_of

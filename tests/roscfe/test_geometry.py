@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.extra.convert.messages import Profile, write_headers
+from cfepy.extra.convert.message_headers import Profile, write_headers
 from rospy_shim.types.msgs import shipped
 from tests.roscfe.compiling import BOOST, HEADERS, STRICT, compiled
 from tests.roscfe.test_linear_math import answers, inputs

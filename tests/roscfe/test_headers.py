@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.extra.convert.build import BOOST_REFUSED
-from cfepy.extra.convert.messages import Profile, write_headers
+from cfepy.extra.convert.message_headers import Profile, write_headers
 from dev.roscfe.building import FLIGHT_FLAGS, ROSCFE, STRICT_FLAGS, compile_program, complaints, needs_cpp
 from dev.roscfe.random_messages import LIBRARY, all_types, capacities
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.extra.convert.build import OWN_CPP_LIBRARY, WITH_ARENA, profile_flags
-from cfepy.extra.convert.messages import Profile
+from cfepy.extra.convert.message_headers import Profile
 from dev.roscfe.building import ROSCFE, STRICT_FLAGS, compile_objects, link_program, needs_cpp
 
 pytestmark = [pytest.mark.slow, needs_cpp]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.extra.convert.messages import Profile, write_headers
+from cfepy.extra.convert.message_headers import Profile, write_headers
 from dev.roscfe.building import ROSCPP, STRICT_FLAGS, SYSTEM, compile_program, needs_cpp
 from dev.roscfe.random_messages import LIBRARY, all_types
 from dev.roscfe.roundtrip import Program, frames_of

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.extra.convert.messages import Profile, write_headers
+from cfepy.extra.convert.message_headers import Profile, write_headers
 from dev.roscfe.building import HERE, STRICT_FLAGS, Target, compile_program, needs_cpp, target_named
 from dev.roscfe.random_messages import LIBRARY
 from tests.roscfe.frame_scripts import scripts

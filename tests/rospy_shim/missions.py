@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.cli.run.outputs import SavedRunFiles
-from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
+from cfepy.writing.console import Console
 from rospy_shim.types.config import NodeConfig, RosConfig, TopicConfig
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 from tests.rospy_shim.missions import Run, run_nodes
 
@@ -120,6 +120,7 @@ def test_two_copies_and_what_a_mission_leaves_behind(tmp_path: Path) -> None:
     assert fly(tmp_path / "second", "thread", "WITNESS").printed["witness"] == first
 
 
+@pytest.mark.slow
 def test_fifty_nodes_of_one_script(tmp_path: Path) -> None:
     startup = "".join(f"CFE_APP, node.py, __main__, NODE{n}, 100, 16384, 0x0, 0;\n" for n in range(50))
     folder = write_mission(tmp_path, startup + "!\n", node=ONE_OF_MANY, mission_yaml="limits: {nodes: 50}\n")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.fs.background import FileWriteEvent, FileWriteMetaData
 from cfepy.msg import telemetry
 from cfepy.ports import Ports

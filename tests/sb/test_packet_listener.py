@@ -7,7 +7,7 @@ from collections import Counter
 
 import pytest
 
-from cfepy.faults.failures import Puts, refusing
+from cfepy.faults.failing_calls import Puts, refusing
 from cfepy.rtos import CpuCosts
 from cfepy.sb import SoftwareBus
 from cfepy.sb.packet_listener import listened

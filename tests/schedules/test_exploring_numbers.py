@@ -13,7 +13,7 @@ from itertools import combinations, groupby, pairwise, permutations
 from math import sqrt
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cfepy.extra.exploration.search import DepthFirst
@@ -275,6 +275,7 @@ def plain(program: Program) -> tuple[str, str]:
     return "".join(written), trace.digest()
 
 
+@settings(max_examples=30, deadline=None)
 @given(PROGRAMS, st.integers(0, 1000), st.sampled_from(["", ":any", ":hold=2us", ":from=2us"]))
 def test_any_program_is_fifos_without_deviations_and_any_run_can_be_given_again(
     tasks: list[tuple[int, list[str]]], seed: int, options: str

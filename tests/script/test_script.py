@@ -9,7 +9,7 @@ import pytest
 
 from cfepy.pilot import pilot
 from cfepy.pilot.plan import RunPlan
-from cfepy.script.run import Outcome
+from cfepy.script.script_run import Outcome
 from tests.mission.flights import write_mission
 
 STARTUP = """

@@ -129,7 +129,7 @@ def test_info_of_a_journal_runs_and_unpacks_nothing(tmp_path: Path, capsys: pyte
 def test_temporary_folders_go_after_sigterm(tmp_path: Path) -> None:
     (tmp_path / "run.cfepy").write_bytes(sample())
     program = (
-        "import sys, cfepy.journal.stage as stage\n"
+        "import sys, cfepy.journal.replay_files as stage\n"
         "from cfepy.cli.main import main\n"
         "def wait(journal, *_):\n    print('unpacked', flush=True)\n    sys.stdin.read()\n"
         "stage._show_lines = wait\n"

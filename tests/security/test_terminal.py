@@ -18,7 +18,7 @@ from typing import NamedTuple
 import pytest
 
 from cfepy.cli.main import main
-from cfepy.cli.table import Table, show_tables
+from cfepy.cli.text_table import Table, show_tables
 from cfepy.ground.bag import storage
 from dev.house.tree import ROOT
 from rospy_shim.types.msgs import message_class

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import pytest
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.es.pools import MemPool
 from cfepy.fs.background import FileWriteEvent, FileWriteMetaData
 from cfepy.fs.header import HEADER_SIZE, init_header

@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.tbl import packets as pk
+from cfepy.writing.console import Console
 from tests.layouts import DATA
 from tests.mission.flights import write_mission
 

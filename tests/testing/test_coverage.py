@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.resources import import_path
+from cfepy.reading.resources import import_path
 
 pytestmark = pytest.mark.slow
 

@@ -41,6 +41,7 @@ def test_the_failing_example_is_small_and_can_be_given_on(suite: Suite, missions
     assert said[0] == said[1] != []
 
 
+@pytest.mark.slow
 def test_a_journal_of_the_failing_example_is_kept(suite: Suite, missions: Path) -> None:
     result = suite(
         """

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import pytest
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Layout, command, get_msg_id
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel, WaitList

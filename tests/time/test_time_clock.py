@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.msg import CMD_HEADER_SIZE, get_msg_id
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.msg import get_msg_id
 from cfepy.status import CFE_TIME_NOT_IMPLEMENTED, CfeError, UsageError
 from cfepy.time import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID, SysTime

@@ -14,14 +14,14 @@ from pathlib import Path
 from typing import Any
 
 from apps.sbn.definition import TASKS, configuration, peer, remapping
-from cfepy.console import Console
 from cfepy.io import HostNetwork
 from cfepy.mission import Arrival, Mission
 from cfepy.mission.packet_watch import PacketWatch, Seen
-from cfepy.resources import shipped
+from cfepy.reading.resources import shipped
 from cfepy.rtos import Pacer
 from cfepy.tbl import build
 from cfepy.units import NS_PER_S
+from cfepy.writing.console import Console
 from dev.twin.real import RealCfe
 
 SBN_VARIABLE, CLIENT_VARIABLE = "CFEPY_REAL_SBN", "CFEPY_REAL_SBN_CLIENT"

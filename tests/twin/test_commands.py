@@ -122,7 +122,8 @@ def fly_again(release: str, flight: recorded.Flight) -> list[str]:
         return found
 
 
-@pytest.mark.parametrize("release", ["7.0.0", pytest.param("7.0.1", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("release", RELEASES)
 def test_the_first_commands_on_record(release: str) -> None:
     flight = recorded.load(recorded.of_release(release))[0][:ORDINARY]
     assert len(flight) == ORDINARY

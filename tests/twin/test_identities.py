@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.config import IDENTITIES
-from cfepy.console import Console
+from cfepy.config.platform import IDENTITIES
 from cfepy.mission import Mission
 from cfepy.pilot import RunPlan
+from cfepy.writing.console import Console
 from dev.twin.real import VARIABLE, RealCfe, installed
 from tests.mission.flights import write_mission
 

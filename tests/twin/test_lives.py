@@ -27,6 +27,7 @@ def fly_again(release: str, number: int, count: int | None = None) -> list[str]:
         ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("release", RELEASES)
 def test_the_first_steps_on_record(release: str) -> None:
     assert fly_again(release, 0, ORDINARY) == []

@@ -10,11 +10,11 @@ import pytest
 
 import cfepy
 from apps.sbn import protocol as pr
-from cfepy.console import Console
 from cfepy.mission import Arrival, Mission
 from cfepy.msg import command, get_msg_id
 from cfepy.time import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID
 from cfepy.time import packets as time
+from cfepy.writing.console import Console
 from dev.host_ports import free_port
 from dev.twin.real import in_network_of, installed
 from tests.twin.sbn_flight import CLIENT_VARIABLE, PAIR, SBN_VARIABLE, Paced, paced, real_sbn

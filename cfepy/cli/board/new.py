@@ -7,8 +7,8 @@ import os
 import re
 from pathlib import Path
 
-from cfepy.cli.failures import writing
 from cfepy.cli.main import ENDED_WELL
+from cfepy.cli.user_notes import writing
 from cfepy.psp import Measured, load_profile
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S

@@ -6,9 +6,9 @@ import argparse
 import os
 import shutil
 
-from cfepy.cli.failures import writing
 from cfepy.cli.main import ENDED_WELL
-from cfepy.resources import shipped
+from cfepy.cli.user_notes import writing
+from cfepy.reading.resources import shipped
 from cfepy.status import UsageError
 
 NAME = "board_times"

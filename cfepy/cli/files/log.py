@@ -8,12 +8,12 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TextIO
 
-from cfepy.cli.failures import tell, writing
 from cfepy.cli.json_output import write_json
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL
-from cfepy.cli.table import Table, show_tables
-from cfepy.ground.files.dump_files import DumpFile, read_dump, timings, value_at
-from cfepy.ground.files.table_file import is_zero
+from cfepy.cli.text_table import Table, show_tables
+from cfepy.cli.user_notes import tell, writing
+from cfepy.ground.cfe_files.dump_files import DumpFile, read_dump, timings, value_at
+from cfepy.ground.cfe_files.table_file import is_zero
 from cfepy.plugins import Hook
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import TABLE_BYTES

@@ -8,13 +8,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from cfepy.cli.failures import writing
 from cfepy.cli.json_output import write_json, write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
-from cfepy.cli.table import Table, show_tables
+from cfepy.cli.text_table import Table, show_tables
+from cfepy.cli.user_notes import writing
 from cfepy.ground import table_types
-from cfepy.ground.files import table_yaml
-from cfepy.ground.files.table_file import (
+from cfepy.ground.cfe_files import table_yaml
+from cfepy.ground.cfe_files.table_file import (
     HEADER_FIELDS,
     Find,
     Leaf,

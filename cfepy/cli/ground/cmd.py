@@ -7,11 +7,11 @@ import sys
 from dataclasses import replace
 from fnmatch import fnmatchcase
 
-from cfepy.cli.failures import tell
-from cfepy.cli.ground.target import RemoteHost, check_is_mission, dictionary_for, host_of
+from cfepy.cli.ground.command_target import RemoteHost, check_is_mission, dictionary_for, host_of
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import LONGEST_S, plan_of, refuse_run_options
-from cfepy.cli.table import Table, show_paragraph, show_tables
+from cfepy.cli.text_table import Table, show_paragraph, show_tables
+from cfepy.cli.user_notes import tell
 from cfepy.ground import CI_PORT, CommandTrial, Dictionary, dictionary_of, packet_of
 from cfepy.io import udp
 from cfepy.msg import Command

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
 
 from cfepy.cli.csv_cells import write_rows
-from cfepy.cli.failures import check_writable, writing
 from cfepy.cli.json_output import STDOUT, write_text
-from cfepy.cli.looked_at import look_at_series
 from cfepy.cli.main import ENDED_WELL
+from cfepy.cli.user_notes import check_writable, writing
+from cfepy.cli.viewed_runs import look_at_series
 from cfepy.ground import Series, dictionary_of, surveyed_topics
 from cfepy.mission import read_mission
 from cfepy.msg import Telemetry

@@ -6,7 +6,7 @@ import argparse
 import shutil
 import sys
 
-from cfepy.cli.ground.surveyed import survey_plan, surveyed
+from cfepy.cli.ground.survey_flight import survey_plan, surveyed
 from cfepy.cli.json_output import check_json, write_json, write_text
 from cfepy.cli.main import ENDED_WELL
 from cfepy.ground import Survey, graph_dot, graph_of, graph_svg, graph_text

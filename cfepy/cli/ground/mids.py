@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-from cfepy.cli.failures import writing
-from cfepy.cli.ground.surveyed import survey_plan, surveyed
+from cfepy.cli.ground.survey_flight import survey_plan, surveyed
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL
-from cfepy.cli.table import Table, show_tables
+from cfepy.cli.text_table import Table, show_tables
+from cfepy.cli.user_notes import writing
 from cfepy.ground import MidRow, Survey, lock_path, lock_text, locked, spread_out
 from cfepy.mission import MissionSpec
 from cfepy.pilot import RunPlan

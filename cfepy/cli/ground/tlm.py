@@ -11,13 +11,12 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Protocol, TextIO
 
-from cfepy.cli.failures import tell
-from cfepy.cli.ground.target import RemoteHost, dictionary_for, host_of
+from cfepy.cli.ground.command_target import RemoteHost, dictionary_for, host_of
 from cfepy.cli.json_output import json_lines, json_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import plan_of, refuse_run_options
-from cfepy.cli.table import show_paragraph
-from cfepy.escapes import keep_output_safe, rich_console, visible_line
+from cfepy.cli.text_table import show_paragraph
+from cfepy.cli.user_notes import tell
 from cfepy.ground import CI_PORT, TO_PORT, Decoded, Dictionary, dictionary_of, packet_of, topic_id, topics_of
 from cfepy.io import udp
 from cfepy.mission import MissionSpec, PacketWatch, Seen, find_script, is_node
@@ -26,6 +25,7 @@ from cfepy.pilot import LiveRun, RunPlan, never_happened, takeoff
 from cfepy.rtos import Stopwatch
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_MS, NS_PER_S
+from cfepy.writing.escapes import keep_output_safe, rich_console, visible_line
 
 ANY_ADDRESS = "0.0.0.0"
 PIECE_NS = 100 * NS_PER_MS

@@ -11,12 +11,12 @@ from itertools import islice
 from typing import TextIO
 
 from cfepy.attachment import Attachment
-from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.ros.node import NodeView
 from cfepy.cli.ros.view import NodesView
 from cfepy.cli.run.run import View, fly_again
 from cfepy.cli.trace_text import TraceText
+from cfepy.cli.user_notes import tell
 from cfepy.journal import Journal, Replay, ReplayVerdict, read_journal, staged
 from cfepy.mission import Mission
 from cfepy.pilot import LAUNCH, NODE, STALLED, SUDDEN, RunPlan

@@ -7,10 +7,10 @@ import os
 import sys
 from pathlib import Path
 
-from cfepy.cli.failures import tell
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
-from cfepy.cli.table import Table, show_tables
+from cfepy.cli.text_table import Table, show_tables
+from cfepy.cli.user_notes import tell
 from cfepy.ground import RecordingSummary, rewrite, summary_of
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S

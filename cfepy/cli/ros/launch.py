@@ -6,15 +6,15 @@ import argparse
 import os
 from pathlib import Path
 
-from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL
 from cfepy.cli.options import launch_words, plan_of
 from cfepy.cli.ros.view import NodesView
 from cfepy.cli.run.run import View, fly_and_tell
+from cfepy.cli.user_notes import tell
 from cfepy.mission import launch_file
 from cfepy.pilot import LAUNCH
-from rospy_shim.roslaunch.plan import LaunchPlan
-from rospy_shim.roslaunch.plan import plan_of as launch_plan_of
+from rospy_shim.roslaunch.launch_plan import LaunchPlan
+from rospy_shim.roslaunch.launch_plan import plan_of as launch_plan_of
 
 
 def run(arguments: argparse.Namespace) -> int:

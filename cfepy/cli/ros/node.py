@@ -8,14 +8,14 @@ import sys
 from typing import TextIO
 
 from cfepy.cli.display import Display, SilentDisplay
-from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of
 from cfepy.cli.run.outputs import Outputs
 from cfepy.cli.run.run import View, fly_and_tell
-from cfepy.escapes import node_text, raw
+from cfepy.cli.user_notes import tell
 from cfepy.mission import Mission
 from cfepy.pilot import BOOT_S, ENDED, NODE, FailureKind, Flown
+from cfepy.writing.escapes import node_text, raw
 
 FAULT = "cfepy fault "  # how lines about faults begin
 _OWN_LINE = re.compile(r"\[[\w/]+\] (.*)", re.DOTALL)  # as the console has what nodes print

@@ -8,11 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from cfepy.cli.failures import tell, writing
 from cfepy.cli.json_output import write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import plan_of, refuse_run_options
-from cfepy.cli.table import print_lines
+from cfepy.cli.text_table import print_lines
+from cfepy.cli.user_notes import tell, writing
 from cfepy.ground.parameters import Parameters, at_start, changed, is_source_of_files, of_files, present, table_files
 from cfepy.pilot import never_happened, takeoff
 from cfepy.reading.plain_yaml import YamlError, plain_yaml

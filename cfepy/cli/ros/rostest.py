@@ -12,14 +12,13 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from cfepy.cli.display import Display, PlainDisplay, SilentDisplay
-from cfepy.cli.failures import tell, writing
-from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import launch_words
 from cfepy.cli.options import plan_of as run_plan_of
 from cfepy.cli.ros.view import NodesDisplay
 from cfepy.cli.run.outputs import SavedRunFiles
-from cfepy.markup import printable
+from cfepy.cli.user_notes import tell, writing
+from cfepy.cli.watched_host import Interrupts, WatchedHost
 from cfepy.mission import TEST_RESULTS, BuiltProgram, CppNodesConfig, NodeBuilder, built_programs, launch_file, spec_of
 from cfepy.nodes import CppNode, NodeConfig
 from cfepy.pilot import LAUNCH, Flown, builder, fly, is_reported
@@ -28,7 +27,8 @@ from cfepy.reading.input_limits import XML_BYTES
 from cfepy.reading.plain_xml import XmlError, plain_xml
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
-from rospy_shim.roslaunch.plan import LaunchPlan, PlannedTest, plan_of
+from cfepy.writing.markup import printable
+from rospy_shim.roslaunch.launch_plan import LaunchPlan, PlannedTest, plan_of
 
 FAILURE, ERROR = "failure", "error"
 BOARD = "workstation"  # where the calls of nodes take time, as tests of nodes that never rest expect
@@ -183,7 +183,7 @@ class _Runner:
 
     Args:
         file: the launch file.
-        plan: what is in it (`rospy_shim.roslaunch.plan.LaunchPlan`).
+        plan: what is in it (`rospy_shim.roslaunch.launch_plan.LaunchPlan`).
         built: its nodes in C++.
         build: builds tests in C++.
         arguments: of the command line.
@@ -207,7 +207,7 @@ class _Runner:
         self._interrupts = interrupts
 
     def run(self, test: PlannedTest) -> TestResults:
-        """Run a test (`rospy_shim.roslaunch.plan.PlannedTest`), again and again as long as it fails and may."""
+        """Run a test (`rospy_shim.roslaunch.launch_plan.PlannedTest`), again and again as long as it fails and may."""
         results = self._once(test)
         for number in range(1, test.retry + 1):
             if results.passed or self._interrupts.asked:

@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.cli.json_output import write_json
-from cfepy.cli.looked_at import flight_plan
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.ros.source import FlightSource
-from cfepy.cli.table import print_lines
-from cfepy.console import Console
+from cfepy.cli.text_table import print_lines
+from cfepy.cli.viewed_runs import flight_plan
 from cfepy.flight import library_near
 from cfepy.ground import GroundConsole, is_bag, with_ground_node
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 from rospy_shim.graph.compiled import DeclaredType
 
 

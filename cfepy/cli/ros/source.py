@@ -8,14 +8,14 @@ from contextlib import ExitStack
 from types import TracebackType
 from typing import NamedTuple
 
-from cfepy.cli.failures import tell
-from cfepy.cli.looked_at import flight_plan
 from cfepy.cli.options import refuse_run_options
-from cfepy.console import Console
+from cfepy.cli.user_notes import tell
+from cfepy.cli.viewed_runs import flight_plan
 from cfepy.ground import BagReader, header_of, is_bag
 from cfepy.mission import Mission, MissionSpec, TopicMessage, TopicWatch
 from cfepy.pilot import LiveRun, RunPlan, never_happened, takeoff
 from cfepy.units import NS_PER_MS, NS_PER_S
+from cfepy.writing.console import Console
 
 PIECE_NS = 100 * NS_PER_MS
 

@@ -8,19 +8,19 @@ from collections.abc import Callable
 from contextlib import closing
 from typing import Any
 
-from cfepy.cli.failures import tell
 from cfepy.cli.json_output import STDOUT, json_lines, write_json
-from cfepy.cli.looked_at import flight_plan
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.ros.source import FlightSource, SeenTopic, source_of
 from cfepy.cli.ros.topic_output import Bandwidth, Delay, Echo, Hz, Meter
-from cfepy.cli.table import print_lines
-from cfepy.console import Console
-from cfepy.escapes import visible_line
+from cfepy.cli.text_table import print_lines
+from cfepy.cli.user_notes import tell
+from cfepy.cli.viewed_runs import flight_plan
 from cfepy.ground import GroundConsole, candidates, with_ground_node
 from cfepy.mission import described
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
+from cfepy.writing.escapes import visible_line
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -12,7 +12,7 @@ from typing import Any
 from cfepy.cli.display import Display
 from cfepy.cli.run.report import faults, show_speed
 from cfepy.cli.run.run import View
-from cfepy.cli.table import Table, show_tables
+from cfepy.cli.text_table import Table, show_tables
 from cfepy.mission import Mission
 from cfepy.pilot import BOOT_S, ENDED, NOT_STARTED, Flown, Results
 

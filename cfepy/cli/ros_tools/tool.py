@@ -14,20 +14,20 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from cfepy.cli.failures import tell, writing
 from cfepy.cli.json_output import write_text
-from cfepy.cli.looked_at import flight_plan
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import LONGEST_S, refuse_run_options
 from cfepy.cli.ros.source import FlightSource
 from cfepy.cli.ros_tools import words_of
-from cfepy.console import Console
+from cfepy.cli.user_notes import tell, writing
+from cfepy.cli.viewed_runs import flight_plan
 from cfepy.ground import BagReader, GroundConsole, empty_mission, ground_node_ended, is_bag, with_ground_node
 from cfepy.interpreter.host_system import is_absent
 from cfepy.mission import MissionSpec
 from cfepy.pilot import BOOT_S, DEFAULT_S, RunPlan
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
+from cfepy.writing.console import Console
 
 AFTER_BAG_S = 1.0  # until what was played last has come
 

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
-from cfepy.escapes import visible_line
 from cfepy.mission import read_mission
 from cfepy.pilot import MissionProblem, check_mission, problem_of
 from cfepy.status import UsageError
+from cfepy.writing.escapes import visible_line
 
 
 def run(arguments: argparse.Namespace) -> int:

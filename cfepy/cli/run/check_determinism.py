@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from cfepy.cli import flight_add_ons
-from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.run.compared_run import ComparedRun
 from cfepy.cli.run.compared_runs import FirstDifference, RunInProcess, facts_of, failure, show, started
+from cfepy.cli.user_notes import tell
 from cfepy.pilot import RunPlan
 from cfepy.pilot.determinism import RunEndedError, first_parting
 from cfepy.pilot.determinism_look import Look

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from cfepy.attachment import Recorder
-from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL
 from cfepy.cli.trace_text import TraceText
+from cfepy.cli.watched_host import Interrupts, WatchedHost
 from cfepy.ground import dictionary_of, flat, library_of, plain, text_of, topics_of
 from cfepy.interpreter.child_pipes import descriptor_of
 from cfepy.journal import Replay, read_journal, staged
@@ -25,7 +25,7 @@ from cfepy.mission import Mission, MissionSpec
 from cfepy.pilot import RunPlan, fly
 from cfepy.pilot.determinism import ComparedTrace, RecordWriter, hear_calls
 from cfepy.pilot.determinism_look import Look, LookingTrace, outside_lines
-from cfepy.pilot.open_world import OpenWorld
+from cfepy.pilot.host_access import OpenWorld
 from cfepy.status import CfeError, UsageError
 from cfepy.trace import UNSENT
 

@@ -17,7 +17,7 @@ from cfepy.cli.run.compared_run import ComparedRun
 from cfepy.interpreter.child_pipes import number_of, popen_options
 from cfepy.pilot.determinism import RecordReader, RunEndedError
 from cfepy.pilot.determinism_look import Line, Look, suspects
-from cfepy.resources import import_path, python_command
+from cfepy.reading.resources import import_path, python_command
 from cfepy.status import UsageError
 
 MOST_SUSPECTS = 8

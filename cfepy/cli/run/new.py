@@ -15,7 +15,7 @@ import zlib
 from pathlib import Path
 
 from cfepy.cli.main import ENDED_WELL
-from cfepy.resources import shipped
+from cfepy.reading.resources import shipped
 from cfepy.status import UsageError
 from cfepy.tbl import image
 
@@ -157,7 +157,7 @@ def _renamed(text: str, name: str) -> str:
         ("SAMPLE:", f"{name.upper()}:"),
         ("SampleApp", title.replace(" ", "")),
         ('VERSION_TEXT = version_string("Sample App", VERSION, "Equuleus", "v1.1.0")\n', ""),
-        ("from cfepy.versions import version_string\n", ""),
+        ("from cfepy.config.versions import version_string\n", ""),
         ("equuleus-rc1+dev54", "v1.0.0"),
         ("Sample App Initialized.{VERSION_TEXT}", f"{title} initialized, version {{VERSION}}"),
         ("Sample App", title),

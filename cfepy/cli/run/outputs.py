@@ -15,8 +15,8 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from cfepy.attachment import Attachment, Recorder
-from cfepy.cli.failures import writing
 from cfepy.cli.json_output import check_json, write_json
+from cfepy.cli.user_notes import writing
 from cfepy.mission import Mission
 from cfepy.pilot import Flown, RunPlan
 from cfepy.status import UsageError

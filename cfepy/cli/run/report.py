@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, TextIO
 
-from cfepy.cli.table import Table, show_paragraph, show_tables
+from cfepy.cli.text_table import Table, show_paragraph, show_tables
 from cfepy.pilot import Results
 from cfepy.plugins import Hook
 from cfepy.units import NS_PER_S, time_text

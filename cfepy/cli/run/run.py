@@ -7,14 +7,14 @@ import sys
 from typing import TYPE_CHECKING
 
 from cfepy.cli.display import Display, make_display
-from cfepy.cli.failures import note, tell
 from cfepy.cli.flight_add_ons import FlightAddOns
 from cfepy.cli.flight_options import check_pace
-from cfepy.cli.host import Interrupts, WatchedHost
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of_mission
 from cfepy.cli.run import report
 from cfepy.cli.run.outputs import Outputs, recording
+from cfepy.cli.user_notes import note, tell
+from cfepy.cli.watched_host import Interrupts, WatchedHost
 from cfepy.pilot import Flown, RunPlan, fly
 from cfepy.trace import TimedRecords, Trace
 

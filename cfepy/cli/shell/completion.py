@@ -169,7 +169,7 @@ def _dictionary(parsed_args: argparse.Namespace) -> Dictionary:
 
 def _packages() -> Packages:
     """The packages that are seen from here."""
-    from rospy_shim.roslaunch.plan import packages_near
+    from rospy_shim.roslaunch.launch_plan import packages_near
 
     return packages_near(Path.cwd() / "here", os.environ)
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from cfepy.extra.c.arena import PAGE, Arena
+from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.engine import engine
-from cfepy.extra.c.faults import CFault
 
 STUB = 32
 """Bytes that are kept for one."""

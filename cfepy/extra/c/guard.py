@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 from cfepy.extra.c.arena import PAGE, Arena
+from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.engine import engine
-from cfepy.extra.c.faults import CFault
 from cfepy.extra.c.memory import CMemory
 
 POISON = b"\xa5"

@@ -14,7 +14,7 @@ from typing import NamedTuple, Protocol
 from cfepy.extra.c.arena import PAGE, Arena
 from cfepy.extra.c.elf import ElfError, Relocation, SharedObject, Symbol
 from cfepy.extra.c.engine import engine
-from cfepy.extra.c.places import CodePlace, Places, places_of
+from cfepy.extra.c.source_places import CodePlace, Places, places_of
 from cfepy.extra.c.unwinding import FrameInfo, FrameRow
 from cfepy.interpreter.cached import CachedProperty
 

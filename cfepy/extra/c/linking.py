@@ -17,7 +17,7 @@ from typing import Protocol
 from cfepy.extra.c.calls import DESCRIPTOR, CallTable, Declarations
 from cfepy.extra.c.elf import ElfError, SharedObject, read_shared_object
 from cfepy.extra.c.image import Image
-from cfepy.extra.c.lives import ThreadLocals
+from cfepy.extra.c.lifetimes import ThreadLocals
 from cfepy.extra.c.memory import CMemory
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import OBJECT_BYTES

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from cfepy.console import Console
 from cfepy.es import SymbolError
 from cfepy.extra.c.abi import abi_profile
+from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.elf import ElfError, SharedObject, read_shared_object
-from cfepy.extra.c.faults import CFault
 from cfepy.extra.c.image import Image, LoadedCode
 from cfepy.extra.c.runtime import CRuntime
 from cfepy.status import OS_ERROR, OsalError
+from cfepy.writing.console import Console
 
 NO_SYMBOL = "NULL"
 NODE_MARK = "roscfe_node"

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.engine import engine
-from cfepy.extra.c.faults import CFault
 from cfepy.extra.c.memory import CMemory
 from cfepy.rtos import Task
 from cfepy.sb import MessageBuffer, SoftwareBus

@@ -6,25 +6,25 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, NoReturn
 
 from cfepy.app import Cfe
-from cfepy.console import Console
 from cfepy.extra.c.arena import PAGE, Arena
 from cfepy.extra.c.calls import CallTable, Declarations
+from cfepy.extra.c.crashes import CFault, explained
 from cfepy.extra.c.elf import SharedObject
 from cfepy.extra.c.engine import engine
-from cfepy.extra.c.faults import CFault, explained
 from cfepy.extra.c.guard import POISON, Guard, GuardedTables
 from cfepy.extra.c.image import Image, LoadedModule
+from cfepy.extra.c.lifetimes import Ends, ThreadLocals
 from cfepy.extra.c.linking import LIBRARIES, Exports, LinkedWith, host_library, wanted_names
-from cfepy.extra.c.lives import Ends, ThreadLocals
 from cfepy.extra.c.memory import CMemory, Constants
 from cfepy.extra.c.packets import PacketImages
-from cfepy.extra.c.places import CallFrames, CodePlace, PreemptedFrames, raise_at
 from cfepy.extra.c.races import CompiledRaceWatch
+from cfepy.extra.c.source_places import CallFrames, CodePlace, PreemptedFrames, raise_at
 from cfepy.extra.c.stacks import LEAST, Stacks
 from cfepy.extra.c.unwinding import Unwinder
 from cfepy.rtos import Kernel
 from cfepy.schedules import ExploringKernel, Race
 from cfepy.status import CfeError, OsalError
+from cfepy.writing.console import Console
 
 if TYPE_CHECKING:
     from cfepy.extra.c.api.unsent import PublicationWatch

@@ -14,8 +14,8 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple, Protocol
 
+from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.elf import SharedObject
-from cfepy.extra.c.faults import CFault
 from cfepy.extra.c.memory import CMemory
 from cfepy.interpreter.cached import CachedProperty
 

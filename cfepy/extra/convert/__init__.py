@@ -1,9 +1,9 @@
 """ROS nodes in C++ as cFE applications: the convertor, `cfepy convert`.
 
 A node's source is compiled as it is, against the interface library in roscfe. What belongs here reads C++ packages
-(`packages`), makes what is generated around a node, such as the headers of its messages (`messages`), its entry point
-and its parameters, and calls the compiler. Running what was built does not belong here: to a mission a shared object is
-a compiled application like any other. The central file is `cfepy/extra/convert/conversion.py`.
+(`packages`), makes what is generated around a node, such as the headers of its messages (`message_headers`), its entry
+point and its parameters, and calls the compiler. Running what was built does not belong here: to a mission a shared
+object is a compiled application like any other. The central file is `cfepy/extra/convert/conversion.py`.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.extra.convert.capacities import wrong_capacities
-    from cfepy.extra.convert.check import RULES, CheckReport, Level, check_program, programs_of, sarif_of
     from cfepy.extra.convert.conversion import converted, task_of
-    from cfepy.extra.convert.flight import build_for_flight
-    from cfepy.extra.convert.messages import Profile
+    from cfepy.extra.convert.flight_build import build_for_flight
+    from cfepy.extra.convert.message_headers import Profile
+    from cfepy.extra.convert.node_check import RULES, CheckReport, Level, check_program, programs_of, sarif_of
     from cfepy.extra.convert.output import write_files
     from cfepy.extra.convert.packages import Program
     from cfepy.extra.convert.project import project_files, report
@@ -45,10 +45,10 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         __name__,
         {
             ".capacities": ("wrong_capacities",),
-            ".check": ("RULES", "CheckReport", "Level", "check_program", "programs_of", "sarif_of"),
+            ".node_check": ("RULES", "CheckReport", "Level", "check_program", "programs_of", "sarif_of"),
             ".conversion": ("converted", "task_of"),
-            ".flight": ("build_for_flight",),
-            ".messages": ("Profile",),
+            ".flight_build": ("build_for_flight",),
+            ".message_headers": ("Profile",),
             ".output": ("write_files",),
             ".packages": ("Program",),
             ".project": ("project_files", "report"),

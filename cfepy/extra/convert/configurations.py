@@ -16,7 +16,7 @@ from typing import Any
 
 from cfepy.extra.convert.entry import quoted
 from cfepy.extra.convert.packages import Program
-from cfepy.resources import import_path, python_command
+from cfepy.reading.resources import import_path, python_command
 from cfepy.status import UsageError
 from rospy_shim.library_parts import FOLDER
 

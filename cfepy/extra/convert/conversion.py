@@ -10,15 +10,15 @@ from typing import Any
 
 from cfepy.extra.convert.build import library_includes, provided_packages
 from cfepy.extra.convert.configurations import CONFIGURATION_TYPES, configuration_headers
+from cfepy.extra.convert.cpp_sources import SourceSet, collect, main_form, message_types
 from cfepy.extra.convert.entry import NodeEntry, parameter_rows
-from cfepy.extra.convert.names import NodeNames, SourceNames, names_of, texts_below
 from cfepy.extra.convert.packages import MANIFEST, Program, program_of, read_package
-from cfepy.extra.convert.sources import SourceSet, collect, main_form, message_types
+from cfepy.extra.convert.source_names import NodeNames, SourceNames, names_of, texts_below
 from cfepy.mission import launch_file
 from cfepy.nodes import ROSCORE_PARAMS, CppNode, RosConfig
 from cfepy.status import UsageError
 from rospy_shim.graph.msg_ids import MsgIds, locked
-from rospy_shim.roslaunch.plan import app_name, packages_near, plan_of
+from rospy_shim.roslaunch.launch_plan import app_name, packages_near, plan_of
 from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 from rospy_shim.types.msgs.packages import name_of
 

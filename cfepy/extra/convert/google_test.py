@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from cfepy.extra.convert.packages import Program
-from cfepy.resources import shipped
+from cfepy.reading.resources import shipped
 from cfepy.status import UsageError
 
 PLACES = ("/usr/src/googletest/googletest", "/usr/src/gtest")

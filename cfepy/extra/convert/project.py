@@ -31,9 +31,9 @@ from cfepy.extra.convert.build import (
 )
 from cfepy.extra.convert.capacities import capacities_of
 from cfepy.extra.convert.conversion import Conversion, ConvertedNode
+from cfepy.extra.convert.cpp_sources import collect, message_types
 from cfepy.extra.convert.entry import main_header
-from cfepy.extra.convert.messages import Profile, write_headers
-from cfepy.extra.convert.sources import collect, message_types
+from cfepy.extra.convert.message_headers import Profile, write_headers
 from cfepy.mission import COMPILED_STACK_BYTES, LOCK_FILE, STARTUP_SCRIPT, CppNodesConfig
 from cfepy.status import UsageError
 from cfepy.tbl import TableImage

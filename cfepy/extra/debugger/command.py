@@ -13,10 +13,10 @@ from typing import Any, TextIO, cast
 
 from cfepy.attachment import Attachment
 from cfepy.cli.display import Display, PlainDisplay, SilentDisplay
-from cfepy.cli.failures import tell
 from cfepy.cli.main import ENDED_WELL
 from cfepy.cli.run.outputs import Outputs
 from cfepy.cli.run.run import View, fly_again
+from cfepy.cli.user_notes import tell
 from cfepy.extra.debugger import Debugger, GdbSession, Journey, Keepers
 from cfepy.journal import Replay
 from cfepy.mission import CORE_APPS, MissionSpec

@@ -13,7 +13,6 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, TextIO
 
-from cfepy.escapes import safe
 from cfepy.extra.debugger.app_debugger import AppDebugger, leave_thread, look_at_end, look_into, own_frame
 from cfepy.extra.debugger.breakpoints import Breakpoint, VariableCondition, breakpoints, finders
 from cfepy.extra.debugger.journey import NOTHING_BEFORE, Journey, LineWay, RunMoment
@@ -24,6 +23,7 @@ from cfepy.monitors import Observer, Sent, app_of
 from cfepy.pilot.determinism_look import stack_of
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
+from cfepy.writing.escapes import safe
 
 if TYPE_CHECKING:
     from cfepy.extra.debugger.gdb import GdbSession

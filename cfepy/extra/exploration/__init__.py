@@ -1,11 +1,11 @@
 """Exploring schedules: a mission is flown under many, failures are told apart, and a failing schedule is made short.
 
 What belongs here works with many runs of one mission that differ in which task goes first: the choice of schedules
-(`search`), the processes that fly them (`campaign`, `crews`, `workers`), what counts as a failure (`trial`, `failures`,
-`stuck`, `result_watch`), and how a failing schedule is made short and shown (`shrink`, `timeline`). The same processes
-fly runs that differ in their plans, such as rates and boards (`lot`, `sweep`). The policies that decide within one run
-belong to `cfepy.rtos`; what must hold of every run belongs to `cfepy.monitors`. The central file is
-`cfepy/extra/exploration/expedition.py`.
+(`search`), the processes that fly them (`campaign`, `worker_pools`, `workers`), what counts as a failure (`trial`,
+`failure_kinds`, `deadlock`, `result_watch`), and how a failing schedule is made short and shown (`shrink`, `timeline`).
+The same processes fly runs that differ in their plans, such as rates and boards (`batch`, `sweep`). The policies that
+decide within one run belong to `cfepy.rtos`; what must hold of every run belongs to `cfepy.monitors`. The central file
+is `cfepy/extra/exploration/exploration.py`.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
-    from cfepy.extra.exploration.crews import make_crew
-    from cfepy.extra.exploration.expedition import DEFAULT_SEEDS, Expedition, Report, Told
-    from cfepy.extra.exploration.lot import Lot, answers
-    from cfepy.extra.exploration.moves import MadeMove
+    from cfepy.extra.exploration.batch import Lot, answers
+    from cfepy.extra.exploration.exploration import DEFAULT_SEEDS, Expedition, Report, Told
+    from cfepy.extra.exploration.longest import Worst
+    from cfepy.extra.exploration.made_moves import MadeMove
+    from cfepy.extra.exploration.mission_transfer import files_read, ship
     from cfepy.extra.exploration.progress import make_progress
     from cfepy.extra.exploration.replays import GONE, NOT_POSSIBLE, STILL_THERE, ReplayedFailure, replay_all
     from cfepy.extra.exploration.search import SeededSearch, seeded_kinds
-    from cfepy.extra.exploration.shipment import files_read, ship
     from cfepy.extra.exploration.shrink import Shrinkable, Shrinker, Shrunk, budget_of
     from cfepy.extra.exploration.sweep import (
         Knee,
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from cfepy.extra.exploration.timeline import WIDTH, Story, important, story_of_run
     from cfepy.extra.exploration.trial import Trial, Tried
     from cfepy.extra.exploration.verdict import Failure, Finding, Verdict
-    from cfepy.extra.exploration.worst import Worst
+    from cfepy.extra.exploration.worker_pools import make_crew
 
 __all__ = [
     "DEFAULT_SEEDS",
@@ -98,8 +98,8 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
-            ".crews": ("make_crew",),
-            ".lot": (
+            ".worker_pools": ("make_crew",),
+            ".batch": (
                 "Lot",
                 "answers",
             ),
@@ -108,7 +108,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "SeededSearch",
                 "seeded_kinds",
             ),
-            ".shipment": (
+            ".mission_transfer": (
                 "files_read",
                 "ship",
             ),
@@ -130,13 +130,13 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "seeds_of",
                 "values_of",
             ),
-            ".expedition": (
+            ".exploration": (
                 "DEFAULT_SEEDS",
                 "Expedition",
                 "Report",
                 "Told",
             ),
-            ".moves": ("MadeMove",),
+            ".made_moves": ("MadeMove",),
             ".replays": ("GONE", "NOT_POSSIBLE", "STILL_THERE", "ReplayedFailure", "replay_all"),
             ".shrink": (
                 "Shrinkable",
@@ -160,6 +160,6 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "Finding",
                 "Verdict",
             ),
-            ".worst": ("Worst",),
+            ".longest": ("Worst",),
         },
     )

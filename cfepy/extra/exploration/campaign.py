@@ -1,8 +1,8 @@
 """A campaign: one trial under many schedules, and its verdicts in order, whichever process runs them.
 
-What a campaign reports does not depend on how it was run: a crew (`workers`, `crews`) gives verdicts as they come, the
-campaign puts them in order, keeps them in the results file, and takes from there what an earlier run found. It holds
-only verdicts that wait for their turn, so its memory does not grow with the number of schedules.
+What a campaign reports does not depend on how it was run: a crew (`workers`, `worker_pools`) gives verdicts as they
+come, the campaign puts them in order, keeps them in the results file, and takes from there what an earlier run found.
+It holds only verdicts that wait for their turn, so its memory does not grow with the number of schedules.
 """
 
 from __future__ import annotations

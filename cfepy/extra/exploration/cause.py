@@ -12,12 +12,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from cfepy.extra.exploration import deeds as do
-from cfepy.extra.exploration.deeds import Deed, keys_of
-from cfepy.extra.exploration.moves import MadeMove
+from cfepy.extra.exploration import operations as do
+from cfepy.extra.exploration.made_moves import MadeMove
+from cfepy.extra.exploration.operations import Deed, keys_of
 from cfepy.extra.exploration.run_times import longest_more
+from cfepy.extra.exploration.shared_objects import is_made_of
 from cfepy.extra.exploration.task_look import AT, ORDERED, PREEMPTED, Row
-from cfepy.extra.exploration.things import is_made_of
 from cfepy.extra.exploration.verdict import DEADLOCK, DIED, RAISED, Failure
 from cfepy.rtos import HOLD
 from cfepy.schedules import plain_name

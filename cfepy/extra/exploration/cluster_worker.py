@@ -1,7 +1,7 @@
 """What a dask worker does for a campaign: it flies batches in worker processes of its own.
 
 So the dask worker survives whatever a mission does to its process, and says under which schedule that happened. Only
-this module and `crews` know dask; this one is only imported where dask is installed.
+this module and `worker_pools` know dask; this one is only imported where dask is installed.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from typing import Any
 
 from distributed import WorkerPlugin, get_worker
 
+from cfepy.extra.exploration.batch import Lot
 from cfepy.extra.exploration.campaign import Experiment, Job, NumberedVerdict
-from cfepy.extra.exploration.lot import Lot
-from cfepy.extra.exploration.shipment import Shipment, Unpacked, comparable_versions
+from cfepy.extra.exploration.mission_transfer import Shipment, Unpacked, comparable_versions
 from cfepy.extra.exploration.workers import Processes
 from cfepy.status import UsageError
 

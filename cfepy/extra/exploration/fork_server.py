@@ -21,7 +21,7 @@ from typing import Any, Generic, TypeVar
 
 from cfepy.attachment import Attachment
 from cfepy.extra.exploration.campaign import Experiment, judge
-from cfepy.extra.exploration.moves import MoveNotingPolicy
+from cfepy.extra.exploration.made_moves import MoveNotingPolicy
 from cfepy.extra.exploration.shrink import NotedFlight, fly_noting
 from cfepy.extra.exploration.trial import Trial, told_as
 from cfepy.extra.exploration.verdict import Verdict

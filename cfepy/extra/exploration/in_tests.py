@@ -13,7 +13,6 @@ from typing import Literal, cast
 import pytest
 from _pytest.runner import runtestprotocol
 
-from cfepy.escapes import visible
 from cfepy.extra.exploration import (
     Failure,
     MadeMove,
@@ -31,8 +30,9 @@ from cfepy.extra.exploration import (
 from cfepy.rtos import Policy
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
-from cfepy.testing.exploration import Exploration
+from cfepy.testing.explore_mark import Exploration
 from cfepy.testing.missions import EXPLORE_MARK, SECTION, UNDER_TEST, Conditions, Missions
+from cfepy.writing.escapes import visible
 
 FAILED = "test failed"
 

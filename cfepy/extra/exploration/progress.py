@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Protocol, TextIO
 
-from cfepy.escapes import keep_output_safe, rich_console
 from cfepy.rtos import Stopwatch
 from cfepy.units import NS_PER_S
+from cfepy.writing.escapes import keep_output_safe, rich_console
 
 EVERY_NS = 10 * NS_PER_S  # wall time between two lines in a log
 SETTLE_NS = NS_PER_S  # wall time after which a rate means something

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cfepy.extra.exploration.campaign import Job
-from cfepy.extra.exploration.crews import make_crew
-from cfepy.extra.exploration.expedition import beside_fifo
+from cfepy.extra.exploration.exploration import beside_fifo
 from cfepy.extra.exploration.results_file import read_failures, read_results
 from cfepy.extra.exploration.trial import Trial
 from cfepy.extra.exploration.verdict import Failure, Verdict
+from cfepy.extra.exploration.worker_pools import make_crew
 from cfepy.extra.exploration.workers import LONGEST_S
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Policy

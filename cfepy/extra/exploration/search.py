@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from cfepy.extra.exploration.orders import OrderSearch
+from cfepy.extra.exploration.partial_orders import OrderSearch
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.mission import CORE_APPS
 from cfepy.schedules import Schedule

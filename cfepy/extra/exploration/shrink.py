@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from itertools import combinations, islice
 from typing import Generic, NamedTuple, Protocol, Self, TypeVar
 
-from cfepy.extra.exploration.moves import Choice, KnownRuns, MadeMove, MoveNotingPolicy
+from cfepy.extra.exploration.made_moves import Choice, KnownRuns, MadeMove, MoveNotingPolicy
 from cfepy.extra.exploration.trial import Tried
 from cfepy.extra.exploration.verdict import RESULTS, Verdict
 from cfepy.rtos import Policy

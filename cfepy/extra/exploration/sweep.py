@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from cfepy.extra.exploration.lot import Lot
-from cfepy.extra.exploration.shipment import PlanElsewhere
+from cfepy.extra.exploration.batch import Lot
+from cfepy.extra.exploration.mission_transfer import PlanElsewhere
 from cfepy.monitors import Arrivals, TrafficWatch
 from cfepy.pilot import BootError, Results, RunPlan, SentNames, fly
 from cfepy.status import UsageError

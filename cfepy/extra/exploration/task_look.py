@@ -14,9 +14,9 @@ from types import FrameType
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.extra.exploration import deeds as do
-from cfepy.extra.exploration.deeds import Deed
-from cfepy.extra.exploration.things import Things, Use, use_of
+from cfepy.extra.exploration import operations as do
+from cfepy.extra.exploration.operations import Deed
+from cfepy.extra.exploration.shared_objects import Things, Use, use_of
 from cfepy.ground import dictionary_of, line_of, plain
 from cfepy.interpreter.own_code import is_shown
 from cfepy.mission import CORE_APPS, Mission, MissionSpec
@@ -46,7 +46,7 @@ EVENT = "CFE_EVS_LONG_EVENT_MSG"
 _OF_COUNTERS = {"get_gen_count": do.READS, "set_gen_count": do.WRITES}
 
 Tell = Callable[[str, int | None, Pipe | None], object]
-"""Gets what is done (a verb of `deeds`), and the MsgId and the pipe that it is about, if any."""
+"""Gets what is done (a verb of `operations`), and the MsgId and the pipe that it is about, if any."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from textwrap import wrap
 
 from cfepy.extra.exploration.cause import Evidence, cause_of
-from cfepy.extra.exploration.failures import FailureWatch
-from cfepy.extra.exploration.moves import MadeMove, MoveNotingPolicy
+from cfepy.extra.exploration.failure_kinds import FailureWatch
+from cfepy.extra.exploration.made_moves import MadeMove, MoveNotingPolicy
 from cfepy.extra.exploration.run_times import RunTimes
 from cfepy.extra.exploration.task_look import (
     ANSWERS,

@@ -12,10 +12,10 @@ from typing import NamedTuple, Self
 
 from cfepy.attachment import Attachment
 from cfepy.extra.exploration import verdict
-from cfepy.extra.exploration.failures import FailureWatch
-from cfepy.extra.exploration.footprints import Footprints
+from cfepy.extra.exploration.deadlock import Waits, WaitWatch, stuck_for_good
+from cfepy.extra.exploration.failure_kinds import FailureWatch
 from cfepy.extra.exploration.result_watch import Result, ResultWatch, differences, digest_of
-from cfepy.extra.exploration.stuck import Waits, WaitWatch, stuck_for_good
+from cfepy.extra.exploration.step_accesses import Footprints
 from cfepy.extra.exploration.verdict import Failure, Verdict
 from cfepy.monitors import InversionWatch, Lack, Limits, LivenessWatch
 from cfepy.pilot import LEAVES_OTHERS_WAITING, BootError, RunPlan, fly
@@ -67,7 +67,7 @@ class Trial:
         keep_widths: verdicts have the widths of decisions, which a systematic search needs.
         steps_from_ns: verdicts have the steps of the run from this virtual time on, as a search of orders needs; None
             keeps none.
-        waits: of the default schedule (`cfepy.extra.exploration.stuck`), against which tasks that wait for ever are
+        waits: of the default schedule (`cfepy.extra.exploration.deadlock`), against which tasks that wait for ever are
             found; None lets them wait.
         liveness: how long a task may be ready without running, and an application run without a message.
     """

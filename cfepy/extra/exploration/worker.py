@@ -18,8 +18,8 @@ from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from typing import Any
 
+from cfepy.extra.exploration.batch import Lot
 from cfepy.extra.exploration.fork_server import ForkingJudge
-from cfepy.extra.exploration.lot import Lot
 from cfepy.interpreter.child_pipes import connection_of
 from cfepy.interpreter.garbage import freeze
 from cfepy.interpreter.host_system import in_forked_process

@@ -21,13 +21,13 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import IO, Any
 
+from cfepy.extra.exploration.batch import Lot
 from cfepy.extra.exploration.campaign import Experiment, Job, NumberedVerdict, Take
-from cfepy.extra.exploration.lot import Lot
 from cfepy.extra.exploration.verdict import Failure, Verdict
 from cfepy.extra.exploration.worker import READY
 from cfepy.interpreter.child_pipes import popen_options
 from cfepy.interpreter.host_system import signal_number
-from cfepy.resources import import_path, python_command
+from cfepy.reading.resources import import_path, python_command
 from cfepy.rtos import Stopwatch, allowed_cpus
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from cfepy.markup import element, escaped
+from cfepy.writing.markup import element, escaped
 
 
 def json_text(value: Any) -> str:

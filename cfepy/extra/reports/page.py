@@ -23,9 +23,9 @@ from cfepy.extra.reports.html_text import Numbers, PageSection, TableCell, json_
 from cfepy.extra.reports.page_story import STORY, PageStory, instant, story_section
 from cfepy.extra.reports.page_values import value_data, values_section
 from cfepy.ground import SeriesSet, graph_svg
-from cfepy.markup import element, escaped
 from cfepy.pilot import FailureKind, Flown, Results, RunProblem
 from cfepy.units import NS_PER_S, time_text
+from cfepy.writing.markup import element, escaped
 
 NO_ICON = "data:,"  # a browser would ask for one
 NEVER = ("never", "never judged")

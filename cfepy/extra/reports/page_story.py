@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from cfepy.extra.reports.html_text import TableCell, section, table
-from cfepy.markup import element, escaped
 from cfepy.units import NS_PER_S
+from cfepy.writing.markup import element, escaped
 
 STORY = "story"
 """The anchor of the part."""

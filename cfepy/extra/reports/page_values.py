@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from cfepy.extra.reports.curves import Curve, Curves, curves_of
 from cfepy.extra.reports.html_text import section
 from cfepy.ground import Series, SeriesSet
-from cfepy.markup import element
 from cfepy.status import UsageError
+from cfepy.writing.markup import element
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -99,7 +99,7 @@ def write_perf_log(file: IO[str], entries: Iterable[Mapping[str, Any]], about: M
 
     Args:
         file: a text file.
-        entries: in their order, with `Id`, `IsExit` and `TimeUs` (`cfepy.ground.files.dump_files.read_perf_data`).
+        entries: in their order, with `Id`, `IsExit` and `TimeUs` (`cfepy.ground.cfe_files.dump_files.read_perf_data`).
         about: tells what it is a log of.
     """
     out, inside = TraceEvents(file), dict[int, int]()

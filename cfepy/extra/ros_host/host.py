@@ -30,7 +30,7 @@ from cfepy.mission import Mission
 from cfepy.reading.input_limits import ROS_PUBLISHERS
 from cfepy.status import CfeError, UsageError
 from cfepy.units import NS_PER_S
-from rospy_shim.master.calls import Answer
+from rospy_shim.master.xmlrpc_calls import Answer
 
 if TYPE_CHECKING:
     from rospy_shim.graph.outside import OutsideGraph

@@ -10,7 +10,7 @@ from cfepy.extra.ros_host.world import RosWorld
 from cfepy.extra.ros_host.xmlrpc_server import ServerBounds
 from cfepy.ground import ShownPackets
 from cfepy.io import PeerCounts
-from rospy_shim.master.calls import Answer
+from rospy_shim.master.xmlrpc_calls import Answer
 from rospy_shim.runtime import RosRuntime
 
 

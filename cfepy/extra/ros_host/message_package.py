@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from cfepy.ground import PACKAGE, definitions_of
-from cfepy.markup import escaped
 from cfepy.msg import Telemetry
+from cfepy.writing.markup import escaped
 
 
 def telemetry_package(telemetry: Iterable[Telemetry], mission: str) -> dict[str, str]:

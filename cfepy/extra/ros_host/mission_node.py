@@ -16,7 +16,7 @@ from cfepy.extra.ros_host.xmlrpc_server import XmlRpcServer
 from cfepy.ground import APPLICATIONS
 from cfepy.io import ENDED, INTO, OUT_OF, Listening, PeerSocket, listening_socket
 from cfepy.reading.input_limits import ROS_NAME
-from rospy_shim.master.calls import Answer, call
+from rospy_shim.master.xmlrpc_calls import Answer, call
 
 ANY = "*"
 CHANGES = frozenset({"shutdown"})

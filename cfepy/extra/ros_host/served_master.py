@@ -13,7 +13,7 @@ from cfepy.extra.ros_host.world import CALLER
 from cfepy.extra.ros_host.xmlrpc_server import XmlRpcServer
 from cfepy.reading.input_limits import ROS_NAME, ROS_REGISTRATIONS
 from cfepy.status import UsageError
-from rospy_shim.master.calls import call, resolve
+from rospy_shim.master.xmlrpc_calls import call, resolve
 from rospy_shim.parameters.tree import ParameterTree
 
 if TYPE_CHECKING:

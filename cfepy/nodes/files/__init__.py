@@ -2,13 +2,13 @@
 
 What belongs here decides what a program finds at a path: the layers and what is copied up (`overlay`), paths and
 where they lie (`paths`), what a file says of itself (`stamps`), and Python's functions that take paths or descriptors,
-`open` (`opened`), those of `os` (`calls`) and those of modules that open files in C (`shared`). The files of OSAL are
-in `cfepy.osal`.
+`open` (`opened`), those of `os` (`file_calls`) and those of modules that open files in C (`shared`). The files of OSAL
+are in `cfepy.osal`.
 """
 
 from __future__ import annotations
 
-from cfepy.nodes.files.calls import Entries, FileCalls
+from cfepy.nodes.files.file_calls import Entries, FileCalls
 from cfepy.nodes.files.opened import OpenFiles
 from cfepy.nodes.files.overlay import PREFIX, Overlay
 from cfepy.nodes.files.paths import below_root

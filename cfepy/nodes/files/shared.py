@@ -9,7 +9,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote, unquote
 
-from cfepy.nodes.synth import proxy, rebind
+from cfepy.nodes.made_modules import proxy, rebind
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe

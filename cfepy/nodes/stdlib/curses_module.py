@@ -12,9 +12,9 @@ import termios
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Protocol
 
+from cfepy.nodes.made_modules import proxy
 from cfepy.nodes.stdlib.streams import COLUMNS, ROWS
 from cfepy.nodes.stdlib.terminal import LFLAG, Terminal
-from cfepy.nodes.synth import proxy
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cfepy.nodes.refused import NETWORK, refusal
+from cfepy.nodes.refused_modules import NETWORK, refusal
 
 if TYPE_CHECKING:
     from cfepy.nodes.stdlib.socket_module import NodeSocket

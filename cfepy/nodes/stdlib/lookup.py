@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from cfepy.interpreter.cached import CachedProperty
-from cfepy.nodes.synth import proxy, rebind
+from cfepy.nodes.made_modules import proxy, rebind
 
 if TYPE_CHECKING:
     from collections.abc import Callable

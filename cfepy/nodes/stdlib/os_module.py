@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes.files import LISTED, Entries, FileCalls
 from cfepy.nodes.files.stamps import UMASK
-from cfepy.nodes.refused import PROCESS, RefusedError, refusal
+from cfepy.nodes.made_modules import rebind
+from cfepy.nodes.refused_modules import PROCESS, RefusedError, refusal
 from cfepy.nodes.stdlib.streams import COLUMNS, ROWS, STDIN
 from cfepy.nodes.stdlib.users import identity
-from cfepy.nodes.synth import rebind
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe

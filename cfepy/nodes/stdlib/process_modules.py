@@ -14,7 +14,7 @@ import locale
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cfepy.nodes.synth import made, proxy, rebind
+from cfepy.nodes.made_modules import made, proxy, rebind
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe

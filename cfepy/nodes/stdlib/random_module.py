@@ -8,7 +8,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from cfepy.nodes.files.shared import array_files
-from cfepy.nodes.synth import proxy
+from cfepy.nodes.made_modules import proxy
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe

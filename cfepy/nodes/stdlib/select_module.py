@@ -11,12 +11,12 @@ from collections.abc import Callable, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from cfepy.nodes.refused import NETWORK, refusal
+from cfepy.nodes.made_modules import proxy
+from cfepy.nodes.refused_modules import NETWORK, refusal
 from cfepy.nodes.stdlib.descriptors import FIRST_DESCRIPTOR
 from cfepy.nodes.stdlib.socket_module import NodeSocket, await_endpoints
 from cfepy.nodes.stdlib.socket_names import failure
 from cfepy.nodes.stdlib.streams import STDIN, descriptor
-from cfepy.nodes.synth import proxy
 from cfepy.osal import Stream
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from cfepy.nodes.refused import SIGNALS, refusal
-from cfepy.nodes.synth import made, proxy
+from cfepy.nodes.made_modules import made, proxy
+from cfepy.nodes.refused_modules import SIGNALS, refusal
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe

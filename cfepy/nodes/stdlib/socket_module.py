@@ -13,10 +13,10 @@ from collections.abc import Callable, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Self
 
-from cfepy.nodes.refused import NETWORK, refusal
+from cfepy.nodes.made_modules import rebind
+from cfepy.nodes.refused_modules import NETWORK, refusal
 from cfepy.nodes.stdlib.locks import wait_ns
 from cfepy.nodes.stdlib.socket_names import LOCAL, address_of, failure, name_functions, place_of, unreachable
-from cfepy.nodes.synth import rebind
 from cfepy.osal import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Mailbox, Network, Place, Stream
 from cfepy.rtos import FOREVER, TIMEOUT, WaitList
 

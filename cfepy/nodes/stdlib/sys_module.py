@@ -11,9 +11,9 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from cfepy.nodes.made_modules import made, proxy
+from cfepy.nodes.node_tracebacks import traceback_text
 from cfepy.nodes.ordered_sets import SET_NAME, OrderedSet
-from cfepy.nodes.report import traceback_text
-from cfepy.nodes.synth import made, proxy
 
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe

@@ -17,9 +17,9 @@ from collections.abc import Callable, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from cfepy.nodes.made_modules import proxy
 from cfepy.nodes.stdlib.locks import wait_ns
 from cfepy.nodes.stdlib.streams import COLUMNS, ROWS, STDIN, descriptor
-from cfepy.nodes.synth import proxy
 from cfepy.rtos import FOREVER, TIMEOUT, WaitList
 
 if TYPE_CHECKING:

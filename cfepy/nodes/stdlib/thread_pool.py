@@ -1,7 +1,7 @@
 """`multiprocessing.pool` of a node: `ThreadPool`, which has threads and no processes, over the node's own threads.
 
-It is executed in each node. Processes are refused by `cfepy.nodes.refused`. Semantics are those of Python's library
-reference, "multiprocessing.pool".
+It is executed in each node. Processes are refused by `cfepy.nodes.refused_modules`. Semantics are those of Python's
+library reference, "multiprocessing.pool".
 """
 
 from __future__ import annotations

@@ -13,8 +13,8 @@ from time import struct_time
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from cfepy.nodes.made_modules import proxy
 from cfepy.nodes.stdlib.locks import wait_ns
-from cfepy.nodes.synth import proxy
 from cfepy.rtos import WaitList
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ import subprocess
 import time
 from pathlib import Path
 
-from cfepy.console import Console
 from cfepy.extra.c.engine import compiler
 from cfepy.extra.c.toolchain import headers_folder
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from dev.twin.real import RealCfe
 
 HERE = Path(__file__).parents[3] / "tests/extra/c/api"

@@ -7,8 +7,8 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
-from cfepy.console import Console
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 
 STARTUP = """\
 CFE_LIB, cfe_assert,   CFE_Assert_LibInit, ASSERT_LIB,  0,  0,     0x0, 0;

@@ -6,7 +6,7 @@ import re
 import subprocess
 from pathlib import Path
 
-from cfepy.config import PlatformConfig
+from cfepy.config.platform import PlatformConfig
 from cfepy.extra.c.engine import compiler
 
 DRIVER = Path(__file__).with_name("driver.c")

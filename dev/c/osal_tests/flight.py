@@ -7,8 +7,8 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.console import Console
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 
 STARTUP = "CFE_LIB, osaltest, CFE_OsalTest_Init, OSALTEST, 0, 0, 0x0, 0;\n!\n"
 LONGEST_S = 600

@@ -17,8 +17,8 @@ import traceback
 from pathlib import Path
 from typing import Any
 
-from cfepy.extra.convert.check import programs_of
-from cfepy.extra.convert.flight import message_library
+from cfepy.extra.convert.flight_build import message_library
+from cfepy.extra.convert.node_check import programs_of
 from cfepy.status import UsageError
 from dev.convert.stimulus import report
 from dev.convert.stimulus.comparing import Likeness, Part, compared

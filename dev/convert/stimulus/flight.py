@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-import cfepy.extra.convert.flight
-from cfepy.console import Console
+import cfepy.extra.convert.flight_build
 from cfepy.es.packets import START_APP
 from cfepy.extra.convert import build_for_flight
 from cfepy.extra.convert.build import provided_packages
@@ -21,6 +20,7 @@ from cfepy.extra.convert.packages import Program
 from cfepy.mission import Mission
 from cfepy.mission.launch import COMPILED_STACK_BYTES, PRIORITY, read_launch
 from cfepy.mission.processor import Machine
+from cfepy.writing.console import Console
 from dev.convert.stimulus.outcome import Outcome, outcome_of
 from dev.convert.stimulus.script import Scene, Seen
 from rospy_shim.graph.compiled import CompiledNodes
@@ -134,7 +134,7 @@ class NodeFlight:
             calls[name] = calls.get(name, ANY) if declared._type == "*" else declared._type
             return enroll(graph, node, name, declared)
 
-        whatever = patch.object(cfepy.extra.convert.flight, "program_of", return_value=self._program)
+        whatever = patch.object(cfepy.extra.convert.flight_build, "program_of", return_value=self._program)
         with patch.dict(os.environ, self._environ), whatever:  # CMakeLists.txt does not name all that the survey lists
             spec = read_launch(launch, {}, build_for_flight)
         assert not spec.notes, spec.notes

@@ -11,12 +11,12 @@ from pathlib import Path
 from textwrap import dedent
 from typing import Any
 
-from cfepy.console import Console
 from cfepy.es import SYSTEM_OPERATIONAL
 from cfepy.evs.packets import LONG_EVENT, LONG_EVENT_MSG_MID
 from cfepy.mission import Mission
 from cfepy.rtos.semaphore import Semaphore
 from cfepy.status import CfeError
+from cfepy.writing.console import Console
 from dev.twin.api.bus_calls import BusCalls
 from dev.twin.api.es_calls import EsCalls
 from dev.twin.api.msg_calls import MsgCalls

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cfepy.cli.table import Table
+from cfepy.cli.text_table import Table
 from cfepy.pilot import Results, TopicResult
 
 SHOWN = 3  # in the report of a run

@@ -17,10 +17,10 @@ from types import ModuleType
 
 from rospy_shim.types.msgs.checking import DefinitionFault, check_definitions
 from rospy_shim.types.msgs.classes import MessageClass, ServiceClass
+from rospy_shim.types.msgs.definition_sources import OnDisk, Shipped, Source
 from rospy_shim.types.msgs.library import Library, from_full_text, library_of, shipped
 from rospy_shim.types.msgs.modules import generate_dynamic, make_module
 from rospy_shim.types.msgs.packages import Packages, check_package_name
-from rospy_shim.types.msgs.sources import OnDisk, Shipped, Source
 
 __all__ = [
     "DefinitionFault",

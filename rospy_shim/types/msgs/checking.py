@@ -16,9 +16,9 @@ from cfepy.reading.input_limits import DEFINITION_BYTES
 from cfepy.reading.marked_yaml import Mistakes
 from cfepy.reading.suggestions import like
 from cfepy.status import UsageError
+from rospy_shim.types.msgs.definition_sources import Definition, OnDisk, messages_of, split_parts, split_service
 from rospy_shim.types.msgs.library import Library, shipped
 from rospy_shim.types.msgs.packages import Packages
-from rospy_shim.types.msgs.sources import Definition, OnDisk, messages_of, split_parts, split_service
 from rospy_shim.types.msgs.spec import BUILTINS, Spec, parse
 
 _LEGAL = re.compile(r"[A-Za-z]\w*", re.ASCII)

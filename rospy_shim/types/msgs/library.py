@@ -14,7 +14,15 @@ from cfepy.reading.input_limits import MESSAGE_DEPTH, MESSAGE_FIELDS, MESSAGE_VA
 from cfepy.status import UsageError
 from rospy_shim.types.genpy.message import Message
 from rospy_shim.types.msgs.classes import MessageClass, ServiceClass, build_class, build_service
-from rospy_shim.types.msgs.sources import Definition, Definitions, Kind, Shipped, Source, Texts, split_service
+from rospy_shim.types.msgs.definition_sources import (
+    Definition,
+    Definitions,
+    Kind,
+    Shipped,
+    Source,
+    Texts,
+    split_service,
+)
 from rospy_shim.types.msgs.spec import BUILTINS, PRIMITIVES, Spec, full_text, md5_text, md5sum, parse, split_full_text
 
 _PARTS = ("Request", "Response")

@@ -14,8 +14,8 @@ from typing import Any, cast
 
 from rospy_shim.types import genpy
 from rospy_shim.types.genpy import arguments, checks, errors, message, rostime, strify
+from rospy_shim.types.msgs.definition_sources import Kind
 from rospy_shim.types.msgs.library import Library, from_full_text, shipped
-from rospy_shim.types.msgs.sources import Kind
 
 _IMPORTED = ("codecs", "genpy", "struct", "sys")
 _TIMES: Mapping[str, Any] = {"time": rostime.Time, "duration": rostime.Duration}

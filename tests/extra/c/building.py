@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.extra.c.engine import compiler
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 
 HERE = Path(__file__).parent
 FLAGS = ("-shared", "-fPIC", "-g", "-O1", "-Wall", "-Werror", "-fno-builtin", f"-I{HERE}")

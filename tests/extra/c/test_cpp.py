@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.extra.c.linking import host_library
-from cfepy.pilot.check import check_mission
+from cfepy.pilot.mission_check import check_mission
 from tests.extra.c.building import (
     compile_cpp,
     console_of,
@@ -94,7 +94,7 @@ def test_a_run_is_the_same_each_time(tmp_path: Path) -> None:
     assert len({digest_of(folder, tasks) for tasks in ("thread", "greenlet", "thread")}) == 1
 
 
-@pytest.mark.parametrize("link", LINKS)
+@pytest.mark.parametrize("link", [pytest.param(link, marks=[pytest.mark.slow] * (link != "static")) for link in LINKS])
 def test_an_exception_that_nobody_catches_is_a_fault(tmp_path: Path, link: str) -> None:
     source = """
         #include <stdexcept>
@@ -219,6 +219,7 @@ def test_code_without_exceptions_and_libstdcpp_has_faults_instead(tmp_path: Path
     assert what in str(mission.cfe.es.history["TEST"].last_error)
 
 
+@pytest.mark.slow
 def test_a_mutex_of_the_standard_library_keeps_others_out(tmp_path: Path) -> None:
     console = fly_cpp(
         tmp_path,

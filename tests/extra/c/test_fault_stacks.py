@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission, app_traceback, reason
+from cfepy.writing.console import Console
 from tests.extra.c.building import compile_c, compile_cpp, fly, needs_compiler, needs_cpp, write_mission
 
 pytestmark = needs_compiler

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import pytest
 
 from cfepy.cli.main import main
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.tbl import TableServices
+from cfepy.writing.console import Console
 from tests.extra.c.building import compile_c, console_of, digest_of, fly, needs_compiler, said, write_mission
 
 pytestmark = needs_compiler

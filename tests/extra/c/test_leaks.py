@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.extra.c.engine import engine
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.extra.c.building import compile_c, needs_compiler, write_mission
 
 pytestmark = needs_compiler

@@ -69,8 +69,8 @@ FAMILY = ("table_rows", "table_validation", "pool_name", "pool_queue")
 """Those of the guard that test_guard_blocks has quick ones of."""
 SEARCHED = ("deadlock", "unlocked_table", "lost_update")
 """Those that are searched for; test_races and the tests of exploration have quick ones."""
-LONG = dict.fromkeys((*SEARCHED, *FAMILY), pytest.mark.slow)
-SLOW = dict.fromkeys((*(name for name, bug in BUGS.items() if bug.command == EXPLORE), *FAMILY), pytest.mark.slow)
+LONG = dict.fromkeys((*SEARCHED, *FAMILY, "priority_inversion"), pytest.mark.slow)
+SLOW = dict.fromkeys((*(name for name, bug in BUGS.items() if bug.command == EXPLORE), *LONG), pytest.mark.slow)
 """Searches that find nothing take their time."""
 SIMPLE = [name for name in BUGS if name not in ("uninitialised", "counter_wrap")]
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.psp import PanicError
+from cfepy.writing.console import Console
 from tests.extra.c.building import compile_c, console_of, fly, fly_c, needs_compiler, said, write_mission
 
 pytestmark = needs_compiler

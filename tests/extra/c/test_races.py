@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
-from cfepy.console import Console
 from cfepy.pilot import RunPlan, fly
 from cfepy.schedules import Schedule
+from cfepy.writing.console import Console
 from tests.extra.c.building import compile_c, compile_cpp, needs_compiler, needs_cpp, said, write_mission
 
 pytestmark = needs_compiler

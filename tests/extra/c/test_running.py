@@ -7,10 +7,10 @@ from types import ModuleType
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.extra.c import runtime
 from cfepy.extra.c.engine import engine
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.extra.c.building import compile_c, console_of, digest_of, fly, fly_c, needs_compiler, said, write_mission
 
 pytestmark = needs_compiler

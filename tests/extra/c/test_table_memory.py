@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cfepy.console import Console
 from cfepy.mission import Mission
 from cfepy.tbl import TableServices
+from cfepy.writing.console import Console
 from tests.extra.c.building import compile_c, console_of, digest_of, fly, needs_compiler, said, write_mission
 
 pytestmark = needs_compiler

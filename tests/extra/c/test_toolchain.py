@@ -13,7 +13,7 @@ import pytest
 from cfepy.extra.c import Built, CompilerError, Options, build
 from cfepy.extra.c.elf import elf_file
 from cfepy.extra.c.toolchain.compiler import compile_file
-from cfepy.extra.c.toolchain.sources import find_sources, read_cmake_lists
+from cfepy.extra.c.toolchain.source_files import find_sources, read_cmake_lists
 from cfepy.fs import read_table_file
 from cfepy.status import UsageError
 from tests.extra.c.building import console_of, fly, needs_compiler, needs_cpp, said, write_mission

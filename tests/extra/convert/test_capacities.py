@@ -8,7 +8,7 @@ import pytest
 
 from cfepy.extra.convert.capacities import capacities_of, wrong_capacities
 from cfepy.mission import read_sections
-from cfepy.pilot.check import check_mission
+from cfepy.pilot.mission_check import check_mission
 from cfepy.status import UsageError
 from rospy_shim.types.msgs import shipped
 

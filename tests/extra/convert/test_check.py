@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.extra.convert import Profile
-from cfepy.extra.convert.check import RULES, CheckReport, Level, ProgramSources, SourcePlace, read_source, rule_of
+from cfepy.extra.convert.node_check import RULES, CheckReport, Level, ProgramSources, SourcePlace, read_source, rule_of
 from dev.convert import rules
 from dev.convert.survey import DOCUMENT, between
 from rospy_shim.types.msgs import shipped

@@ -15,7 +15,7 @@ from cfepy.osal import OS_MAX_FILE_NAME
 from cfepy.status import UsageError
 from dev.convert.ping import ping_package
 from rospy_shim.parameters.table import ROW_BYTES
-from rospy_shim.roslaunch.plan import app_name
+from rospy_shim.roslaunch.launch_plan import app_name
 
 
 def convert(package: Path, out: Path, *more: str) -> int:

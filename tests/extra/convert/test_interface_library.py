@@ -11,7 +11,7 @@ import pytest
 from cfepy.cli.main import main
 from cfepy.extra.c import cpp_compiler
 from cfepy.extra.convert.build import LANGUAGE, library_includes
-from cfepy.extra.convert.messages import Profile, write_headers
+from cfepy.extra.convert.message_headers import Profile, write_headers
 from rospy_shim.types.msgs import shipped
 from tests.ros_libraries.world import universe
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.extra.convert.check.compiler import Compiled, Compiler
+from cfepy.extra.convert.node_check.compiler import Compiled, Compiler
 from dev.convert.mutate import DAMAGES, NODES, OWN, STUB, Damaging
 
 

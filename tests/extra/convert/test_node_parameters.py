@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.extra.convert.build import build_node, provided_packages
 from cfepy.extra.convert.entry import NodeEntry, parameter_rows
 from cfepy.extra.convert.packages import program_of, read_package
@@ -16,6 +15,7 @@ from cfepy.mission import Mission, read_mission
 from cfepy.pilot.plan import built_node
 from cfepy.tbl import TableImage, build
 from cfepy.tbl.packets import ACTIVATE, LOAD, VALIDATE
+from cfepy.writing.console import Console
 from dev.roscfe.building import needs_cpp
 from rospy_shim.parameters.table import pack
 from rospy_shim.types.msgs import Packages, shipped

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.extra.convert.check import programs_of
-from cfepy.extra.convert.flight import message_library
+from cfepy.extra.convert.flight_build import message_library
+from cfepy.extra.convert.node_check import programs_of
 from dev.convert.stimulus.comparing import Likeness, Part, compared
 from dev.convert.stimulus.flight import NodeFlight, ended, printed_by_node
 from dev.convert.stimulus.outcome import Outcome, log_of, outcome_of

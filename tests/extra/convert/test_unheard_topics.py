@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec, TopicMessage, TopicWatch
+from cfepy.writing.console import Console
 from dev.convert.small_missions import node, said_by, small_mission
 from dev.roscfe.building import needs_cpp
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cfepy.extra.exploration.moves import MadeMove
+from cfepy.extra.exploration.made_moves import MadeMove
 from cfepy.schedules import Move
 
 

@@ -27,7 +27,7 @@ from cfepy.extra.exploration.campaign import (
 from cfepy.extra.exploration.results_file import ResultsFile, read_results
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.extra.exploration.workers import PROCESS_DIED, Processes, Worker
-from cfepy.resources import import_path
+from cfepy.reading.resources import import_path
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 from tests.extra.exploration.fake_trials import Environment, FakeTrial, Seeds

@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 
 from cfepy.extra.exploration.campaign import Campaign
-from cfepy.extra.exploration.crews import make_crew
 from cfepy.extra.exploration.results_file import ResultsFile, read_results
 from cfepy.extra.exploration.search import make_search
 from cfepy.extra.exploration.trial import Trial
 from cfepy.extra.exploration.verdict import Verdict
+from cfepy.extra.exploration.worker_pools import make_crew
 from cfepy.extra.exploration.workers import Processes, usable_cpus
 from cfepy.pilot.plan import RunPlan
 from cfepy.schedules.schedule import Schedule

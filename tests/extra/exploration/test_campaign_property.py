@@ -15,11 +15,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cfepy.extra.exploration import crews as cluster_module
+from cfepy.extra.exploration import worker_pools as cluster_module
 from cfepy.extra.exploration.campaign import Campaign, Experiment, Job, NumberedVerdict, Take, Tally, judge
-from cfepy.extra.exploration.crews import Cluster
 from cfepy.extra.exploration.results_file import ResultsFile, read_results
 from cfepy.extra.exploration.verdict import Verdict
+from cfepy.extra.exploration.worker_pools import Cluster
 from cfepy.status import UsageError
 from tests.extra.exploration.fake_trials import FakeTrial, Seeds
 

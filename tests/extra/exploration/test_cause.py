@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import pytest
 
 from cfepy.extra.exploration.cause import Evidence, cause_of
-from cfepy.extra.exploration.deeds import (
+from cfepy.extra.exploration.made_moves import MadeMove
+from cfepy.extra.exploration.operations import (
     AWAITS,
     GETS,
     GIVES_UP,
@@ -21,7 +22,6 @@ from cfepy.extra.exploration.deeds import (
     WRITES,
     Deed,
 )
-from cfepy.extra.exploration.moves import MadeMove
 from cfepy.extra.exploration.task_look import AT, PREEMPTED, Row
 from cfepy.extra.exploration.verdict import DEADLOCK, ENDED, RAISED, Failure
 from tests.extra.exploration.made import moved

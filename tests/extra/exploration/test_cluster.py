@@ -16,14 +16,14 @@ import pytest
 
 from cfepy.extra.exploration.campaign import Campaign, Inline, NumberedVerdict, Tally
 from cfepy.extra.exploration.cluster_worker import check_versions
-from cfepy.extra.exploration.crews import Cluster
+from cfepy.extra.exploration.mission_transfer import files_read, ship
 from cfepy.extra.exploration.results_file import ResultsFile, read_results
-from cfepy.extra.exploration.shipment import files_read, ship
 from cfepy.extra.exploration.trial import Trial
 from cfepy.extra.exploration.verdict import Verdict
+from cfepy.extra.exploration.worker_pools import Cluster
 from cfepy.extra.exploration.workers import PROCESS_DIED
 from cfepy.pilot.plan import RunPlan
-from cfepy.resources import import_path, shipped
+from cfepy.reading.resources import import_path, shipped
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -210,7 +210,7 @@ def test_a_mission_that_cannot_fly_ends_the_campaign(cluster: LoopbackCluster) -
 
 @pytest.mark.slow
 def test_a_cluster_without_workers(deserted: LoopbackCluster, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cfepy.extra.exploration.crews.CONNECT_S", 3)
+    monkeypatch.setattr("cfepy.extra.exploration.worker_pools.CONNECT_S", 3)
     with pytest.raises(UsageError) as caught:
         Cluster(deserted.address)
     text = f"has no workers; start some (dask worker {deserted.address})"
@@ -221,7 +221,7 @@ def test_a_cluster_without_workers(deserted: LoopbackCluster, monkeypatch: pytes
 def test_a_cluster_that_loses_all_its_workers(
     cluster: LoopbackCluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cfepy.extra.exploration.crews.PATIENCE_NS", NS_PER_S)
+    monkeypatch.setattr("cfepy.extra.exploration.worker_pools.PATIENCE_NS", NS_PER_S)
 
     def lose_them(number: int, verdict: Verdict) -> None:
         if number == 20:

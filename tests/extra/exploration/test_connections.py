@@ -94,6 +94,7 @@ def test_every_policy_draws_delays(plan: RunPlan, policy: str, seeds: int) -> No
     assert [told.finding.failure.kind for told in explored(plan, policy, seeds).findings] == ["ended with an error"]
 
 
+@pytest.mark.slow
 def test_connections_are_as_the_mission_has_them_when_nobody_asks(plan: RunPlan) -> None:
     assert explored(plan, "random", 2, connect_s=None).findings == []
 

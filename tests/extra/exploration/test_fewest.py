@@ -9,7 +9,7 @@ from random import Random
 
 import pytest
 
-from cfepy.extra.exploration.moves import KnownRuns, MoveNotingPolicy
+from cfepy.extra.exploration.made_moves import KnownRuns, MoveNotingPolicy
 from cfepy.extra.exploration.shrink import Shrinker, Shrunk
 from cfepy.extra.exploration.trial import Tried
 from cfepy.extra.exploration.verdict import Failure, Verdict

@@ -70,6 +70,7 @@ def test_schedules_that_would_part_after_the_end() -> None:
     assert verdicts == [trial.run(schedule) for schedule in schedules]
 
 
+@pytest.mark.slow
 def test_forked_flights_have_the_moves_of_whole_ones() -> None:
     trial = Trial(RunPlan(("capture",), seconds=0.605, tasks="greenlet"))
     schedule = Schedule.parse("random:1:from=600ms")

@@ -9,7 +9,7 @@ import pytest
 from cfepy.extra.exploration.result_watch import Result, differences, digest_of
 from cfepy.extra.exploration.trial import Trial
 from cfepy.mission import read_mission
-from cfepy.monitors.demands import demands_of
+from cfepy.monitors.run_rules import demands_of
 from cfepy.pilot.plan import RunPlan
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError

@@ -28,6 +28,7 @@ def first_failing(trial: Trial, options: str = "") -> Schedule:
     return next(schedule for schedule in schedules if trial.run(schedule).failed)
 
 
+@pytest.mark.slow
 def test_it_ends_with_few_preemptions_and_the_same_failure(tmp_path: Path) -> None:
     trial = Trial(RunPlan((str(missions.write_late(tmp_path)),), seconds=1.5, tasks="greenlet"))
     schedule = first_failing(trial)

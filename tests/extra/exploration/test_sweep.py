@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.extra.exploration.crews import make_crew
-from cfepy.extra.exploration.lot import answers
+from cfepy.extra.exploration.batch import answers
 from cfepy.extra.exploration.sweep import Point, PointNumbers, Sweep, SweepRow, TopicNumbers, knees, sweep_table
 from cfepy.extra.exploration.sweep_points import points_of
+from cfepy.extra.exploration.worker_pools import make_crew
 from cfepy.mission import read_mission
 from cfepy.pilot.plan import RunPlan
 

@@ -150,6 +150,7 @@ rospy.sleep(0.2)
 """
 
 
+@pytest.mark.slow
 def test_a_message_may_come_before_the_constructor_is_done(tmp_path: Path) -> None:
     echo = missions.write(tmp_path, {"ECHO": HALF_MADE})
     assert not trial(echo, 0.8).run(Schedule()).failed

@@ -11,7 +11,7 @@ import pytest
 from cfepy.extra.reports.board_fit import fit_of
 from cfepy.pilot import pilot
 from cfepy.pilot.plan import RunPlan
-from cfepy.resources import shipped
+from cfepy.reading.resources import shipped
 
 CAPTURE = shipped("missions") / "capture"
 

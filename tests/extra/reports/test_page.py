@@ -16,10 +16,10 @@ from cfepy.extra.reports.collector import Collector
 from cfepy.extra.reports.html_text import json_text, numbers_in
 from cfepy.extra.reports.page import About, page_of
 from cfepy.ground.series import SeriesRecorder
-from cfepy.markup import escaped
 from cfepy.pilot import RunPlan, pilot
 from cfepy.rtos import NotingPolicy
 from cfepy.schedules import Move, Schedule
+from cfepy.writing.markup import escaped
 from tests.extra.reports import looked_at
 from tests.extra.reports.conftest import Shown
 from tests.mission.flights import write_mission

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 from xmlrpc.client import ServerProxy, Transport
 
-from cfepy.console import Console
 from cfepy.extra.ros_host import RosHost, ServedMaster
 from cfepy.extra.ros_host.tcpros import TcprosFrames, frame, pack_header, parse_header
 from cfepy.extra.ros_host.world import RosWorld
@@ -18,6 +17,7 @@ from cfepy.extra.ros_host.xmlrpc_server import XmlRpcServer
 from cfepy.io import Listening, listening_socket
 from cfepy.io.host_network import HostNetwork
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.io.echo import PATIENCE_NS, pacer
 
 CALLER = "/outside"

@@ -8,10 +8,10 @@ from pathlib import Path
 import msgpack
 import pytest
 
-from cfepy.console import Console
 from cfepy.extra.ros_host.tcpros import frame
 from cfepy.io import peer_socket
 from cfepy.mission import Arrival, Mission
+from cfepy.writing.console import Console
 from tests.extra.ros_host.peers import CALLER, SERVER, SET_BOOL, STRING, TALKER, Joined, OutsideSpeaker, joined, text
 
 

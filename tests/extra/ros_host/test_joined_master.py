@@ -18,8 +18,8 @@ from cfepy.extra.ros_host.world import OwnGraph
 from cfepy.nodes import RosConfig
 from cfepy.status import UsageError
 from rospy_shim.graph.graph import Graph
-from rospy_shim.master.calls import call
 from rospy_shim.master.master_api import MasterApi
+from rospy_shim.master.xmlrpc_calls import call
 from tests.extra.ros_host.peers import CALLER, STRING, TALKER, Joined, OutsideSpeaker, joined
 
 NOBODY = "http://127.0.0.1:1/"

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.extra.ros_host import RosHost, ServedMaster
 from cfepy.extra.ros_host.tcpros import frame
 from cfepy.ground import dictionary_of
@@ -14,8 +13,9 @@ from cfepy.ground.shown_packets import PacketSerializer, type_of
 from cfepy.io.host_network import HostNetwork
 from cfepy.mission import Mission
 from cfepy.msg import Layout, Telemetry, command
-from cfepy.pilot.check import check_mission
+from cfepy.pilot.mission_check import check_mission
 from cfepy.status import UsageError
+from cfepy.writing.console import Console
 from rospy_shim.types.msgs import from_full_text
 from tests.extra.ros_host.peers import OutsideSpeaker, joined, text
 

@@ -12,7 +12,7 @@ import pytest
 
 from cfepy.extra.viewers import bounded_json, websocket_listener
 from cfepy.extra.viewers.foxglove.protocol import FrameError, ops_of
-from cfepy.extra.viewers.rosbridge import client as client_module
+from cfepy.extra.viewers.rosbridge import rosbridge_client as client_module
 from rospy_shim.graph import outside as outside_module
 from tests.extra.ros_host.peers import TALKER
 from tests.extra.viewers.foxglove.runs import TALKER as SHOWN_TALKER

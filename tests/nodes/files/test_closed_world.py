@@ -21,7 +21,7 @@ from cfepy.journal import read_journal, record
 from cfepy.nodes import PREFIX, Overlay
 from cfepy.pilot.pilot import fly
 from cfepy.pilot.plan import NODE, RunPlan
-from cfepy.resources import import_path
+from cfepy.reading.resources import import_path
 from cfepy.schedules.schedule import Schedule
 from tests.journal.replays import assert_same_again
 
@@ -115,20 +115,16 @@ while not rospy.is_shutdown():
 """
 
 
-@pytest.mark.parametrize("how", [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGINT])
 @pytest.mark.parametrize(
     "words",
     [
         ["node", "--for", "100000"],
-        *(
-            pytest.param(line.split(), marks=pytest.mark.slow)
-            for line in (
-                "node --for 100000 --tasks greenlet",
-                "run --for 100000 --check-determinism 2",
-                "explore --for 3 --seeds 100000 --jobs 2",
-                "explore --for 3 --seeds 100000 --from 1s",
-            )
-        ),
+        ["node", "--for", "100000", "--tasks", "greenlet"],
+        ["run", "--for", "100000", "--check-determinism", "2"],
+        ["explore", "--for", "3", "--seeds", "100000", "--jobs", "2"],
+        ["explore", "--for", "3", "--seeds", "100000", "--from", "1s"],
     ],
 )
 def test_a_signal_takes_the_files_of_a_run_away(

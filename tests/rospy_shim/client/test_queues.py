@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.mission import Mission, read_mission
+from cfepy.writing.console import Console
 from tests.rospy_shim.missions import Run, run_nodes
 
 SUBSCRIBER = """

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.console import Console
 from cfepy.mission import Mission, MissionSpec
 from cfepy.mission.limits import MissionLimits
 from cfepy.msg import command
 from cfepy.tbl import build
 from cfepy.tbl.packets import ACTIVATE, ACTIVE_BUFFER, DUMP, LOAD, VALIDATE
+from cfepy.writing.console import Console
 from rospy_shim.parameters.table import TABLES, Row, rows_for, unpack
 from rospy_shim.types.config import NodeConfig, RosConfig
 

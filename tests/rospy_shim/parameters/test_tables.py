@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.ground.files.table_file import take_apart
+from cfepy.ground.cfe_files.table_file import take_apart
 from cfepy.mission.packet_watch import PacketWatch, Seen
 from cfepy.msg import command
 from cfepy.tbl import TableHandle

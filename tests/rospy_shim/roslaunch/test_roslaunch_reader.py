@@ -11,8 +11,8 @@ import pytest
 from cfepy.reading.marked_yaml import Mistakes
 from cfepy.status import UsageError
 from rospy_shim.parameters.values import DateTime
+from rospy_shim.roslaunch.launch_plan import plan_of
 from rospy_shim.roslaunch.model import Launch
-from rospy_shim.roslaunch.plan import plan_of
 from rospy_shim.roslaunch.reader import read
 from rospy_shim.types.msgs import Packages
 

@@ -1,7 +1,7 @@
 """`cfepy console`: a standing ground console, for a mission that is flown meanwhile, or over UDP for any computer.
 
-`session` says what a line does, `flight` and `remote` are what it speaks with, `pages` lays out telemetry, `completion`
-knows how a line may go on, `saved` keeps what was sent. `screen` and `plain` are its two faces.
+`session` says what a line does, `flown_craft` and `remote` are what it speaks with, `pages` lays out telemetry,
+`completion` knows how a line may go on, `saved` keeps what was sent. `screen` and `plain` are its two faces.
 """
 
 from __future__ import annotations
@@ -15,23 +15,23 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.cli import flight_add_ons
-from cfepy.cli.failures import check_writable, note, tell
 from cfepy.cli.flight_options import check_pace
+from cfepy.cli.ground.command_target import RemoteHost, host_of
 from cfepy.cli.ground.console.pages import PacketBoard
 from cfepy.cli.ground.console.saved import SavedScript
 from cfepy.cli.ground.console.session import REPLY, ConsoleSession
-from cfepy.cli.ground.target import RemoteHost, host_of
-from cfepy.cli.host import Interrupts
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of, refuse_run_options
 from cfepy.cli.run.run import told_problems
+from cfepy.cli.user_notes import check_writable, note, tell
+from cfepy.cli.watched_host import Interrupts
 from cfepy.ground import CI_PORT, TO_PORT, dictionary_of, packet_of
 from cfepy.io import TypedLines, own_address, send
 from cfepy.mission import MissionSpec, read_mission
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
-    from cfepy.cli.ground.console.flight import FlownCraft
+    from cfepy.cli.ground.console.flown_craft import FlownCraft
     from cfepy.pilot import Flown, RunPlan
 
 ANY_ADDRESS = "0.0.0.0"
@@ -81,7 +81,7 @@ class Opening:
 
     @contextlib.contextmanager
     def _flown(self, note: Callable[[str], object]) -> Iterator[ConsoleSession]:
-        from cfepy.cli.ground.console.flight import FlownCraft
+        from cfepy.cli.ground.console.flown_craft import FlownCraft
         from cfepy.cli.run.outputs import recording
 
         arguments = self._arguments

@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 from cfepy.cli.ground.console.pages import ALL, HK
 from cfepy.cli.ground.console.session import MAXIMUM, TIMES, VERBS, ConsoleSession
-from cfepy.escapes import visible_line
 from cfepy.ground import EVENT_TYPES, Dictionary
 from cfepy.msg import Command, Layout, Telemetry
 from cfepy.script import APP_STATES, OPERATORS, RESET_TYPES
+from cfepy.writing.escapes import visible_line
 
 _INDEX = re.compile(r"\[\d+\]$")
 THINGS = ("event", "tlm", "app", "console", "file", "no")

@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
-from cfepy.escapes import visible_line
 from cfepy.ground import Decoded, Dictionary
 from cfepy.mission import Seen
 from cfepy.units import NS_PER_S
+from cfepy.writing.escapes import visible_line
 
 HK, ALL = "hk", "all"
 TITLE, NAME, VALUE, CHANGED = "title", "name", "value", "changed"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from cfepy.cli.ground.command_target import RemoteHost
 from cfepy.cli.ground.console.saved import SavedScript
-from cfepy.cli.ground.target import RemoteHost
-from cfepy.cli.host import Interrupts
+from cfepy.cli.watched_host import Interrupts
 from cfepy.ground import Dictionary
 from cfepy.io import UdpListener
 from cfepy.io import send as send_datagram

@@ -25,12 +25,12 @@ from textual.widgets import Input, RichLog, Static
 from cfepy.cli.ground.console import pages
 from cfepy.cli.ground.console.completion import Completer, Completion
 from cfepy.cli.ground.console.session import BAD, CONSOLE, EVENT, GOOD, REPLY, TYPED_LINE, ConsoleSession, Entry
-from cfepy.cli.host import PATIENCE_NS, STDERR
 from cfepy.cli.main import INTERRUPTED
-from cfepy.escapes import visible, visible_line
+from cfepy.cli.watched_host import PATIENCE_NS, STDERR
 from cfepy.ground import EVENT_TYPES
 from cfepy.rtos import Stopwatch
 from cfepy.units import NS_PER_S
+from cfepy.writing.escapes import visible, visible_line
 
 OpenSession = Callable[[Callable[[str], object]], AbstractContextManager[ConsoleSession]]
 

@@ -15,7 +15,6 @@ from typing import NamedTuple, Protocol, TypeVar
 from cfepy.cli.ground.console.pages import PacketBoard
 from cfepy.cli.ground.console.saved import SavedScript, when_of
 from cfepy.cli.options import LONGEST_S, count_of, factor_of, seconds_of
-from cfepy.escapes import visible, visible_line
 from cfepy.ground import EVENT_IDS, EVENT_TYPES, DecodedEvent
 from cfepy.mission import Seen, receivers
 from cfepy.msg import MsgType, get_type
@@ -25,6 +24,7 @@ from cfepy.rtos import ENDLESS, Stopwatch
 from cfepy.script import OVER, TYPED, StandingScript, Step, StepVerdict
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
+from cfepy.writing.escapes import visible, visible_line
 
 T = TypeVar("T")
 

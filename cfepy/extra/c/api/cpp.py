@@ -11,8 +11,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from cfepy.extra.c.calls import DESCRIPTOR
+from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.engine import engine
-from cfepy.extra.c.faults import CFault
 
 if TYPE_CHECKING:
     from cfepy.extra.c.calls import Declarations

@@ -11,7 +11,7 @@ import os
 from collections.abc import Callable
 from typing import IO, TYPE_CHECKING
 
-from cfepy.extra.c.faults import CFault
+from cfepy.extra.c.crashes import CFault
 
 if TYPE_CHECKING:
     from cfepy.extra.c.calls import Declarations

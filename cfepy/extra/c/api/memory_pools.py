@@ -10,10 +10,10 @@ import struct
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cfepy.config import ES_MEM_BLOCK_SIZES
+from cfepy.config.platform import ES_MEM_BLOCK_SIZES
 from cfepy.es import MAX_BUCKETS, ForeignMemory, MemPool, PoolBlock, min_size
 from cfepy.extra.c.api.pointers import need
-from cfepy.extra.c.faults import CFault
+from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.guard import POISON, Guard
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CFE_ES_NO_RESOURCE_IDS_AVAILABLE, CfeError
 

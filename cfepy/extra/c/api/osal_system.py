@@ -9,7 +9,7 @@ from struct import Struct
 from typing import TYPE_CHECKING
 
 from cfepy.extra.c.api.osal_values import BAD, check_size
-from cfepy.extra.c.faults import CFault
+from cfepy.extra.c.crashes import CFault
 from cfepy.reading.texts import to_bytes
 from cfepy.status import CfeError
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cfepy.extra.c.faults import CFault
+from cfepy.extra.c.crashes import CFault
 from cfepy.psp import PanicError
 from cfepy.reading.texts import to_bytes
 from cfepy.status import CFE_PSP_ERROR, CFE_PSP_INVALID_POINTER, OsalError

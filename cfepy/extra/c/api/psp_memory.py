@@ -11,7 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from cfepy.extra.c.arena import REGION
-from cfepy.extra.c.faults import CFault
+from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.guard import alignment_of
 from cfepy.extra.c.memory import CMemory
 from cfepy.psp import Psp

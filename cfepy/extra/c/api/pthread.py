@@ -9,7 +9,7 @@ import errno
 import platform
 from typing import TYPE_CHECKING
 
-from cfepy.extra.c.faults import CFault
+from cfepy.extra.c.crashes import CFault
 from cfepy.rtos import Mutex
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import struct
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from cfepy.extra.c.faults import CFault
+from cfepy.extra.c.crashes import CFault
 from cfepy.ids import TBL_HANDLE_BASE, UNDEFINED, make
 from cfepy.reading.texts import to_bytes
 from cfepy.status import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from cfepy.extra.c.faults import CFault
+from cfepy.extra.c.crashes import CFault
 from cfepy.reading.texts import to_bytes
 from cfepy.status import CFE_TIME_BAD_ARGUMENT, CFE_TIME_NOT_IMPLEMENTED, CfeError
 

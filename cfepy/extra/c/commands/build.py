@@ -6,8 +6,8 @@ import argparse
 import sys
 from pathlib import Path
 
-from cfepy.cli.failures import writing
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.user_notes import writing
 from cfepy.extra.c import Built, CompilerError, Options, build, headers_folder
 from cfepy.status import UsageError
 

@@ -1,8 +1,8 @@
 """Building compiled applications: from the sources of one to a shared object and table files that a mission flies.
 
 What belongs here calls the C compiler or reads what it made: the headers it is given, cfepy's or those of a cFS tree
-(`headers`), what a folder of sources consists of (`sources`, `cmake`), the compiler itself (`compiler`), tables out of
-object files (`tables`). Loading and running a shared object is not of this package.
+(`headers`), what a folder of sources consists of (`source_files`, `cmake`), the compiler itself (`compiler`), tables
+out of object files (`tables`). Loading and running a shared object is not of this package.
 """
 
 from __future__ import annotations

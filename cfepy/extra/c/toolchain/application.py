@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from cfepy.extra.c.elf import MACHINES, elf_file
 from cfepy.extra.c.toolchain.compiler import CompilerError, compile_file, is_cpp, link
 from cfepy.extra.c.toolchain.headers import CfsTree, headers_folder, read_tree
-from cfepy.extra.c.toolchain.sources import Sources, find_sources
+from cfepy.extra.c.toolchain.source_files import Sources, find_sources
 from cfepy.reading.contained_files import write_contained
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import OBJECT_BYTES

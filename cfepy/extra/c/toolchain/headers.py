@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cfepy.extra.c.build_cache import cache_folder, writing_cache
-from cfepy.extra.c.toolchain.sources import chosen_headers
+from cfepy.extra.c.toolchain.source_files import chosen_headers
 from cfepy.status import UsageError
 
 DECLARATIONS = Path(__file__).parents[1] / "headers"

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from cfepy import __version__
-from cfepy.cli.failures import check_writable
 from cfepy.cli.json_output import STDOUT, check_json, write_json, write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.user_notes import check_writable
 from cfepy.extra.convert import RULES, CheckReport, Level, Profile, check_program, programs_of, sarif_of
 from cfepy.extra.convert.commands import cpp_nodes_config
 from cfepy.status import UsageError

@@ -7,9 +7,9 @@ import os
 import sys
 from pathlib import Path
 
-from cfepy.cli.failures import tell, writing
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.user_notes import tell, writing
 from cfepy.extra.convert import (
     Level,
     Profile,

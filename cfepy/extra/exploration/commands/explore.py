@@ -13,10 +13,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, TextIO
 
-from cfepy.cli.failures import tell
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of_mission
+from cfepy.cli.user_notes import tell
 from cfepy.extra.exploration import WIDTH, Expedition, Finding, Report, Shrunk, Told, Worst
 from cfepy.extra.exploration.commands import DEFAULT_SEEDS
 from cfepy.pilot import RunPlan

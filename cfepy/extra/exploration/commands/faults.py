@@ -6,7 +6,7 @@ import argparse
 import sys
 
 from cfepy.cli.main import ENDED_WELL
-from cfepy.cli.table import Table, show_tables
+from cfepy.cli.text_table import Table, show_tables
 from cfepy.mission import read_mission
 from cfepy.pilot import booting
 

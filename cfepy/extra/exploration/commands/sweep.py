@@ -11,11 +11,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from cfepy.cli.csv_cells import write_rows
-from cfepy.cli.failures import check_writable, writing
 from cfepy.cli.json_output import STDOUT, check_json, write_json, write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of_mission
-from cfepy.cli.table import Table, show_tables
+from cfepy.cli.text_table import Table, show_tables
+from cfepy.cli.user_notes import check_writable, writing
 from cfepy.extra.exploration import (
     Knee,
     Sweep,

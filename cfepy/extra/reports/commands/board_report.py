@@ -8,7 +8,7 @@ import sys
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import plan_of_mission
-from cfepy.cli.table import Table, show_paragraph, show_tables
+from cfepy.cli.text_table import Table, show_paragraph, show_tables
 from cfepy.extra.reports import BoardFit, fit_of
 
 NO_C_STACK = "no C stack"

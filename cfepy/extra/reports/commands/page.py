@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from cfepy.cli.failures import check_writable, writing
-from cfepy.cli.looked_at import look_at
+from cfepy.cli.user_notes import check_writable, writing
+from cfepy.cli.viewed_runs import look_at
 from cfepy.extra.reports import About, Collector, PageStory, StoryRow, page_of
 from cfepy.ground import SeriesRecorder
 from cfepy.pilot import RunPlan

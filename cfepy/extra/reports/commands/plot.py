@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from cfepy.cli.failures import check_writable, writing
-from cfepy.cli.looked_at import look_at_series
+from cfepy.cli.user_notes import check_writable, writing
+from cfepy.cli.viewed_runs import look_at_series
 from cfepy.extra.reports import Curves, curves_of, picture_of, save
 from cfepy.status import UsageError
 

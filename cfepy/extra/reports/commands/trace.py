@@ -10,9 +10,9 @@ from fnmatch import fnmatchcase
 from typing import TextIO
 
 from cfepy.attachment import Attachment
-from cfepy.cli.failures import writing
-from cfepy.cli.looked_at import look_at
 from cfepy.cli.trace_text import TraceText
+from cfepy.cli.user_notes import writing
+from cfepy.cli.viewed_runs import look_at
 from cfepy.mission import Mission
 from cfepy.status import UsageError
 from cfepy.trace import TimedRecords, Trace

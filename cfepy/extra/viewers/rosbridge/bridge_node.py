@@ -21,7 +21,7 @@ from cfepy.msg import get_msg_id
 from cfepy.reading.input_limits import ROS_NAME
 from cfepy.status import CfeError, UsageError
 from cfepy.units import NS_PER_S
-from rospy_shim.master.calls import Answer, resolve
+from rospy_shim.master.xmlrpc_calls import Answer, resolve
 from rospy_shim.types.msgs import MessageClass, ServiceClass
 from rospy_shim.types.names import is_legal_name
 

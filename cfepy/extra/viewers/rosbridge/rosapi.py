@@ -17,8 +17,8 @@ from cfepy.extra.viewers.rosbridge.known_types import ANY, NotPossible
 from cfepy.ground import APPLICATIONS
 from cfepy.reading.input_limits import ROS_NAME
 from cfepy.status import UsageError
-from rospy_shim.master.calls import resolve
 from rospy_shim.master.registrations import Entries
+from rospy_shim.master.xmlrpc_calls import resolve
 from rospy_shim.parameters.tree import ParameterTree
 from rospy_shim.types.msgs import MessageClass, shipped
 from rospy_shim.types.names import is_legal_name

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.extra.viewers.listen import Admission, ListenPlace
 from cfepy.extra.viewers.rosbridge.bridge_node import BridgeNode
-from cfepy.extra.viewers.rosbridge.client import RosbridgeClient
 from cfepy.extra.viewers.rosbridge.rosapi import Rosapi
 from cfepy.extra.viewers.rosbridge.rosauth import MacCheck
+from cfepy.extra.viewers.rosbridge.rosbridge_client import RosbridgeClient
 from cfepy.extra.viewers.websocket_listener import CONNECTIONS, TABLE, Refusal, WebSocketListener, token_of
 from cfepy.ground import ShownPackets
 from cfepy.io import INTO, OUT_OF, PeerCounts

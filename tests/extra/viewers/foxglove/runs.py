@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.console import Console
 from cfepy.extra.viewers.foxglove import FoxgloveViewer
 from cfepy.extra.viewers.listen import Admission, ListenPlace
 from cfepy.io import PeerCounts
 from cfepy.mission import Mission, MissionSpec
+from cfepy.writing.console import Console
 from rospy_shim.types.config import RosConfig
 from tests.extra.viewers.foxglove.client import PATIENCE_S, PROTOCOL, WAIT_S, FoxgloveClient
 

@@ -12,11 +12,11 @@ from typing import Any
 from websockets.client import ClientProtocol
 from websockets.uri import parse_uri
 
-from cfepy.console import Console
 from cfepy.extra.viewers.listen import Admission, ListenPlace
 from cfepy.extra.viewers.rosbridge import RosbridgeServer
 from cfepy.io import HostNetwork, PeerCounts
 from cfepy.mission import Mission, MissionSpec
+from cfepy.writing.console import Console
 from tests.io.echo import PATIENCE_NS, pacer
 
 LOOPBACK = "127.0.0.1"

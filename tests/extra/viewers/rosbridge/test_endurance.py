@@ -13,7 +13,7 @@ import pytest
 from tests.extra.ros_host.peers import TALKER
 from tests.extra.viewers.rosbridge.bridged import Bridged, bridged
 
-RECONNECTS, BAD_FRAMES = 200, 10_000
+RECONNECTS, BAD_FRAMES = 100, 3_000
 BATCH = 100
 
 

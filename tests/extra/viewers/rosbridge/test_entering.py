@@ -8,8 +8,8 @@ from typing import Any
 
 import msgpack
 
-from cfepy.console import Console
 from cfepy.mission import Arrival, Mission
+from cfepy.writing.console import Console
 from rospy_shim.graph.msg_ids import msg_id_of
 from tests.extra.ros_host.peers import SERVER, TALKER
 from tests.extra.viewers.rosbridge.bridged import Bridged, bridged

@@ -82,7 +82,7 @@ JSON = st.recursive(
 
 
 @pytest.mark.slow
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(st.dictionaries(st.sampled_from("abcdefghijklmno"), JSON | st.fixed_dictionaries({"secs": JSON, "nsecs": JSON})))
 def test_whatever_comes_is_a_message_or_refused(values: dict[str, Any]) -> None:
     try:

@@ -16,7 +16,7 @@ import pytest
 from cfepy.extra.viewers import websocket_listener as listener_module
 from cfepy.extra.viewers.listen import Admission, ListenPlace
 from cfepy.extra.viewers.rosbridge import bridge_node
-from cfepy.extra.viewers.rosbridge import client as client_module
+from cfepy.extra.viewers.rosbridge import rosbridge_client as client_module
 from cfepy.extra.viewers.rosbridge.rosauth import MacCheck
 from cfepy.extra.viewers.rosbridge.server import RosbridgeServer
 from cfepy.io import PeerCounts

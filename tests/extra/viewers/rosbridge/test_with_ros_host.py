@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.console import Console
 from cfepy.extra.ros_host import RosHost, ServedMaster
 from cfepy.extra.ros_host.tcpros import frame, pack_header
 from cfepy.extra.viewers.listen import Admission, ListenPlace
 from cfepy.extra.viewers.rosbridge import RosbridgeServer
 from cfepy.io import HostNetwork, Listening, PeerCounts, listening_socket
 from cfepy.mission import Mission
+from cfepy.writing.console import Console
 from tests.extra.ros_host.peers import CALLER, SERVER, SET_BOOL, Joined, OutsideSpeaker, Wire, text
 from tests.extra.viewers.rosbridge.bridged import Bridged
 

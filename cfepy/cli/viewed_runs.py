@@ -1,0 +1,159 @@
+"""What a command looks at: the run of a journal, which is replayed, or of a mission, launch file or node, which is
+flown; for values over time also a bag.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from cfepy.attachment import Attachment
+from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.options import LONGEST_S, plan_of, refuse_run_options
+from cfepy.cli.user_notes import tell
+from cfepy.ground import SeriesRecorder, SeriesSet, bag_series, is_bag
+from cfepy.interpreter.host_system import command_line
+from cfepy.pilot import DEFAULT_S, Flown, RunPlan, fly
+from cfepy.rtos import Policy
+from cfepy.status import UsageError
+from cfepy.trace import Trace
+from cfepy.units import NS_PER_S
+
+
+def flight_plan(arguments: argparse.Namespace) -> RunPlan:
+    """The run that a command line means, 10 s by default, also of a node.
+
+    Raises:
+        UsageError: the schedule is none.
+    """
+    plan = plan_of(arguments, [arguments.source])
+    return replace(plan, seconds=DEFAULT_S) if plan.seconds is None and plan.script is None else plan
+
+
+@dataclass(frozen=True, slots=True)
+class LookedAt:
+    """A run that was looked at.
+
+    Attributes:
+        flown: the run.
+        command: does it again.
+        schedule: the schedule of the run.
+        notes: what is good to know.
+        warnings: why it is not the run that is meant; none when it is.
+        plan: of a run that was flown; None for a replay.
+    """
+
+    flown: Flown
+    command: str
+    schedule: str
+    notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    plan: RunPlan | None = None
+
+    def status(self) -> int:
+        """The exit status of the command; notes and warnings go to standard error."""
+        stall = self.flown.stall
+        tell((*self.flown.notes, *self.notes, *self.warnings, *([] if stall is None else [stall])))
+        return FOUND_PROBLEMS if self.warnings or stall is not None else ENDED_WELL
+
+
+def look_at(
+    arguments: argparse.Namespace,
+    attachments: Sequence[Attachment],
+    watched: Callable[[Policy], Policy] = lambda policy: policy,
+    trace: Trace | None = None,
+) -> LookedAt:
+    """Do the run that the command line names.
+
+    Args:
+        arguments: of the command line.
+        attachments: what watches the run.
+        watched: makes the policy that is asked of the one that decides, of a schedule with some deviations from fifo.
+        trace: takes the records; None makes one.
+
+    Raises:
+        UsageError: there is no such run, or an option is for the other kind of source.
+    """
+    if _is_journal(arguments.source):
+        return _replay(arguments, attachments, watched, trace)
+    _refuse_from_disk(arguments)
+    return _fly(arguments, attachments, watched, trace)
+
+
+def _refuse_from_disk(arguments: argparse.Namespace) -> None:
+    if arguments.from_disk:
+        raise UsageError(f"is for the replay of a journal, and {arguments.source} is none", field="--from-disk")
+
+
+def look_at_series(arguments: argparse.Namespace, words: Sequence[str]) -> tuple[SeriesSet, int]:
+    """The values over time of the run or the bag that the command line names, and the exit status of the command.
+
+    Args:
+        arguments: of the command line.
+        words: what is wanted of it, as `SeriesRecorder` takes them.
+
+    Raises:
+        UsageError: there is no such run, bag or packet, or an option is for another kind of source.
+    """
+    if is_bag(arguments.source):
+        refuse_run_options(arguments, f"{arguments.source} is a bag, which is not flown; leave it out", but=["seconds"])
+        _refuse_from_disk(arguments)
+        ends = [each for each in (arguments.seconds, arguments.until) if each is not None]
+        return bag_series(arguments.source, words, min(ends, default=None)), ENDED_WELL
+    recorder = SeriesRecorder(words)
+    return recorder, look_at(arguments, [recorder]).status()
+
+
+def _is_journal(source: str) -> bool:
+    from cfepy.journal import is_journal
+
+    try:
+        return is_journal(source)
+    except OSError:
+        return False
+
+
+def _fly(
+    arguments: argparse.Namespace,
+    attachments: Sequence[Attachment],
+    watched: Callable[[Policy], Policy],
+    trace: Trace | None,
+) -> LookedAt:
+    plan = flight_plan(arguments)
+    if arguments.until is not None:
+        plan = replace(plan, seconds=min(arguments.until, plan.seconds or LONGEST_S))
+    policy = plan.schedule.policy()
+    if policy is not None and plan.schedule.is_told:
+        policy = watched(policy)
+    flown = fly(plan, attachments=attachments, policy=policy, trace=trace)
+    return LookedAt(flown, plan.command_line(), plan.schedule.text(), plan=plan)
+
+
+def _replay(
+    arguments: argparse.Namespace,
+    attachments: Sequence[Attachment],
+    watched: Callable[[Policy], Policy],
+    trace: Trace | None,
+) -> LookedAt:
+    from cfepy.journal import Replay, read_journal, staged
+
+    refuse_run_options(arguments, f"{arguments.source} is a journal, which says that itself; leave it out")
+    journal = read_journal(arguments.source)
+    until_ns = None if arguments.until is None else round(arguments.until * NS_PER_S)
+    with staged(journal, arguments.from_disk) as stage:
+        again = Replay(journal, stage, until_ns=until_ns)
+        if again.policy is not None and journal.plan.schedule.is_told:
+            again.policy = watched(again.policy)
+        flown = again.fly(attachments, trace=trace)
+    verdict = again.verdict
+    warnings: tuple[str, ...] = ()
+    if not verdict.same:
+        warnings = (f"this is not the run of {arguments.source}: the replay differs", *stage.reasons)
+    elif not verdict.proven:
+        why = "the journal is cut off" if verdict.cut_off else "its first checkpoint comes later"
+        text = f"this may not be the run of {arguments.source}: {why}"
+        warnings = (f"{text}; it was compared up to record {verdict.agreed.records:,}",)
+    until = [] if arguments.until is None else ["--until", f"{arguments.until:g}"]
+    command = command_line(["cfepy", "replay", arguments.source, *until])
+    return LookedAt(flown, command, journal.plan.schedule.text(), stage.notes, warnings)

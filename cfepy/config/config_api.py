@@ -1,0 +1,131 @@
+"""`ConfigServices`: what an application finds as `cfe.config` (cFE's configuration registry, CFE_Config_*).
+
+NASA's keys come first, in NASA's order and so with NASA's ids but for the applications of a C build, which have keys
+there and none here. The platform configuration follows, as a mission's own keys would.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict
+
+from cfepy.config import versions
+from cfepy.config.platform import (
+    ES_MEM_BLOCK_SIZES,
+    NOT_LIMITS,
+    SB_LARGEST_BLOCK_MORE,
+    SB_MEM_BLOCK_SIZES,
+    PlatformConfig,
+)
+from cfepy.ids import CONFIGID_BASE, UNDEFINED, get_base, get_serial, make
+
+UNKNOWN = "[unknown]"
+NO_OBJECT = None
+
+Array = tuple[int, ...]
+Value = int | str | Array | None
+
+
+class ConfigServices:
+    """The registry of one processor. As NASA's, its functions never fail: an unknown id gives 0, "[unknown]", None.
+
+    Args:
+        config: the platform's limits.
+        mission: the mission's name.
+    """
+
+    get_version_string = staticmethod(versions.version_string)
+
+    def __init__(self, config: PlatformConfig, mission: str) -> None:
+        values = _build_info(config, mission) | _arrays(config) | _platform(config)
+        self._names = list(values)
+        self._values = list(values.values())
+
+    def get_value(self, config_id: int) -> int:
+        """A number; 0 when the key has none (CFE_Config_GetValue)."""
+        value = self._find(config_id)
+        return value if isinstance(value, int) else 0
+
+    def get_string(self, config_id: int) -> str:
+        """A text; "[unknown]" when the key has none (CFE_Config_GetString)."""
+        value = self._find(config_id)
+        return value if isinstance(value, str) else UNKNOWN
+
+    def get_array_value(self, config_id: int) -> Array:
+        """The numbers of an array; none when the key has no array (CFE_Config_GetArrayValue)."""
+        value = self._find(config_id)
+        return value if isinstance(value, tuple) else ()
+
+    def get_obj_pointer(self, config_id: int) -> str | None:
+        """What a key points to: a text, or None for the EDS databases, which this build has not
+        (CFE_Config_GetObjPointer)."""
+        value = self._find(config_id)
+        return value if isinstance(value, str) else NO_OBJECT
+
+    def get_name(self, config_id: int) -> str:
+        """The name of a key, without CFE_CONFIGID_; "[unknown]" when there is none (CFE_Config_GetName)."""
+        index = self._index(config_id)
+        return self._names[index] if index is not None else UNKNOWN
+
+    def get_id_by_name(self, name: str) -> int:
+        """The id of a key, 0 when there is none of that name (CFE_Config_GetIdByName).
+
+        >>> config = ConfigServices(PlatformConfig(), "demo")
+        >>> config.get_string(config.get_id_by_name("MISSION_NAME"))
+        'demo'
+        """
+        return make(CONFIGID_BASE, self._names.index(name)) if name in self._names else UNDEFINED
+
+    def iterate_all(self, callback: Callable[[int, str], object]) -> None:
+        """Call a function with id and name of each key, in the order of their ids (CFE_Config_IterateAll)."""
+        for index, name in enumerate(self._names):
+            callback(make(CONFIGID_BASE, index), name)
+
+    def _index(self, config_id: int) -> int | None:
+        index = get_serial(config_id)
+        return index if get_base(config_id) == CONFIGID_BASE and index < len(self._names) else None
+
+    def _find(self, config_id: int) -> Value:
+        index = self._index(config_id)
+        return self._values[index] if index is not None else None
+
+
+def _build_info(config: PlatformConfig, mission: str) -> dict[str, Value]:
+    """The keys of config_ids_base.cmake."""
+    release = config.release
+    major, minor, revision, mission_revision = release.number
+    return {
+        "MISSION_NAME": mission,
+        "MISSION_SRCVER": f"git:{release.official}",
+        "MISSION_EDS_DB": NO_OBJECT,
+        "MISSION_SBINTF_DB": NO_OBJECT,
+        "CORE_VERSION_MAJOR": major,
+        "CORE_VERSION_MINOR": minor,
+        "CORE_VERSION_REVISION": revision,
+        "CORE_VERSION_MISSION_REV": mission_revision,
+        "CORE_VERSION_BUILDNUM": versions.BUILD_NUMBER,
+        "CORE_VERSION_BASELINE": release.official,
+        "CORE_VERSION_DESCRIPTION": release.text("cFE"),
+        "CORE_BUILDINFO_DATE": f"cfepy {release.source}",
+        "CORE_BUILDINFO_USER": "cfepy",
+        "CORE_BUILDINFO_HOST": config.processor_name,
+        **{f"MOD_SRCVER_{module}": release.module(module) for module in versions.MODULES},
+    }
+
+
+def _arrays(config: PlatformConfig) -> dict[str, Value]:
+    """The keys of config_ids_dynamic.cmake; block sizes from the largest to the smallest."""
+    es_blocks = ES_MEM_BLOCK_SIZES[::-1]
+    return {
+        "PLATFORM_TBL_VALID_SCID": (),
+        "PLATFORM_TBL_VALID_PRID": (),
+        "PLATFORM_ES_MEM_BLOCK_SIZE": es_blocks,
+        "PLATFORM_ES_CDS_MEM_BLOCK_SIZE": es_blocks,
+        "PLATFORM_SB_MEM_BLOCK_SIZE": (config.sb_max_msg_size + SB_LARGEST_BLOCK_MORE, *SB_MEM_BLOCK_SIZES[::-1]),
+    }
+
+
+def _platform(config: PlatformConfig) -> dict[str, Value]:
+    """The fields of the platform configuration: PLATFORM_ES_MAX_APPLICATIONS; OSAL's without a prefix: OS_MAX_TASKS."""
+    fields: dict[str, Value] = {name: value for name, value in asdict(config).items() if name not in NOT_LIMITS}
+    return {name.upper() if name.startswith("os_") else f"PLATFORM_{name.upper()}": fields[name] for name in fields}

@@ -1,0 +1,93 @@
+"""Nodes in C++ for a mission of cfepy: built when the mission is read, with what its launch file says of them.
+
+MsgIds are not among it: the application ROS of the mission gives them when the node starts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from cfepy.extra.c import CompilerError
+from cfepy.extra.convert.build import BuildOptions, build_node, provided_packages
+from cfepy.extra.convert.capacities import capacities_of
+from cfepy.extra.convert.cpp_sources import collect, main_form
+from cfepy.extra.convert.entry import NodeEntry, parameter_rows
+from cfepy.extra.convert.google_test import add_google_test, uses_google_test
+from cfepy.extra.convert.message_headers import Profile
+from cfepy.extra.convert.packages import program_of, read_package
+from cfepy.extra.convert.source_names import resolved
+from cfepy.mission import CppNodesConfig
+from cfepy.nodes import CppNode
+from cfepy.status import UsageError
+from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
+
+LINES_SHOWN = 12
+"""Lines of what the compiler says that are told of a node that cannot be built."""
+
+
+def build_for_flight(
+    node: CppNode, params: Mapping[str, Any], others: Sequence[str], config: CppNodesConfig | None = None
+) -> tuple[Path, str]:
+    """Build a node; see `cfepy.mission.NodeBuilder`.
+
+    Args:
+        node: the node.
+        params: the tree of parameters.
+        others: full names of the mission's other nodes.
+        config: the mission file's section `cpp_nodes:`; None without one.
+
+    Returns:
+        The shared object and its entry point.
+
+    Raises:
+        UsageError: it cannot be built.
+        CppNodesError: the section is wrong.
+    """
+    config = config or CppNodesConfig()
+    packages = Packages(node.near, node.env)
+    package = read_package(node.folders[0], node.package)
+    if node.type not in (*package.executables(), *package.nodelets()):
+        package = read_package(node.folders[0], node.package, testing=True)
+    program = program_of(package, node.type, packages, provided_packages())
+    missing = collect(program.sources, program.includes).missing
+    if uses_google_test(missing):
+        add_google_test(program, missing)
+    name = node.full_name
+
+    def in_graph(one: str) -> str:
+        return resolved(one, node.namespace, name)
+
+    entry = NodeEntry(
+        node.app,
+        node.name,
+        node.namespace,
+        node.args,
+        remaps={
+            resolved(one, node.namespace, name): resolved(other, node.namespace, name) for one, other in node.remaps
+        },
+        rows=parameter_rows(params, name, others),
+        takes_arguments=bool(program.nodelet) or main_form(program.sources, package.folder),
+        nodelet=program.nodelet,
+        params_are_given=True,
+    )
+    library = message_library(packages)
+    options = BuildOptions(Profile(config.profile), capacities_of(config, library), config.arena_bytes)
+    try:
+        built = build_node(program, entry, library, options)
+    except CompilerError as error:
+        raise UsageError(shortened(str(error)), file=package.folder) from None
+    return built.library, built.entry
+
+
+def message_library(packages: Packages) -> Library:
+    """The message types that a node can include: those of packages near by, and those that come with cfepy."""
+    return Library([OnDisk(packages)], base=shipped())
+
+
+def shortened(text: str) -> str:
+    """The first lines of what a compiler says."""
+    lines = text.splitlines()
+    more = [f"... and {len(lines) - LINES_SHOWN} more lines"] if len(lines) > LINES_SHOWN else []
+    return "\n".join([*lines[:LINES_SHOWN], *more])

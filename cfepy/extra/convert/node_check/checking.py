@@ -1,0 +1,130 @@
+"""The check of one program: what its sources say, then what the compiler says, and the memory of its subscriptions."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from functools import cache, partial
+from pathlib import Path
+
+from cfepy.extra.convert.build import library_includes
+from cfepy.extra.convert.capacities import Capacities, capacities_of
+from cfepy.extra.convert.message_headers import Profile, write_headers
+from cfepy.extra.convert.node_check.compiler import Compiler, tell
+from cfepy.extra.convert.node_check.findings import CheckReport, SourcePlace, SubscriptionMemory
+from cfepy.extra.convert.node_check.headers import write_refusal, write_refusals
+from cfepy.extra.convert.node_check.program import ProgramSources, subscriptions
+from cfepy.extra.convert.packages import Program
+from cfepy.mission import CppNodesConfig
+from cfepy.reading.contained_files import write_contained
+from cfepy.status import UsageError
+from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
+
+LONGEST_PACKET = 32768
+"""Bytes of a packet on NASA's Software Bus (CFE_MISSION_SB_MAX_SB_MSG_SIZE)."""
+KEPT = 4
+"""Messages that a node may hold beside those that wait."""
+
+
+def check_program(
+    program: Program,
+    profile: Profile,
+    environ: Mapping[str, str],
+    config: CppNodesConfig | None = None,
+    *,
+    compile_refused: bool = True,
+) -> CheckReport:
+    """Check a program.
+
+    Args:
+        program: what it is compiled of.
+        profile: that it is to be built for.
+        environ: says where packages are, for their message definitions.
+        config: the section `cpp_nodes:` of a mission file, whose profile does not count; None without one.
+        compile_refused: whether the compiler is asked, too, where the sources alone refuse the program.
+
+    Raises:
+        UsageError: tree-sitter or the compiler is not there.
+        CppNodesError: the section is wrong.
+    """
+    config = config or CppNodesConfig()
+    report = CheckReport(program.type, profile)
+    packages = Packages(program.package.folder / "CMakeLists.txt", environ)
+    sources = ProgramSources(program.sources, program.includes, Library([OnDisk(packages)], base=shipped()))
+    sources.make_configurations(report, program)
+    sources.look(report)
+    if report.is_refused and not compile_refused:
+        return report
+    with tempfile.TemporaryDirectory(prefix="cfepy-check-") as folder:
+        scratch = Path(folder)
+        _compile(report, program, sources, scratch, capacities_of(config, sources.library))
+    _hold_to_arena(report, config)
+    report.findings.sort()
+    return report
+
+
+def _compile(
+    report: CheckReport, program: Program, sources: ProgramSources, scratch: Path, capacities: Capacities
+) -> None:
+    messages = scratch / "messages"
+    messages.mkdir()
+    real_boost = sources.takes_real_boost(report.profile)
+    refusals = Path(_refusals(real_boost).name)
+    for kind in sorted(sources.messages):
+        try:
+            write_headers([kind], messages, report.profile, sources.library, capacities)
+        except UsageError as error:
+            rule = "capacity-missing" if "capacity" in error.text else "message-definition"
+            write_refusal(messages / f"{kind}.h", error.text, rule)
+    for name, text in sources.generated.items():
+        write_contained(messages, f"/{name}", text.encode())
+    folders = [*program.includes, messages, *library_includes(real_boost), refusals]
+    compiler = Compiler(report.profile, folders, program.definitions)
+    accepted = True
+    for source in program.sources:
+        if source not in sources.files:
+            continue
+        compiled = compiler.compile(source, scratch)
+        accepted = accepted and compiled.ok
+        tell(report, source, compiled, partial(_shown, sources, source, (refusals, messages)))
+    if accepted and program.sources:
+        _measure(report, compiler, sources, scratch)
+
+
+def _measure(report: CheckReport, compiler: Compiler, sources: ProgramSources, scratch: Path) -> None:
+    """The memory of all subscriptions whose type is seen."""
+    found = list(subscriptions(report.names))
+    types = sorted({name.type for name, _ in found} & sources.messages)
+    sizes = compiler.sizes(types, scratch) if types else {}
+    for name, queue in found:
+        size = sizes.get(name.type)
+        if size is None:
+            continue
+        report.memory.append(SubscriptionMemory(name.name or name.text, name.type, queue + KEPT, size, name.place))
+        if size > LONGEST_PACKET:
+            report.add("message-too-long", name.place, f"{name.type} has {size:,} bytes")
+
+
+def _hold_to_arena(report: CheckReport, config: CppNodesConfig) -> None:
+    """The messages that subscriptions keep lie in the arena of a node that has one."""
+    total = sum(each.total for each in report.memory)
+    if total > config.arena_bytes and report.profile is not Profile.HOST:
+        mark = config.places.get("arena_bytes")
+        place = report.memory[0].place if mark is None else SourcePlace(mark.file, mark.line)
+        report.add("arena-too-small", place, f"{total:,} bytes of messages in an arena of {config.arena_bytes:,}")
+
+
+def _shown(sources: ProgramSources, source: Path, made: Sequence[Path], file: Path) -> SourcePlace | None:
+    """Where a header that was made was included; of one that another header includes, the source."""
+    folder = next((each for each in made if file.is_relative_to(each)), None)
+    if folder is None:
+        return None
+    return sources.included_at(str(file.relative_to(folder))) or SourcePlace(source)
+
+
+@cache
+def _refusals(real_boost: bool) -> tempfile.TemporaryDirectory[str]:
+    """The headers that refuse, written once for all programs; the folder goes with the process."""
+    folder = tempfile.TemporaryDirectory(prefix="cfepy-refusals-")
+    write_refusals(Path(folder.name), real_boost)
+    return folder

@@ -1,0 +1,199 @@
+"""The compiler's word on a program: its errors as findings, and the sizes of the messages that it subscribes to.
+
+It is called as for a build, with the interface library's headers, and makes nothing. What it does not accept is never
+called clean, whatever its reason: an error of its own, its end, or too much time or memory.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cfepy.extra.c import CompilerError, call_bounded, cpp_compiler
+from cfepy.extra.convert.build import profile_flags
+from cfepy.extra.convert.message_headers import Profile
+from cfepy.extra.convert.node_check.findings import CheckReport, SourcePlace
+from cfepy.extra.convert.node_check.headers import SYSTEM, is_of_ros
+from cfepy.extra.convert.node_check.rules import RULES
+
+_SAID = re.compile(r"^#error \"?(?:roscfe: )?(.*?) ?\[([a-z-]+)\]\"?$")
+_MOST = 50  # errors that are told of a source; GCC's own -fmax-errors throws all away with this format
+_HEADER = re.compile(r"^(.+): (?:No such file or directory|Is a directory|Permission denied|File name too long)$")
+_NAMESPACES = (
+    "ros|tf|tf2|tf2_ros|actionlib|nodelet|message_filters|dynamic_reconfigure|diagnostic_updater|pluginlib|boost|angles"
+    "|XmlRpc|roscpp|image_transport|roscfe|class_loader"
+)
+_OF_ROS = re.compile(rf"'[^']*\b(?:{_NAMESPACES})(?:::[^']*)?'|'(?:ROS_|ROSCONSOLE_|NODELET_|PLUGINLIB_|Duration|Rate)")
+_MISSING = re.compile(
+    r"is not a member of|has no member named|was not declared|has not been declared|does not name a"
+    r"|no matching function|is not a class|no type named|not a template|no class template named"
+    r"|is not a namespace|could not convert"
+    r"|no viable|cannot convert|incomplete type|no match for"
+)
+_EXCEPTIONS = re.compile(r"exception handling disabled")
+_TYPES = re.compile(r"'(?:dynamic_cast|typeid)'|-fno-rtti")
+_TOLD = re.compile(r"Told<(\d+), (\d+)>")
+
+
+class Diagnostic(NamedTuple):
+    """An error of the compiler.
+
+    Attributes:
+        message: its text.
+        place: where.
+    """
+
+    message: str
+    place: SourcePlace
+
+
+class Compiled(NamedTuple):
+    """What the compiler said of a file.
+
+    Attributes:
+        ok: whether it accepts the file.
+        errors: those that it tells.
+        problem: why it did not come to an end, when it did not.
+        used: all files that it read.
+    """
+
+    ok: bool
+    errors: list[Diagnostic]
+    problem: str = ""
+    used: Sequence[str] = ()
+
+
+class Compiler:
+    """Calls the compiler for the sources of one program.
+
+    Args:
+        profile: that is built for.
+        folders: of the include path, the first searched first.
+        definitions: the compiler's -D, without -D.
+    """
+
+    def __init__(self, profile: Profile, folders: Sequence[Path], definitions: Iterable[str] = ()) -> None:
+        self.command = [*cpp_compiler(), "-std=c++17", "-fsyntax-only", "-w", "-x", "c++"]
+        self.command += ["-fdiagnostics-format=json", *profile_flags(profile)]
+        self.command += [f"-D{each}" for each in definitions]
+        self.command += [word for place in folders for word in ("-I", str(place))]
+
+    def compile(self, source: Path, scratch: Path) -> Compiled:
+        """Compile a file.
+
+        Args:
+            source: the file.
+            scratch: folder for the list of files that it reads.
+
+        Raises:
+            UsageError: there is no such compiler.
+        """
+        listed = scratch / "used.d"
+        listed.unlink(missing_ok=True)
+        status, said = _call([*self.command, "-MD", "-MF", str(listed), str(source)])
+        errors, problem = _diagnostics(said)
+        if status < 0 or (status and not errors):
+            problem = problem or f"the compiler ended with {status}"
+        try:
+            used = listed.read_text(encoding="utf-8", errors="replace").replace("\\\n", " ").split()
+        except OSError:
+            used = []
+        return Compiled(status == 0 and not errors, errors, "" if status == 0 else problem, used)
+
+    def sizes(self, types: Sequence[str], scratch: Path) -> dict[str, int]:
+        """Bytes of messages, by type; empty when the compiler does not say them."""
+        asked = scratch / "sizes.cpp"
+        lines = [f"#include <{each}.h>" for each in types]
+        lines += ["template <unsigned long Index, unsigned long Size> struct Told;"]
+        names = [each.replace("/", "::") for each in types]
+        lines += [f"Told<{at}, sizeof({name})> told_{at};" for at, name in enumerate(names)]
+        asked.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        errors, _ = _diagnostics(_call([*self.command, str(asked)])[1])
+        told = [_TOLD.search(each.message) for each in errors]
+        return {types[int(match[1])]: int(match[2]) for match in told if match is not None}
+
+
+def tell(report: CheckReport, source: Path, compiled: Compiled, shown: Callable[[Path], SourcePlace | None]) -> None:
+    """Add what the compiler said of a file.
+
+    Args:
+        report: gets it.
+        source: the file.
+        compiled: what was said.
+        shown: the place that stands for a file that the user does not know; None for itself.
+    """
+    told = [(*rule_of(each.message, report.profile), each.place) for each in compiled.errors]
+    without_header = [each for each in told if each[0] in ABOUT_HEADERS]
+    for rule, message, place in (without_header or told)[:_MOST]:  # without a header all that needs it is wrong, too
+        at = shown(place.file) or place
+        seen = any(each.rule == rule and each.place[:2] == at[:2] for each in report.findings if rule in _SEEN_BEFORE)
+        if not seen:
+            report.add(rule, at, message)
+    if not compiled.ok and (compiled.problem or not compiled.errors):
+        report.add("compile-error", SourcePlace(source), compiled.problem or "the compiler does not accept it")
+    for used in compiled.used:
+        package = used.removeprefix(f"{SYSTEM}/").partition("/")[0]
+        installed = used.startswith(f"{SYSTEM}/") and is_of_ros(package)
+        if installed or used.startswith("/opt/ros/"):
+            report.add("system-ros", SourcePlace(source), f"{used} was taken")
+
+
+def rule_of(message: str, profile: Profile) -> tuple[str, str]:
+    """The rule that an error of the compiler falls under, and what a finding says of it."""
+    said = _SAID.match(message)
+    if said is not None and said[2] in RULES:
+        return said[2], said[1]
+    header = _HEADER.match(message)
+    if header is not None:
+        return "include-unknown", f"{header[1]} is not found"
+    if profile is not Profile.HOST and _EXCEPTIONS.search(message):
+        return "throw", message
+    if profile is not Profile.HOST and _TYPES.search(message):
+        return "rtti", message
+    if _MISSING.search(message) and _OF_ROS.search(message):
+        return "api-missing", message
+    return "compile-error", message
+
+
+def _call(command: list[str]) -> tuple[int, str]:
+    """Call the compiler, with bounds; its status and what it said."""
+    try:
+        return call_bounded(command)
+    except CompilerError as error:
+        return -1, str(error)
+
+
+def _diagnostics(said: str) -> tuple[list[Diagnostic], str]:
+    """The errors in what the compiler said, and what it said beside them."""
+    errors: list[Diagnostic] = []
+    other: list[str] = []
+    for line in said.splitlines():
+        try:
+            found: Any = json.loads(line) if line.startswith("[") else None
+        except ValueError:
+            found = None
+        if not isinstance(found, list):
+            other.append(line)
+            continue
+        errors += [_diagnostic(each) for each in found if isinstance(each, dict) and each.get("kind") in _BAD]
+    problem = next((line for line in other if "error" in line or "compilation terminated" not in line), "")
+    return errors, problem[:300]
+
+
+ABOUT_HEADERS = (
+    *("include-unknown", "library-outside", "ros-library", "boost-header"),
+    *("message-definition", "capacity-missing", "configuration"),
+)
+"""Rules about headers that are not there."""
+_SEEN_BEFORE = ("throw", "catch", "rtti")
+"""Rules under which sources are looked at without the compiler, too, whose columns are others."""
+_BAD = ("error", "fatal error", "internal compiler error", "sorry, unimplemented")
+
+
+def _diagnostic(found: dict[str, Any]) -> Diagnostic:
+    caret: dict[str, Any] = next((each["caret"] for each in found.get("locations", ()) if "caret" in each), {})
+    place = SourcePlace(Path(caret.get("file", "")), max(caret.get("line", 0), 0), max(caret.get("column", 0), 0))
+    return Diagnostic(" ".join(str(found.get("message", "")).split()), place)

@@ -1,0 +1,155 @@
+"""How far an exploration looked: where others could get in, how many orders there were, what may have been missed."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from dataclasses import dataclass, field
+from math import expm1, log1p
+from types import FrameType
+
+from cfepy.extra.exploration.partial_orders import OrdersSeen
+from cfepy.extra.exploration.verdict import Verdict
+from cfepy.rtos import AskingPolicy, Decision, Policy
+
+_KINDS = {
+    "cfepy.nodes.stdlib.locks": "locks",
+    "cfepy.osal.locks": "locks",
+    "cfepy.osal.semaphores": "semaphores",
+    "cfepy.osal.queues": "queues",
+    "cfepy.osal.timers": "timers",
+    "cfepy.osal.tasks": "tasks",
+    "cfepy.nodes.stdlib.thread_module": "tasks",
+    "cfepy.nodes.stdlib.time_module": "clocks",
+    "rospy_shim.client.rostime": "clocks",
+    "cfepy.time": "clocks",
+    "cfepy.osal.clock": "clocks",
+    "rospy_shim.client.timer": "timers",
+    "rospy_shim.client.service": "services",
+    "rospy_shim.client.service_proxy": "services",
+    "rospy_shim.client.params": "parameters",
+    "rospy_shim.client.shutdown": "waits of nodes",
+    "rospy_shim.client": "messages",
+    "cfepy.sb": "messages",
+    "cfepy.tbl": "tables",
+    "cfepy.evs": "events",
+    "cfepy.es": "executive services",
+    "cfepy.extra.c": "calls of C",
+    "cfepy.nodes.accesses": "lines and accesses",
+}
+"""What a point is at, by the module of the call; the longest name that fits counts."""
+_OF_THE_KERNEL = ("cfepy.rtos", "cfepy.schedules", "cfepy.mission.call_points", __name__)
+OTHER = "other calls"
+
+
+class PointCounter(AskingPolicy):
+    """Asks another policy, and counts the decisions by what their calls are.
+
+    Args:
+        inner: the policy that decides.
+
+    Attributes:
+        kinds: how many decisions there were of each kind.
+    """
+
+    def __init__(self, inner: Policy) -> None:
+        super().__init__(inner)
+        self.kinds: Counter[str] = Counter()
+
+    def choose(self, decision: Decision) -> int:
+        self.kinds["questions" if decision.question is not None else kind_of(sys._getframe(1))] += 1
+        return self._inner.choose(decision)
+
+
+def kind_of(frame: FrameType | None) -> str:
+    """What the innermost call above the kernel's is."""
+    while frame is not None:
+        module = frame.f_globals.get("__name__", "")
+        if not module.startswith(_OF_THE_KERNEL):
+            return _kind_of_module(module)
+        frame = frame.f_back
+    return OTHER
+
+
+def _kind_of_module(module: str) -> str:
+    name = module
+    while name:
+        if name in _KINDS:
+            return _KINDS[name]
+        name = name.rpartition(".")[0]
+    return OTHER
+
+
+@dataclass(slots=True)
+class Breadth:
+    """How far an exploration looked.
+
+    Attributes:
+        points: decisions under the default schedule, by kind.
+        tasks: how many tasks there were under it.
+        orders: digests of the runs that differ from each other.
+        pct: by depth, how many schedules of PCT there were for bugs of that depth.
+        gaps: functions that touch what others touch, too, with no point between, a line each.
+        seen: of a search of orders: how far it came.
+        steps: the most decisions that a run of PCT's had, or was drawn for.
+    """
+
+    points: dict[str, int] = field(default_factory=dict)
+    tasks: int = 0
+    orders: set[str] = field(default_factory=set)
+    pct: Counter[int] = field(default_factory=Counter)
+    steps: int = 1
+    gaps: list[str] = field(default_factory=list)
+    seen: OrdersSeen | None = None
+
+    def take(self, verdict: Verdict) -> None:
+        """Another schedule was flown."""
+        if verdict.trace:
+            self.orders.add(verdict.trace)
+        if verdict.schedule.kind == "pct":
+            self.pct[verdict.schedule.depth] += 1
+            self.steps = max(self.steps, verdict.schedule.steps, verdict.decisions)
+
+    def chance(self, depth: int) -> float:
+        """The chance with which a bug that needs so many ordered events has shown, at least: PCT's bound.
+
+        A schedule of PCT shows it with a probability of 1 / (tasks * steps ** (depth - 1)) or more (Burckhardt and
+        others, ASPLOS 2010). What other policies find is not counted.
+        """
+        each = 1 / (max(self.tasks, 1) * self.steps ** (depth - 1))
+        return 1.0 if each >= 1 else -expm1(self.pct[depth] * log1p(-each))
+
+    def lines(self) -> list[str]:
+        """A few lines for a person."""
+        found = ["1 order" if len(self.orders) == 1 else f"{len(self.orders)} different orders"]
+        if self.seen is not None:
+            first, *others = self.seen.lines()
+            found = [f"{found[0]}, {first}", *others]
+        kinds = sorted(self.points.items(), key=lambda each: -each[1])
+        if kinds:
+            listed = ", ".join(f"{count} at {kind}" for kind, count in kinds)
+            found.append(f"under fifo others can get in at {sum(self.points.values())} points: {listed}")
+        chances = [f"{self.chance(depth):.2g} at depth {depth}" for depth in sorted(self.pct)]
+        if chances:
+            bound = f"PCT's bound for {self.tasks} tasks and {self.steps} points"
+            found.append(f"chance that a bug has shown, at least: {', '.join(chances)} ({bound})")
+        if self.gaps:
+            found.append(
+                "accesses with no call between were one step here; --points attributes lets others in between:"
+            )
+            found += [f"  {gap}" for gap in self.gaps]
+        return found
+
+    def to_dict(self) -> dict[str, object]:
+        """Plain data."""
+        return {
+            "orders": len(self.orders),
+            "classes": None if self.seen is None else self.seen.orders,
+            "complete": self.seen is not None and self.seen.is_complete,
+            "astray": 0 if self.seen is None else self.seen.astray,
+            "points": self.points,
+            "tasks": self.tasks,
+            "steps": self.steps,
+            "gaps": self.gaps,
+            "chances": {depth: self.chance(depth) for depth in sorted(self.pct)},
+        }

@@ -1,0 +1,382 @@
+"""`FaultPlan`: the faults of a run, as a plain value: from a file, from a dictionary, or made by a program.
+
+    plan = read_plan("faults.yaml")
+    plan = FaultPlan.from_dict({"faults": [{"drop": "/odom", "probability": 0.1}]})
+
+A plan is read with errors that say where, and written again; each option has one reader and one writer, whatever kind
+of fault has it. docs/faults.md describes the kinds of faults and the form of the file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from cfepy.faults import kinds
+from cfepy.faults.call_faults import call_name, status_of
+from cfepy.faults.kinds import KINDS, FaultKind
+from cfepy.faults.timing import When
+from cfepy.reading.marked_yaml import Marked, load
+from cfepy.reading.suggestions import did_you_mean
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+ALWAYS = When()
+LONGEST_S = 1e9
+DATAGRAMS = "udp:"
+WHEN = {"at": "at_ns", "after": "after_ns", "until": "until_ns"}
+"""The options of `When` whose names in a plan are others; those are in s, these in ns."""
+ALTERNATIVES = (
+    ("bits", "bytes", "fields"),
+    ("for", "times"),
+    ("message", "times"),
+    ("explored", "probability"),
+    ("explored", "count"),
+    ("at", *kinds.WINDOW),
+)
+EXAMPLES = {"at": "2.5", "explored": "1", "by": "0.01", "times": "10", "extra": "0.001", "for": "0.02"}
+_TIMES = ("after", "until", "within", "for", "extra")
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One fault.
+
+    Attributes:
+        kind: a key of `cfepy.faults.kinds.KINDS`.
+        target: what it strikes, as the plan writes it; several messages or applications are several targets.
+        name: what reports call it, unique in its plan; its random numbers follow from it and the run's seed.
+        when: at which occasions.
+        options: the rest, by the names of the plan; times in ns.
+        line: in the file, 0 when there is none.
+    """
+
+    kind: str
+    target: tuple[str, ...]
+    name: str = ""
+    when: When = ALWAYS
+    options: Mapping[str, Any] = field(default_factory=dict)
+    line: int = field(default=0, compare=False)
+
+    @property
+    def text(self) -> str:
+        """What it does, in the words of the plan: "drop /odom"."""
+        return f"{self.kind} {', '.join(self.target)}"
+
+
+@dataclass(frozen=True, slots=True)
+class FaultPlan:
+    """Faults, in the order in which they look at a message.
+
+    Attributes:
+        faults: the faults; each has a name.
+        file: where they came from, for errors; empty when from nowhere.
+    """
+
+    faults: tuple[Fault, ...] = ()
+    file: str = field(default="", compare=False)
+
+    @classmethod
+    def from_dict(cls, plain: Mapping[str, Any]) -> FaultPlan:
+        """The plan of a dictionary of the form of the file.
+
+        Raises:
+            UsageError: it is no such plan.
+        """
+        return read_marked(_marked(plain, ""))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Itself as plain values, which `from_dict` takes."""
+        return {"faults": [plain_fault(fault) for fault in self.faults]}
+
+    def to_yaml(self) -> str:
+        """The text of a file with this plan."""
+        import yaml
+
+        return str(yaml.safe_dump(self.to_dict(), sort_keys=False, default_flow_style=None, width=100))
+
+
+def read_plan(path: str | Path) -> FaultPlan:
+    """Read a plan from a file.
+
+    Raises:
+        UsageError: it cannot be read, or something in it is wrong: with file, line and field.
+    """
+    return read_marked(load(Path(path), handed=True))
+
+
+def _marked(value: Any, place: str) -> Marked:
+    """A plain value as if it had been read from a file."""
+    inner = value
+    if isinstance(value, Mapping):
+        inner = {str(key): _marked(item, f"{place}.{key}".lstrip(".")) for key, item in value.items()}
+    elif isinstance(value, list | tuple):
+        inner = [_marked(item, f"{place}[{index}]") for index, item in enumerate(value)]
+    return Marked(inner, Path("fault plan"), 0, place)
+
+
+def read_marked(root: Marked) -> FaultPlan:
+    """The plan in a tree of YAML: `faults:` with a list, or the list by itself.
+
+    Raises:
+        UsageError: something in it is wrong.
+    """
+    section = root
+    if not isinstance(root.value, list):
+        sections = root.mapping(("faults",))
+        if "faults" not in sections:
+            raise root.fail("has no faults; write `faults:` and a list of them, such as `- drop: /odom`")
+        section = sections["faults"]
+    faults: list[Fault] = []
+    names: dict[str, int] = {}
+    for item in section.items():
+        fault = _fault(item, faults)
+        if fault.name in names:
+            raise item.fail(f"is the second fault that is called {fault.name!r}; names tell faults apart")
+        names[fault.name] = item.line
+        faults.append(fault)
+    return FaultPlan(tuple(faults), str(root.file))
+
+
+def _fault(item: Marked, before: list[Fault]) -> Fault:
+    fields = dict(item.mapping())
+    kind_name = _kind_of(item, fields)
+    kind = KINDS[kind_name]
+    target = _target(kind, fields.pop(kind_name))
+    name = fields.pop("name").text() if "name" in fields else _free_name(kind_name, before)
+    _check_options(item, kind_name, kind, fields)
+    when = When()
+    options: dict[str, Any] = {}
+    for option, value in fields.items():
+        read = READERS[option](value)
+        if option in kinds.OCCASIONS:
+            when = replace(when, **{WHEN.get(option, option): read})
+        else:
+            options[option] = read
+    if when.until_ns is not None and when.until_ns <= when.after_ns:
+        raise fields["until"].fail("is not later than `after`; the fault would never happen")
+    _check_datagram(item, target, options)
+    return Fault(kind_name, target, name, when, options, item.line)
+
+
+def _kind_of(item: Marked, fields: dict[str, Marked]) -> str:
+    found = [name for name in fields if name in KINDS]
+    if len(found) > 1:
+        raise item.fail(f"is both {found[0]} and {found[1]}; write them as two faults")
+    if found:
+        return found[0]
+    hints = [did_you_mean(name, KINDS) for name in fields]
+    hint = next(filter(None, hints), f"write one of {', '.join(KINDS)}, such as `drop: /odom`")
+    raise item.fail(f"says no kind of fault that is known; {hint}")
+
+
+def _free_name(kind: str, before: list[Fault]) -> str:
+    number = 1 + sum(fault.kind == kind for fault in before)
+    taken = {fault.name for fault in before}
+    while f"{kind}-{number}" in taken:
+        number += 1
+    return f"{kind}-{number}"
+
+
+def _check_options(item: Marked, name: str, kind: FaultKind, fields: dict[str, Marked]) -> None:
+    for option, value in fields.items():
+        if option not in kind.options:
+            hint = did_you_mean(option, kind.options, f"it takes name, {', '.join(kind.options)}")
+            raise value.fail(f"is no option of {name}; {hint}")
+    if kind.needed and not any(option in fields for option in kind.needed):
+        wanted = kind.needed[0] if len(kind.needed) == 1 else f"one of {', '.join(kind.needed)}"
+        raise item.fail(f"{name} needs {wanted}, such as `{kind.needed[0]}: {EXAMPLES[kind.needed[0]]}`")
+    for group in ALTERNATIVES:
+        said = [option for option in group if option in fields]
+        if len(said) > 1 and (group[0] != "at" or said[0] == "at"):
+            raise fields[said[1]].fail(f"cannot go with {said[0]}; write two faults")
+
+
+def _check_datagram(item: Marked, target: tuple[str, ...], options: dict[str, Any]) -> None:
+    if any(each.startswith(DATAGRAMS) for each in target):
+        if not all(each.startswith(DATAGRAMS) for each in target):
+            raise item.fail("mixes messages and datagrams; write them as two faults")
+        wrong = [option for option in ("from", "to", "unit", "fields", "checksum") if option in options]
+        if wrong:
+            raise item.fail(f"is about datagrams, which have no {wrong[0]}")
+
+
+# -- targets -----------------------------------------------------------------------------------------------------------
+def _target(kind: FaultKind, entry: Marked) -> tuple[str, ...]:
+    items = entry.items() if isinstance(entry.value, list) else [entry]
+    if not items or (len(items) > 1 and kind.strikes not in (kinds.MESSAGE, kinds.APP)):
+        raise entry.fail("names no target" if not items else "takes one target; write several faults")
+    return tuple(_one_target(kind.strikes, item) for item in items)
+
+
+def _one_target(strikes: str, item: Marked) -> str:
+    if strikes in (kinds.SECONDS, kinds.PPM):
+        return f"{_number(item, -LONGEST_S, LONGEST_S, 'a number, not 0, such as -2.5'):.12g}"
+    if strikes == kinds.MESSAGE and isinstance(item.value, int) and not isinstance(item.value, bool):
+        return f"0x{item.integer(1, 0xFFFF):04X}"
+    if not isinstance(item.value, str) or not item.value:
+        raise item.fail(f"is {item.plain()!r}; write the {strikes}'s name as text")
+    choices = {kinds.SIGNAL: kinds.SIGNALS, kinds.MEMORY: kinds.MEMORIES, kinds.RESET: kinds.RESETS}.get(strikes)
+    if choices is not None:
+        return _choice(choices)(item)
+    if strikes == kinds.FILE and not item.value.startswith("/"):
+        raise item.fail(f"is {item.value!r}; write a path of the virtual file system, such as /cf/hk_cpy_tbl.tbl")
+    if strikes == kinds.CALL:
+        _checked(item, call_name)
+    return item.value
+
+
+def _checked(item: Marked, check: Callable[[str], object]) -> str:
+    """A text that a function takes, whose error is told with the place."""
+    try:
+        check(item.text())
+    except UsageError as error:
+        raise error if error.file else item.fail(error.text) from None
+    return item.text()
+
+
+# -- options -----------------------------------------------------------------------------------------------------------
+def _number(item: Marked, least: float, most: float, what: str) -> float:
+    value = item.value
+    if isinstance(value, bool) or not isinstance(value, int | float) or not least <= value <= most or not value:
+        raise item.fail(f"is {item.plain()!r}; write {what}")
+    return value
+
+
+def _seconds(item: Marked) -> int:
+    value = item.value
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= LONGEST_S:
+        raise item.fail(f"is {item.plain()!r}; write a number of seconds, such as 2.5")
+    return round(value * NS_PER_S)
+
+
+def _duration(item: Marked) -> int:
+    found = _seconds(item)
+    if not found:
+        raise item.fail("is 0; write a number of seconds of more than that")
+    return found
+
+
+def _instants(item: Marked) -> tuple[int, ...]:
+    return tuple(_seconds(each) for each in item.items()) if isinstance(item.value, list) else (_seconds(item),)
+
+
+def _numbers(item: Marked) -> tuple[int, ...]:
+    return tuple(e.integer(1) for e in item.items()) if isinstance(item.value, list) else (item.integer(1),)
+
+
+def _range(item: Marked) -> tuple[int, int]:
+    """A time, or the least and the most of one."""
+    if not isinstance(item.value, list):
+        return _duration(item), _duration(item)
+    if len(item.value) != 2 or _duration(item.value[0]) > _duration(item.value[1]):
+        raise item.fail("is no range; write the least and the most number of seconds, such as [0.01, 0.05]")
+    return _duration(item.value[0]), _duration(item.value[1])
+
+
+def _probability(item: Marked) -> float:
+    return float(_number(item, 0, 1, "a probability of more than 0 and at most 1"))
+
+
+def _bytes(item: Marked) -> dict[int, int]:
+    """Positions and values, such as {16: 0xFF}; keys of YAML mappings are texts here."""
+    if not isinstance(item.value, dict) or not item.value:
+        raise item.fail('is no mapping of positions to bytes, such as {"16": 0xFF}')
+    found = {}
+    for key, value in item.value.items():
+        try:
+            found[int(key, 0)] = value.integer(0, 255)
+        except ValueError as error:
+            raise error if isinstance(error, UsageError) else value.fail(f"{key!r} is no position") from None
+    return found
+
+
+def _fields(item: Marked) -> dict[str, Any]:
+    if not isinstance(item.value, dict) or not item.value:
+        raise item.fail("is no mapping of fields to values, such as {data: 3}")
+    return {name: value.plain() for name, value in item.value.items()}
+
+
+def _choice(choices: tuple[str, ...]) -> Callable[[Marked], str]:
+    def read(item: Marked) -> str:
+        if item.value not in choices:
+            raise item.fail(f"is {item.plain()!r}; write one of {', '.join(choices)}")
+        return str(item.value)
+
+    return read
+
+
+def _positive(item: Marked) -> int:
+    return item.integer(1)
+
+
+READERS: dict[str, Callable[[Marked], Any]] = {
+    "at": _instants,
+    "after": _seconds,
+    "until": _seconds,
+    "number": _numbers,
+    "every": _positive,
+    "probability": _probability,
+    "count": _positive,
+    "explored": _positive,
+    "from": Marked.text,
+    "to": Marked.text,
+    "unit": _choice(kinds.UNITS),
+    "copies": _positive,
+    "by": _range,
+    "past": _positive,
+    "within": _duration,
+    "bits": _positive,
+    "bytes": _bytes,
+    "fields": _fields,
+    "checksum": _choice(kinds.CHECKSUMS),
+    "message": Marked.text,
+    "task": Marked.text,
+    "for": _duration,
+    "times": lambda item: float(_number(item, 0, 1e6, "how many times as much, such as 10")),
+    "extra": _duration,
+    "clock": _choice(kinds.CLOCKS),
+    "block": Marked.text,
+    "app": Marked.text,
+    "object": Marked.text,
+    "status": lambda item: _checked(item, lambda name: status_of("", name)),
+}
+
+
+def plain_fault(fault: Fault) -> dict[str, Any]:
+    """A fault as the plan writes it; what is the default is left out."""
+    target: Any = fault.target[0] if len(fault.target) == 1 else list(fault.target)
+    if KINDS[fault.kind].strikes in (kinds.SECONDS, kinds.PPM):
+        target = _plain_number(float(fault.target[0]))
+    found: dict[str, Any] = {fault.kind: target, "name": fault.name}
+    nothing = When()
+    for option in kinds.OCCASIONS:
+        value = getattr(fault.when, WHEN.get(option, option))
+        if value != getattr(nothing, WHEN.get(option, option)):
+            found[option] = _written(option, value)
+    for option, value in fault.options.items():
+        found[option] = _written(option, value)
+    return found
+
+
+def _written(option: str, value: Any) -> Any:
+    if option in _TIMES:
+        return _in_seconds(value)
+    if option == "by":
+        return _in_seconds(value[0]) if value[0] == value[1] else [_in_seconds(each) for each in value]
+    if option in ("at", "number"):
+        values = [_in_seconds(each) if option == "at" else each for each in value]
+        return values[0] if len(values) == 1 else values
+    if option == "bytes":
+        return {str(position): byte for position, byte in value.items()}
+    return _plain_number(value) if option == "times" else value
+
+
+def _in_seconds(time_ns: int) -> float | int:
+    return _plain_number(time_ns / NS_PER_S)
+
+
+def _plain_number(value: float) -> float | int:
+    return int(value) if value == int(value) else value

@@ -1,0 +1,224 @@
+"""Table files as YAML that people write and read, comments and all: `write` makes the text, `read` the file again.
+
+    table: HK.CopyTable
+    description: HK Copy Tbl
+    rows:
+    - {InputMid: 0x0801, InputOffset: 16, OutputMid: 0x089C, OutputOffset: 16, NumBytes: 4}
+
+docs/tables_and_logs.md describes the whole format. Errors say file, line and field.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from cfepy.fs import DESCRIPTION_SIZE, SUBTYPE_TBL_IMG, FileHeader, TableHeader
+from cfepy.ground.cfe_files.table_file import HEADER_FIELDS, ROW, Find, TableContents, cut, one_nan
+from cfepy.msg import Layout
+from cfepy.reading.marked_yaml import Marked, load
+from cfepy.status import UsageError
+from cfepy.tbl import PROCESSOR_ID, SPACECRAFT_ID, TableType
+from cfepy.tbl.packets import FULL_NAME_SIZE
+
+KEYS = ("table", *HEADER_FIELDS, "mark", "reserved", "offset", "bytes", "layout", "count", "rows", "data", "after")
+U32 = 0xFFFFFFFF
+WIDTH = 110
+HEX_LINE = 64
+HEXADECIMAL = re.compile(r"(mid|msg_?id|message_?id|mask|group|groupdata|buffer)$", re.IGNORECASE)
+"""Names of fields that people read in hexadecimal."""
+
+
+# -- writing -----------------------------------------------------------------------------------------------------------
+
+
+def write(values: dict[str, Any]) -> str:
+    """The YAML text of a document, a line for each row that fits on one."""
+    return "\n".join(_block(values, "")) + "\n"
+
+
+def flow(value: Any, name: str = "") -> str:
+    """A value on one line, as YAML writes it; numbers in hexadecimal where the name of their field says so."""
+    import yaml
+
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {flow(item, key)}" for key, item in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(flow(item, name) for item in value) + "]"
+    if isinstance(value, int) and not isinstance(value, bool) and value > 0 and HEXADECIMAL.search(name):
+        return f"0x{value:02X}" if name.lower().endswith("buffer") else f"0x{value:04X}"
+    line: str = yaml.safe_dump([value], default_flow_style=True, width=10**9)
+    return line.strip()[1:-1]
+
+
+def _block(value: Any, indent: str) -> Iterator[str]:
+    """The lines of a mapping or a list: each item on one line if it fits, else a block of its own below."""
+    if isinstance(value, list):
+        for item in value:
+            first, *others = _block(item, indent + "  ") if _wants_block("", item, len(indent)) else [flow(item)]
+            yield f"{indent}- {first.strip()}"
+            yield from others
+        return
+    for name, item in value.items():
+        if name in ("data", "after") and isinstance(item, str):
+            yield f"{indent}{name}: |"
+            yield from (indent + "  " + item[at : at + HEX_LINE] for at in range(0, len(item), HEX_LINE))
+        elif _wants_block(name, item, len(indent)):
+            yield f"{indent}{name}:"
+            yield from _block(item, indent + "  ")
+        else:
+            yield f"{indent}{name}: {flow(item, name)}"
+
+
+def _wants_block(name: str, item: Any, before: int) -> bool:
+    if not isinstance(item, dict | list) or not item:
+        return False
+    return name == "rows" or before + len(name) + len(flow(item, name)) > WIDTH
+
+
+# -- reading -----------------------------------------------------------------------------------------------------------
+
+
+def read(path: Path, find: Find) -> TableContents:
+    """The table file that a YAML file describes.
+
+    Args:
+        path: the YAML file.
+        find: knows the types of tables; a layout in the file goes before it.
+
+    Raises:
+        UsageError: something is wrong in it; file, line and field are given.
+    """
+    root = load(path, handed=True)
+    said = root.mapping(KEYS)
+    if "table" not in said:
+        raise root.fail("names no table; write `table: APP.Table`")
+    name = said["table"].text()
+    if "." not in name or not 0 < len(name) < FULL_NAME_SIZE:
+        raise said["table"].fail(f"is {name!r}, it must be APP.Table with at most {FULL_NAME_SIZE - 1} characters")
+    kind = own_type(said) or find(name)
+    offset = _number(said, "offset")
+    image = _image(said, kind, offset)
+    table = TableHeader(name, len(image), offset, _number(said, "reserved"))
+    file = TableContents(_header(said), table, image, _hex(said.get("after")), kind)
+    return file.marked() if _wants_mark(said) else file
+
+
+def own_type(said: dict[str, Marked]) -> TableType | None:
+    """The table's type as the file itself declares it; None when it does not."""
+    if "layout" not in said:
+        if "count" in said:
+            raise said["count"].fail("is the number of rows of a `layout`, and there is none; add it, or remove this")
+        return None
+    count = said["count"].integer(1) if "count" in said else 1
+    return TableType(said["table"].plain(), _layout(said["layout"], "row"), count)
+
+
+def _layout(marked: Marked, name: str) -> Layout:
+    fields = [(field, _field_type(kind, field)) for field, kind in marked.mapping().items()]
+    if not fields:
+        raise marked.fail("has no fields; write `Name: u16` and the like")
+    try:
+        return Layout(name, fields)
+    except UsageError as error:
+        wrong = marked.value.get((error.field or "").rpartition(".")[2], marked)
+        raise wrong.fail(error.text) from None
+
+
+def _field_type(marked: Marked, name: str) -> Any:
+    if isinstance(marked.value, dict):
+        return _layout(marked, name)
+    if isinstance(marked.value, list):
+        if len(marked.value) != 2:
+            raise marked.fail("must be two things, [{fields of a struct}, how many of them]")
+        inner, count = marked.value
+        return _layout(inner, name), count.integer(1)
+    return marked.text()
+
+
+def _header(said: dict[str, Marked]) -> FileHeader:
+    description = said["description"].text() if "description" in said else ""
+    if len(description.encode("latin-1", "replace")) >= DESCRIPTION_SIZE:
+        raise said["description"].fail(f"has more than {DESCRIPTION_SIZE - 1} characters; shorten it")
+    return FileHeader(
+        description,
+        SUBTYPE_TBL_IMG,
+        spacecraft_id=_number(said, "spacecraft_id", SPACECRAFT_ID),
+        processor_id=_number(said, "processor_id", PROCESSOR_ID),
+        application_id=_number(said, "application_id"),
+        time_seconds=_number(said, "time_seconds"),
+        time_subseconds=_number(said, "time_subseconds"),
+    )
+
+
+def _number(said: dict[str, Marked], name: str, default: int = 0) -> int:
+    return said[name].integer(0, U32) if name in said else default
+
+
+def _wants_mark(said: dict[str, Marked]) -> bool:
+    """Every file is marked, but for one that says otherwise or has something else in that place."""
+    if "mark" not in said:
+        return "reserved" not in said
+    if not isinstance(said["mark"].value, bool):
+        raise said["mark"].fail(f"is {said['mark'].plain()!r}, it must be true or false")
+    return bool(said["mark"].value)
+
+
+def _hex(marked: Marked | None) -> bytes:
+    if marked is None:
+        return b""
+    try:
+        return bytes.fromhex(str(marked.value))
+    except ValueError:
+        raise marked.fail("is not a text of hexadecimal digits, two for each byte") from None
+
+
+def _image(said: dict[str, Marked], kind: TableType | None, offset: int) -> bytes:
+    if "data" in said:
+        if "rows" in said:
+            raise said["data"].fail("cannot be there beside `rows`; remove one of them")
+        image = _hex(said["data"])
+    elif kind is None:
+        text = f"nobody declares a table {said['table'].value}; name its mission with --mission, or add a `layout`"
+        raise said["table"].fail(text)
+    else:
+        size = _number(said, "bytes", max(0, kind.size - offset))
+        image = cut(_packed(said.get("rows"), kind), offset, size)
+        if len(image) != size:
+            raise said["bytes"].fail(f"reaches past the end of the table, which has {kind.size} bytes")
+    if not image:
+        raise said["table"].fail("is a file without data, which cFE cannot load; give `rows` or `data`")
+    return image
+
+
+def _packed(rows: Marked | None, kind: TableType) -> bytes:
+    """All bytes of a table from the rows that are given."""
+    image = bytearray(kind.size)
+    number = -1
+    for row in rows.items() if rows is not None else ():
+        fields = row.mapping()
+        numbered = ROW in fields and ROW not in kind.row.fields
+        if numbered and fields[ROW].integer() <= number:
+            raise fields[ROW].fail(f"is {fields[ROW].value}, but row {number} stands before it; sort the rows")
+        number = fields[ROW].value if numbered else number + 1
+        if number >= kind.rows:
+            raise row.fail(f"is row {number}, counted from 0; {kind.name} has {kind.rows}")
+        given = {name: one_nan(value.plain()) for name, value in fields.items() if name != ROW or not numbered}
+        try:
+            image[number * kind.row.size : (number + 1) * kind.row.size] = kind.row.pack(given)
+        except UsageError as error:
+            raise _place(row, error.field or "").fail(error.text) from None
+    return bytes(image)
+
+
+def _place(row: Marked, path: str) -> Marked:
+    """The part of a row that a path, "Config[2].FcnCode", leads to, or the nearest one around it."""
+    place = row
+    for name, index in re.findall(r"(\w+)|\[(\d+)\]", path):
+        if isinstance(place.value, dict) and name in place.value:
+            place = place.value[name]
+        elif isinstance(place.value, list) and index and int(index) < len(place.value):
+            place = place.value[int(index)]
+    return place

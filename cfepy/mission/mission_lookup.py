@@ -1,0 +1,243 @@
+"""Finding the mission that a user means, and reading all that it is made of.
+
+That is a startup script with the mission file beside it (`mission.yaml`, or the script's name with `.yaml`) and the
+lock file of its MsgIds, both optional; or a launch file.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cfepy.mission.cpp_nodes import PROFILES, CppNodesConfig
+from cfepy.mission.launch_names import LAUNCH_FILES, files_near, launch_file_of_package
+from cfepy.mission.spec import MissionSpec
+from cfepy.msg import HIGHEST_VALID_MSG_ID
+from cfepy.nodes import ROSCORE_PARAMS, RosConfig
+from cfepy.reading.input_files import beginning_of, read_limited
+from cfepy.reading.input_limits import LINE_FILE_BYTES, XML_BYTES
+from cfepy.reading.marked_yaml import Mistakes, load
+from cfepy.reading.resources import shipped
+from cfepy.reading.suggestions import did_you_mean
+from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from cfepy.mission.launch import NodeBuilder
+    from cfepy.mission.mission_file import MissionSections
+
+STARTUP_SCRIPT = "startup.scr"
+MISSION_FILE = "mission.yaml"
+LOCK_FILE = "topics.lock"
+STARTUP_SUFFIX = ".scr"
+_MISSION_FILES = (STARTUP_SUFFIX, *LAUNCH_FILES)
+_LONGEST_FIRST_LINE = 200
+
+
+def shipped_missions() -> list[str]:
+    """Names of the missions that cfepy brings along, sorted."""
+    return sorted(path.parent.name for path in shipped("missions").glob(f"*/{STARTUP_SCRIPT}"))
+
+
+def find_script(mission: str) -> Path:
+    """The startup script or launch file that a user means.
+
+    Args:
+        mission: a path of a script or launch file, a folder with a startup.scr, the name of a shipped mission, that
+            with another startup script in its folder (`pathfinder/mended.scr`), or a package and the name of a launch
+            file in it, with a blank between them.
+
+    Raises:
+        UsageError: nothing of the kind.
+    """
+    path = Path(mission)
+    if os.path.isfile(path):
+        _check_kind(path)
+        return path.resolve()
+    if os.path.isfile(path / STARTUP_SCRIPT):
+        return (path / STARTUP_SCRIPT).resolve()
+    if mission in shipped_missions():
+        return shipped("missions") / mission / STARTUP_SCRIPT
+    if path.suffix == STARTUP_SUFFIX and str(path.parent) in shipped_missions():
+        script = shipped("missions") / path
+        if os.path.isfile(script):
+            return script
+    file = launch_file_of_package(mission)
+    if file is not None:
+        return file
+    names = shipped_missions()
+    hint = did_you_mean(mission, [*names, *missions_near(path)], f"cfepy brings along {', '.join(names)}")
+    text = f"no startup script, launch file or folder with a {STARTUP_SCRIPT}, and no shipped mission"
+    raise UsageError(f"{text}; {hint}", file=mission)
+
+
+def missions_near(path: Path) -> list[str]:
+    """The missions in the folder of a path, as they would be written in its place."""
+    folders = [str(each.parent) for each in path.parent.glob(f"*/{STARTUP_SCRIPT}")]
+    return sorted([*folders, *files_near(path, _MISSION_FILES)])
+
+
+def is_node(mission: str) -> bool:
+    """Whether a text names a file that is a Python program: a ROS node by itself, which is flown as one."""
+    path = Path(mission)
+    if not os.path.isfile(path):
+        return False
+    first = beginning_of(path, _LONGEST_FIRST_LINE).partition(b"\n")[0]
+    return path.suffix == ".py" or (first.startswith(b"#!") and b"python" in first)
+
+
+def _check_kind(path: Path) -> None:
+    """What is neither a startup script nor a launch file must not boot as an empty mission.
+
+    Raises:
+        UsageError: it is something else.
+    """
+    data = read_limited(path, max(LINE_FILE_BYTES, XML_BYTES))
+    if path.suffix == ".py" or data.startswith(b"#!"):
+        raise UsageError("is a program and no mission; `cfepy node` runs a ROS node by itself", file=path)
+    is_text = b"\0" not in data and any(mark in data for mark in (b"!", b"CFE_"))
+    if path.suffix not in LAUNCH_FILES and data.strip() and not is_text:
+        raise UsageError("is neither a startup script nor a launch file", file=path)
+
+
+def mission_file_of(script: Path) -> Path | None:
+    """The mission file that belongs to a startup script; None when there is none."""
+    candidates = (script.with_suffix(".yaml"), script.parent / MISSION_FILE)
+    return next((path for path in candidates if os.path.isfile(path)), None)
+
+
+def read_mission(mission: str, args: Mapping[str, str] | None = None, build: NodeBuilder | None = None) -> MissionSpec:
+    """Find a mission and read its mission file, or the launch file that it is.
+
+    Args:
+        mission: see `find_script`.
+        args: arguments for a launch file.
+        build: builds the nodes in C++ of launch files; None leaves them out.
+
+    Raises:
+        UsageError: there is no such mission, its mission file is wrong, or it takes no arguments.
+    """
+    script = find_script(mission)
+    if script.suffix in LAUNCH_FILES:
+        from cfepy.mission.launch import read_launch
+
+        return read_launch(script, args, build)
+    if args:
+        raise UsageError("only a launch file takes arguments", file=mission, field="--arg")
+    name = script.parent.name if script.name == STARTUP_SCRIPT else script.stem
+    spec = MissionSpec(name=name, folder=script.parent, script=script)
+    path = mission_file_of(script)
+    if path is not None:
+        spec = _with_mission_file(spec, path, build)
+    if spec.has_nodes:
+        spec = replace(spec, ros=replace(spec.ros, params={**ROSCORE_PARAMS, **spec.ros.params}))
+    lock = spec.folder / LOCK_FILE
+    return replace(spec, ros=read_lock(lock, spec.ros)) if os.path.isfile(lock) else spec
+
+
+def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None) -> MissionSpec:
+    """A mission as its mission file says; one without such a file imports nothing that reads it."""
+    from cfepy.mission.mission_file import read_mission_file
+
+    said = read_mission_file(path, Mistakes())
+    spec = replace(
+        spec,
+        name=spec.name if said.name is None else said.name,
+        mission_file=path,
+        board=said.board_in(spec.folder),
+        ros=said.ros,
+        limits=said.limits,
+        cfe_version=said.cfe_version,
+        compiled=said.compiled,
+        cpp_nodes=said.cpp_nodes,
+        demands=said.demands,
+        sweep=said.sweep,
+    )
+    if not said.launch:
+        return spec
+    from cfepy.mission.launch import with_launch_files
+
+    return with_launch_files(spec, said.launch, build)
+
+
+def read_sections(mission: str) -> MissionSections:
+    """The sections of a mission file; those of a mission without one are as usual.
+
+    Args:
+        mission: the file itself, or its mission; see `find_script`.
+
+    Raises:
+        UsageError: there is neither, or the file is wrong.
+    """
+    from cfepy.mission.mission_file import MissionSections, read_mission_file
+
+    named = Path(mission)
+    path = (
+        named if named.suffix in (".yaml", ".yml") and os.path.isfile(named) else mission_file_of(find_script(mission))
+    )
+    return MissionSections() if path is None else read_mission_file(path, Mistakes())
+
+
+def cpp_nodes_source(said: str) -> str:
+    """Where it stands how nodes in C++ are built, as a command line says: a profile's name, or the path of a YAML file.
+
+    Args:
+        said: a profile, a YAML file with a section `cpp_nodes:`, or the mission of one.
+
+    Raises:
+        UsageError: there is neither.
+    """
+    if said in PROFILES or (said.endswith((".yaml", ".yml")) and os.path.isfile(said)):
+        return said
+    path = mission_file_of(find_script(said))
+    if path is None:
+        raise UsageError("has no mission file", file=said, field="--cpp-nodes")
+    return str(path)
+
+
+def cpp_nodes_of(said: str) -> CppNodesConfig:
+    """How nodes in C++ are built, as a command line says.
+
+    Args:
+        said: see `cpp_nodes_source`.
+
+    Raises:
+        UsageError: there is no such file or no such section, or something in the file is wrong.
+    """
+    source = cpp_nodes_source(said)
+    if source in PROFILES:
+        return CppNodesConfig(profile=source)
+    from cfepy.mission.mission_file import read_mission_file
+
+    sections = read_mission_file(Path(source), Mistakes())
+    if "cpp_nodes" not in sections.places:
+        raise UsageError("has no section cpp_nodes", file=source, field="--cpp-nodes")
+    return sections.cpp_nodes
+
+
+def read_lock(path: Path, ros: RosConfig) -> RosConfig:
+    """The MsgIds of a lock file, with all else that is said about ROS.
+
+    Args:
+        path: the file; see `cfepy.ground.survey`.
+        ros: what the mission file says.
+
+    Raises:
+        UsageError: it is no such file, or gives a MsgId twice.
+    """
+    sections = load(path).mapping(("topics", "services"))
+    by_id = {topic.msg_id: topic.name for topic in ros.topics.values()}
+    found: dict[str, dict[str, int]] = {"topics": {}, "services": {}}
+    for title, section in sections.items():
+        for name, entry in section.mapping().items():
+            if title == "topics" and name in ros.topics:
+                continue  # the mission file has chosen another since
+            msg_id = entry.integer(1, HIGHEST_VALID_MSG_ID)
+            if msg_id in by_id:
+                text = f"has the MsgId 0x{msg_id:04X} of {by_id[msg_id]}; remove one, and lock the mission again"
+                raise entry.fail(text)
+            by_id[msg_id] = name
+            found[title][name] = msg_id
+    return replace(ros, locked_topics=found["topics"], locked_services=found["services"])

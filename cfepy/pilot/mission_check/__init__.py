@@ -1,0 +1,141 @@
+"""Everything that is wrong with a mission before it boots: startup script, code, mission file, launch files, board.
+
+Nothing of the mission is executed. Each problem says file, line, what is wrong and what to do. A check belongs here
+when its answer is certain without a run; what reads a file, for a run as for a check, belongs elsewhere.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+
+from cfepy.config.versions import RELEASES
+from cfepy.es import CFE_APP, StartupEntry, entries
+from cfepy.mission import (
+    LAUNCH_FILES,
+    NODE_SYMBOL,
+    CppNodesConfig,
+    MissionSections,
+    cpp_nodes_of,
+    find_node,
+    find_script,
+    is_node,
+    mission_environment,
+    mission_file_of,
+    read_mission_file,
+)
+from cfepy.monitors import read_demands
+from cfepy.pilot.mission_check.cfe_names import wrong_names
+from cfepy.pilot.mission_check.mission_sections import (
+    check_board,
+    check_bridge,
+    check_deadlines,
+    check_lock,
+    check_nodes_said,
+    check_packets,
+)
+from cfepy.pilot.mission_check.problem import MissionProblem, problem_of
+from cfepy.pilot.mission_check.ros_files import NodeScript, check_definitions_of, check_launch, check_nodes
+from cfepy.pilot.mission_check.startup import app_sources, check_startup
+from cfepy.plugins import Hook
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import STARTUP_BYTES
+from cfepy.reading.marked_yaml import Mistakes
+from cfepy.status import UsageError
+
+CHECK_PROFILES: Hook[Callable[[Path, list[StartupEntry], MissionSections], Iterable[MissionProblem]]] = Hook(
+    "check_profiles"
+)
+"""Checks all code of a mission together: the startup script, what it starts, what the mission file says."""
+CHECK_SECTIONS: Hook[Callable[[MissionSections], Iterable[MissionProblem]]] = Hook("check_sections")
+"""Checks what the mission file says."""
+__all__ = ["MissionProblem", "check_mission", "problem_of"]
+
+
+def check_mission(
+    mission: str, board: str | None = None, args: Mapping[str, str] | None = None, cpp_nodes: str | None = None
+) -> list[MissionProblem]:
+    """Find everything that is wrong with a mission.
+
+    Args:
+        mission: see `cfepy.mission.find_script`; or the script of a node.
+        board: name or file of a board; None takes the mission's own.
+        args: arguments for a launch file.
+        cpp_nodes: how nodes in C++ are built, in place of what the mission says; see `cfepy.mission.cpp_nodes_of`.
+
+    Returns:
+        What was found, by file and line; nothing but warnings for a mission that can boot.
+
+    Raises:
+        UsageError: there is no such mission, or it takes no arguments; what is said of nodes in C++ is wrong.
+    """
+    config = None if cpp_nodes is None else cpp_nodes_of(cpp_nodes)
+    if is_node(mission):
+        return _sorted(_check_node(Path(mission).resolve()))
+    script = find_script(mission)
+    if script.suffix in LAUNCH_FILES:
+        return _sorted(_check_launch_file(script, args or {}, config))
+    if args:
+        raise UsageError("only a launch file takes arguments", file=mission, field="--arg")
+    return _sorted(_check_folder(script, board, config))
+
+
+def _sorted(found: Iterable[MissionProblem]) -> list[MissionProblem]:
+    return sorted(dict.fromkeys(found), key=lambda problem: (str(problem.file), problem.line))
+
+
+def _check_launch_file(file: Path, args: Mapping[str, str], config: CppNodesConfig | None) -> list[MissionProblem]:
+    """A launch file by itself, in the user's environment."""
+    found, scripts = check_launch(file, args, dict(os.environ), alone=True, config=config)
+    return [*found, *check_nodes(scripts), *check_definitions_of(scripts, file)]
+
+
+def _check_node(file: Path) -> list[MissionProblem]:
+    """A node by itself, in the user's environment."""
+    scripts = [NodeScript(file, dict(os.environ))]
+    return [*check_nodes(scripts), *check_definitions_of(scripts, file)]
+
+
+def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None) -> list[MissionProblem]:
+    """A startup script with all that belongs to it."""
+    data = read_limited(script, STARTUP_BYTES)
+    mistakes = Mistakes(keep=True)
+    path = mission_file_of(script)
+    said = MissionSections() if path is None else read_mission_file(path, mistakes)
+    longest = RELEASES[said.cfe_version].longest_entry
+    started = entries(data, longest)
+    demands = read_demands(said.demands, mistakes)
+    found = [*check_startup(script, data, started, longest), *(problem_of(error, script) for error in mistakes.errors)]
+    for check_code in CHECK_PROFILES.all():
+        found += check_code(script, started, said)
+    for source, entry_point in dict.fromkeys(app_sources(script.parent, started)):
+        found += wrong_names(source, entry_point)
+    nodes = _nodes_of(script.parent, started, said)
+    for file, args in said.launch:
+        problems, scripts = check_launch(
+            file, args, mission_environment(), alone=False, config=config or said.cpp_nodes
+        )
+        found += [*problems, *check_nodes(scripts)]
+        nodes += scripts
+    found += check_nodes_said(said, started)
+    found += check_deadlines(said, started)
+    if not mistakes.errors:  # what the mission has is known when its file is right
+        found += check_packets(said, demands, script)
+        found += check_bridge(said, script)
+    for check_said in CHECK_SECTIONS.all():
+        found += check_said(said)
+    found += check_lock(script.parent, said)
+    found += check_board(script, started, said, board, script.parent)
+    return [*found, *check_nodes(nodes), *check_definitions_of(nodes, script)]
+
+
+def _nodes_of(folder: Path, started: list[StartupEntry], said: MissionSections) -> list[NodeScript]:
+    """The scripts of the nodes that the startup script itself starts."""
+    nodes = [entry for entry in started if entry.kind == CFE_APP and entry.symbol == NODE_SYMBOL]
+    found = ((entry.name, find_node(entry.path, folder)) for entry in nodes if entry.path.startswith("/cf/"))
+    return [
+        NodeScript(script, dict(said.nodes[name].env) if name in said.nodes else {})
+        for name, script in found
+        if script is not None
+    ]

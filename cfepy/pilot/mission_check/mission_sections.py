@@ -1,0 +1,190 @@
+"""What a mission file says, held against the rest of the mission: nodes, deadlines, packets, MsgIds, the board."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Iterator
+from pathlib import Path
+
+from cfepy.config.platform import PlatformConfig
+from cfepy.es import CFE_APP, CFE_LIB, StartupEntry
+from cfepy.ground import dictionary_of
+from cfepy.mission import (
+    CORE_APPS,
+    LOCK_FILE,
+    NODE_SYMBOL,
+    MissionSections,
+    read_lock,
+    read_mission,
+)
+from cfepy.monitors import Demands
+from cfepy.nodes import RosConfig
+from cfepy.pilot.mission_check.problem import MissionProblem, problem_of, with_field
+from cfepy.psp import BoardProfile, load_profile
+from cfepy.reading.marked_yaml import Marked, Mistakes
+from cfepy.reading.suggestions import did_you_mean
+from cfepy.status import UsageError
+
+
+def check_nodes_said(said: MissionSections, entries: list[StartupEntry]) -> Iterator[MissionProblem]:
+    """Entries under `nodes:` that belong to no node of the startup script, and node names given twice."""
+    symbols = {entry.name: entry.symbol for entry in entries if entry.kind == CFE_APP}
+    names: dict[str, str] = {}
+    section = said.places.get("nodes")
+    for app, place in ({} if section is None else Mistakes(keep=True).mapping(section)).items():
+        if app not in symbols:
+            yield _unknown_app(f"nodes.{app}", app, place, symbols)
+        elif symbols[app] != NODE_SYMBOL:
+            text = f"nodes.{app}: {app} is no ROS node, its entry point is {symbols[app]}"
+            text += f"; write {NODE_SYMBOL} in the startup script, or remove this"
+            yield MissionProblem(place.file, place.line, text)
+        node = said.nodes.get(app)
+        if node is not None and node.name is not None:
+            full = f"{node.namespace.rstrip('/')}/{node.name.lstrip('/')}"
+            other = names.setdefault(full, app)
+            if other != app:
+                text = f"nodes.{app}: the node name {full} is that of {other} too; change one, or ROS ends the older"
+                yield MissionProblem(place.file, place.line, text)
+
+
+def check_lock(folder: Path, said: MissionSections) -> Iterator[MissionProblem]:
+    """What is wrong with the lock file of a mission, if it has one: a MsgId that is given twice, or by nobody."""
+    path = folder / LOCK_FILE
+    if not os.path.isfile(path):
+        return
+    try:
+        read_lock(path, RosConfig(topics=said.topics))
+    except UsageError as error:
+        yield problem_of(error, path)
+
+
+def check_deadlines(said: MissionSections, entries: list[StartupEntry]) -> Iterator[MissionProblem]:
+    """Deadlines of applications that are not there."""
+    apps = [*(entry.name for entry in entries if entry.kind == CFE_APP), *CORE_APPS, "ROS"]
+    section = said.demands.get("deadlines")
+    if section is None or "launch" in said.places:
+        return
+    unread = Mistakes(keep=True)  # they were told of before
+    of_apps = unread.mapping(section).get("apps")
+    for app, place in ({} if of_apps is None else unread.mapping(of_apps)).items():
+        if app not in apps:
+            yield _unknown_app(f"deadlines.apps.{app}", app, place, apps)
+
+
+def check_packets(said: MissionSections, demands: Demands, script: Path) -> Iterator[MissionProblem]:
+    """Packets that invariants and results name, and that the mission does not have."""
+    named = [(packet, "invariants", each.name) for each in demands.invariants for packet in each.packets]
+    named += [(each.name, "results", each.name) for each in demands.results if each.is_of_packet]
+    if not named:
+        return
+    try:
+        dictionary = dictionary_of(read_mission(str(script)))
+    except UsageError:  # of a launch file or the lock file, and told there
+        return
+    for name, section, key in named:
+        place = said.demands[section].mapping()[key]
+        try:
+            if name not in dictionary.commands:
+                dictionary.telemetry_of(name)
+        except UsageError as error:
+            yield MissionProblem(place.file, place.line, f"{place.field}: {error.text}")
+
+
+def check_bridge(said: MissionSections, script: Path) -> Iterator[MissionProblem]:
+    """Packets that ROS outside is to see and that the mission does not have, and heard topics without a MsgId."""
+    section = said.places.get("ros_bridge")
+    if section is None:
+        return
+    parts = Mistakes(keep=True).mapping(section)
+    for place in Mistakes(keep=True).attempt(parts["subscribe"].items) or () if "subscribe" in parts else ():
+        if place.value in said.ros_bridge.subscribe and place.value not in said.topics:
+            text = f"{place.value} has no MsgId that an application can know; give it one under topics:"
+            yield MissionProblem(place.file, place.line, f"{place.field}: {text}")
+    if not said.ros_bridge.publish:
+        return
+    try:
+        dictionary = dictionary_of(read_mission(str(script)))
+    except UsageError:  # of something else, and told there
+        return
+    places = Mistakes(keep=True).mapping(parts["publish"])
+    for topic, bridged in said.ros_bridge.publish.items():
+        try:
+            dictionary.telemetry_of(bridged.packet)
+        except UsageError as error:
+            place = places[topic]
+            yield MissionProblem(place.file, place.line, f"{place.field}: {error.text}")
+
+
+def _unknown_app(field: str, app: str, place: Marked, apps: Collection[str]) -> MissionProblem:
+    hint = did_you_mean(app, apps, f"the startup script has {', '.join(apps) or 'none'}")
+    return MissionProblem(place.file, place.line, f"{field}: no application is called {app}; {hint}")
+
+
+def check_board(
+    script: Path, entries: list[StartupEntry], said: MissionSections, board: str | None, folder: Path
+) -> Iterator[MissionProblem]:
+    """A board that is none, limits that it does not allow, and applications and stacks that it has no room for.
+
+    Args:
+        script: the startup script.
+        entries: what it starts.
+        said: what the mission file says.
+        board: another board than the mission's own; None for that one.
+        folder: of the mission.
+    """
+    try:
+        profile = load_profile(board or said.board_in(folder))
+    except UsageError as error:
+        place = said.places.get("board")
+        if error.file is None and place is not None and board is None:
+            yield MissionProblem(place.file, place.line, with_field(error))
+        else:
+            yield problem_of(error, script)
+        return
+    try:
+        config = said.limits.config(profile, any(entry.symbol == NODE_SYMBOL for entry in entries))
+    except UsageError as error:
+        yield problem_of(error, script)
+        return
+    yield from _check_limits(script, entries, profile, config)
+    yield from _check_stacks(script, entries, profile, config)
+
+
+def _check_limits(
+    script: Path, entries: list[StartupEntry], profile: BoardProfile, config: PlatformConfig
+) -> Iterator[MissionProblem]:
+    ros = any(entry.symbol == NODE_SYMBOL for entry in entries)
+    apps = [entry for entry in entries if entry.kind == CFE_APP]
+    libraries = [entry for entry in entries if entry.kind == CFE_LIB]
+    for what, these, limit in (
+        ("application", apps, config.es_max_applications - len(CORE_APPS) - ros),
+        ("library", libraries, config.es_max_libraries),
+    ):
+        name = "es_max_applications" if what == "application" else "es_max_libraries"
+        raise_it = "the board's limit" if name in profile.limits else f"limits.{name} in the mission file"
+        for entry in these[limit:]:
+            text = f"{entry.name} is one {what} too many, {profile.name} takes {limit}"
+            text += f"; start fewer, or raise {raise_it}"
+            yield MissionProblem(script, entry.line, text)
+
+
+def _check_stacks(
+    script: Path, entries: list[StartupEntry], profile: BoardProfile, config: PlatformConfig
+) -> Iterator[MissionProblem]:
+    """Stacks and task control blocks against the RAM; pools, queues and tables come on top of them when it runs."""
+    if not profile.sram_size:
+        return
+    block = profile.memory_costs.task_control_block
+    used = len(CORE_APPS) * (config.es_start_task_stack_size + block)
+    for entry in entries:
+        if entry.kind != CFE_APP:
+            continue
+        used += entry.stack_size + block
+        if used > profile.sram_size:
+            text = f"with the stack of {entry.name} ({entry.stack_size:,} bytes) all stacks are {used:,} bytes"
+            yield MissionProblem(
+                script,
+                entry.line,
+                f"{text}, {profile.name} has {profile.sram_size:,}; choose smaller stacks or fewer applications",
+            )
+            return

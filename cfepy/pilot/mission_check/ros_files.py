@@ -1,0 +1,187 @@
+"""Launch files read to the end, scripts of nodes, and the message definitions that they use.
+
+Packages and definitions are looked for as the node would: near its script, then along its ROS_PACKAGE_PATH.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from cfepy.mission import CppNodesConfig, CppNodesError
+from cfepy.mission import app_sources as sources
+from cfepy.nodes import CppNode
+from cfepy.pilot.mission_check.problem import MissionProblem, problem_of
+from cfepy.pilot.plan import built_node
+from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.suggestions import did_you_mean
+from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from rospy_shim.roslaunch.launch_plan import LaunchPlan
+    from rospy_shim.types.msgs import Packages
+
+_KINDS = ("msg", "srv")
+
+
+class NodeScript(NamedTuple):
+    """A node's script, and the environment that it runs in."""
+
+    file: Path
+    environ: Mapping[str, str]
+
+
+def check_launch(
+    file: Path,
+    args: Mapping[str, str],
+    environ: Mapping[str, str],
+    alone: bool,
+    config: CppNodesConfig | None = None,
+) -> tuple[list[MissionProblem], list[NodeScript]]:
+    """What is wrong with a launch file and all that it includes.
+
+    Args:
+        file: the launch file.
+        args: values of its arguments.
+        environ: what it sees of the environment.
+        alone: it is the mission, so it needs a node or a test.
+        config: how the mission's nodes in C++ are built; None without a mission file.
+
+    Returns:
+        The problems, and the scripts of the nodes that can run.
+    """
+    from rospy_shim.roslaunch.launch_plan import plan_of
+
+    mistakes = Mistakes(keep=True)
+    plan = mistakes.attempt(
+        partial(plan_of, file, args, environ, cwd=Path.cwd(), mistakes=mistakes, with_compiled=True)
+    )
+    found = [problem_of(error, file) for error in mistakes.errors]
+    if plan is None:
+        return found, []
+    found += [MissionProblem(each.file, each.line, each.text, not each.is_error) for each in plan.remarks]
+    found += _built(plan, config or CppNodesConfig())
+    scripts = _scripts_of(plan)
+    if alone and not scripts and not plan.compiled and not _tests_of(plan) and all(each.is_warning for each in found):
+        found.append(MissionProblem(file, 0, "has no node that can run here"))
+    return found, scripts
+
+
+def _tests_of(plan: LaunchPlan) -> list[CppNode]:
+    """The tests in C++."""
+    return [test.compiled for test in plan.tests if test.compiled is not None]
+
+
+def _built(plan: LaunchPlan, config: CppNodesConfig) -> Iterator[MissionProblem]:
+    """Build the nodes in C++; one that cannot be built is left out of a run, unless it is required."""
+    for node in (*plan.compiled.values(), *_tests_of(plan)):
+        try:
+            built_node(node, plan.params, (), config)
+        except CppNodesError:
+            return  # which is told of the mission file
+        except UsageError as error:
+            text = f"node {node.full_name} is left out: it cannot be built: {error}"
+            yield MissionProblem(node.near, node.line, text, not node.required)
+
+
+def _scripts_of(plan: LaunchPlan) -> list[NodeScript]:
+    nodes = [*plan.nodes.values(), *(test.node for test in plan.tests)]
+    return [NodeScript(node.script, node.env) for node in nodes if node is not None and node.script is not None]
+
+
+def check_nodes(scripts: Iterable[NodeScript]) -> Iterator[MissionProblem]:
+    """What is wrong with scripts of nodes: their syntax, and the messages that they import.
+
+    Args:
+        scripts: the scripts, in any order; one that is there twice is read twice.
+    """
+    for script in scripts:
+        error = sources.syntax_error(script.file)
+        if error is not None:
+            yield MissionProblem(script.file, error[0], f"is not Python: {error[1]}")
+        else:
+            yield from _check_imports(script)
+
+
+def check_definitions_of(scripts: Iterable[NodeScript], near: Path) -> Iterator[MissionProblem]:
+    """What is wrong with the definitions of messages of the packages that nodes use or lie in.
+
+    Args:
+        scripts: the nodes.
+        near: the startup script, launch file or node that is the mission; definitions below its folder count too.
+    """
+    from rospy_shim.types.msgs import Packages, check_definitions
+
+    for script in scripts:
+        packages = Packages(script.file, script.environ)
+        imported = {package for package, _, _, _ in _message_imports(script.file)}
+        own = packages.package_of(script.file)
+        for fault in check_definitions(packages, sorted(imported if own is None else {own, *imported})):
+            yield problem_of(fault.error, script.file, fault.is_warning)
+    packages = Packages(near, {})
+    inside = [name for name in packages.names() if _is_below(packages.folders(name), near.parent)]
+    for fault in check_definitions(packages, inside):
+        yield problem_of(fault.error, near, fault.is_warning)
+
+
+def _is_below(folders: list[Path], top: Path) -> bool:
+    return any(folder.is_relative_to(top) for folder in folders)
+
+
+def _message_imports(file: Path) -> Iterator[tuple[str, str, list[str], int]]:
+    """Messages and services that a script takes whatever happens: (package, "msg" or "srv", names, line)."""
+    for node in sources.tree_of(file).body:
+        if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module is not None:
+            package, _, kind = node.module.partition(".")
+            if kind in _KINDS:
+                yield package, kind, [alias.name for alias in node.names if alias.name != "*"], node.lineno
+        elif isinstance(node, ast.Import):
+            for alias in node.names:
+                package, _, kind = alias.name.partition(".")
+                if kind in _KINDS:
+                    yield package, kind, [], node.lineno
+
+
+def _check_imports(script: NodeScript) -> Iterator[MissionProblem]:
+    """Packages of messages, and types in them, that a script imports and that are not there."""
+    from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
+
+    imports = list(_message_imports(script.file))
+    if not imports:
+        return
+    packages = Packages(script.file, script.environ)
+    library = Library([OnDisk(packages, Mistakes(keep=True))], base=shipped())
+    for package, kind, names, line in imports:
+        if _is_code(package, script, packages):
+            continue
+        if package not in library.packages():
+            what_to_do = "add it beside the node, or put it on ROS_PACKAGE_PATH"
+            hint = did_you_mean(package, library.packages(), what_to_do)
+            yield MissionProblem(script.file, line, f"there is no package {package} with messages; {hint}")
+            continue
+        known = library.names(package, "msg" if kind == "msg" else "srv") or []
+        parts = {f"{name}{part}" for name in known for part in ("Request", "Response") if kind == "srv"}
+        for name in names:
+            if name not in known and name not in parts and not name.startswith("_"):
+                hint = did_you_mean(name, known, f"it has {', '.join(known) or 'none'}")
+                yield MissionProblem(script.file, line, f"package {package} has no {kind} {name}; {hint}")
+
+
+def _is_code(package: str, script: NodeScript, packages: Packages) -> bool:
+    """Whether there is Python code that may bring messages under this name."""
+    paths = [Path(each) for each in script.environ.get("PYTHONPATH", "").split(os.pathsep) if each]
+    if any(os.path.isfile(folder / package / "__init__.py") for folder in (script.file.parent, *paths)):
+        return True
+    if any(
+        os.path.isfile(folder / package / kind / "__init__.py") for folder in packages.code_folders() for kind in _KINDS
+    ):
+        return True
+    try:
+        return any(importlib.util.find_spec(f"{package}.{kind}") is not None for kind in _KINDS)
+    except (ImportError, ValueError, AttributeError):
+        return False

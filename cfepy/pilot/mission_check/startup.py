@@ -1,0 +1,147 @@
+"""A startup script and the code that it names: entries, names, sources, entry points, the ABI of compiled code."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from cfepy.es import CFE_APP, StartupEntry, startup_script
+from cfepy.mission import CORE_APPS, NODE_SYMBOL, find_code, find_compiled, find_node
+from cfepy.mission import app_sources as sources
+from cfepy.osal import OS_MAX_FILE_NAME
+from cfepy.pilot.mission_check.problem import MissionProblem
+from cfepy.plugins import Hook, missing
+from cfepy.reading.suggestions import did_you_mean
+
+NO_SYMBOL = "NULL"
+FILES = "/cf/"
+C_SOURCES = "fsw/src"
+CheckCompiled = Callable[[Path, Sequence[StartupEntry], StartupEntry, Path], Iterator[MissionProblem]]
+CHECK_COMPILED: Hook[CheckCompiled] = Hook("check_compiled")
+"""Finds what is wrong with compiled code: startup script, what it starts, the line that names the file, the file."""
+
+
+def check_startup(script: Path, data: bytes, entries: list[StartupEntry], longest: int) -> Iterator[MissionProblem]:
+    """What is wrong with a startup script, and with the code of the applications that it starts.
+
+    Args:
+        script: its path; code is looked for in its folder.
+        data: its contents.
+        entries: what it starts.
+        longest: characters of an entry that the mission's release of cFE reads.
+    """
+    for note in startup_script.check(data, longest):
+        yield MissionProblem(script, note.line, note.explanation, note.is_warning)
+    yield from _check_names(script, entries)
+    for entry in entries:
+        yield from _check_code(script, entries, entry)
+
+
+def app_sources(folder: Path, entries: list[StartupEntry]) -> Iterator[tuple[Path, str]]:
+    """The sources of applications and libraries, each with its entry point; nodes have none.
+
+    Args:
+        folder: of the mission.
+        entries: what its startup script starts.
+    """
+    for entry in entries:
+        code = find_code(entry.path, folder) if entry.path.startswith(FILES) else None
+        source = None if code is None or entry.symbol == NODE_SYMBOL else sources.source_of(code)
+        if source is not None:
+            yield source, entry.symbol
+
+
+def _check_names(script: Path, entries: list[StartupEntry]) -> Iterator[MissionProblem]:
+    """Names that are taken; applications and libraries have a name space each."""
+    taken = {(CFE_APP, name): "the core application" for name in CORE_APPS}
+    for entry in entries:
+        if not entry.name:
+            continue  # the reader of the script has told it
+        key = (entry.kind, entry.name)
+        if key in taken:
+            text = f"the name {entry.name!r} is taken by {taken[key]}; give this one another name"
+            yield MissionProblem(script, entry.line, text)
+        taken.setdefault(key, f"line {entry.line}")
+
+
+def _check_code(script: Path, entries: list[StartupEntry], entry: StartupEntry) -> Iterator[MissionProblem]:
+    folder = script.parent
+    if not entry.path.startswith(FILES) or ".." in entry.path:
+        text = f"{entry.path} is not below /cf, which is the mission's folder; write {FILES}..."
+        yield MissionProblem(script, entry.line, text)
+        return
+    is_node = entry.symbol == NODE_SYMBOL
+    if not is_node and len(entry.path.rpartition("/")[2]) >= OS_MAX_FILE_NAME:
+        text = f"the file name in {entry.path} has {OS_MAX_FILE_NAME} characters or more; choose a shorter one"
+        yield MissionProblem(script, entry.line, text)
+        return
+    compiled = None if is_node else find_compiled(entry.path, folder)
+    if compiled is not None:
+        check = CHECK_COMPILED.first()
+        if check is None:
+            yield MissionProblem(script, entry.line, missing(f"compiled code, as {compiled.name},", "c"))
+        else:
+            yield from check(script, entries, entry, compiled)
+        return
+    code = (find_node(entry.path, folder) if is_node else None) or find_code(entry.path, folder)
+    if code is None:
+        stem = Path(entry.path).stem
+        text = f"no code for {entry.path}: no {stem}.py and no package {stem} in {folder}, no app or module {stem}"
+        yield MissionProblem(script, entry.line, text + "; add it, or correct the name")
+        return
+    if is_node and not isinstance(code, Path):
+        yield MissionProblem(
+            script, entry.line, f"the node {entry.name} is no script of the mission's folder; add the script"
+        )
+        return
+    source = sources.source_of(code)
+    if source is not None and not is_node:
+        broken = list(_check_syntax(source))
+        yield from broken or _check_symbol(script, entry, source)
+
+
+def _check_syntax(source: Path) -> Iterator[MissionProblem]:
+    for file in sources.files_of(source):
+        error = sources.syntax_error(file)
+        if error is not None:
+            yield MissionProblem(file, error[0], f"is not Python: {error[1]}")
+
+
+def _check_symbol(script: Path, entry: StartupEntry, source: Path) -> Iterator[MissionProblem]:
+    if entry.symbol in ("", NO_SYMBOL):
+        return  # what becomes of an application without one, the reader of the script has told
+    if not sources.defines(source, entry.symbol):
+        functions = [name for file in sources.files_of(source) for name in sources.functions_of(file)]
+        add = f"write {NODE_SYMBOL} if it is a ROS node, or add the function"
+        if (script.parent / C_SOURCES).is_dir():
+            add = f"if it is the application in {C_SOURCES}, compile it: cfepy build {script.parent}"
+        hint = did_you_mean(entry.symbol, functions, add)
+        yield MissionProblem(script, entry.line, f"{source} has no function {entry.symbol}; {hint}")
+    else:
+        yield from _check_entry_point(entry, source)
+
+
+def _check_entry_point(entry: StartupEntry, source: Path) -> Iterator[MissionProblem]:
+    """A function that cannot be an entry point, though it has the name, as far as its source tells."""
+    functions = [each for each in sources.tree_of(source).body if getattr(each, "name", None) == entry.symbol]
+    if len(functions) != 1 or not isinstance(functions[0], ast.FunctionDef | ast.AsyncFunctionDef):
+        return
+    function = functions[0]
+    if function.decorator_list:
+        return
+    if isinstance(function, ast.AsyncFunctionDef):
+        text = "is async: calling it runs nothing; make it a plain function"
+    elif _takes_one(function.args):
+        return
+    else:
+        text = f"does not take one argument, the handle of the services; write `def {function.name}(cfe):`"
+    yield MissionProblem(source, function.lineno, f"the entry point {function.name} of {entry.name} {text}")
+
+
+def _takes_one(arguments: ast.arguments) -> bool:
+    """Whether a function can be called with one positional argument."""
+    positional = len(arguments.posonlyargs) + len(arguments.args)
+    needed = positional - len(arguments.defaults)
+    by_name = any(default is None for default in arguments.kw_defaults)
+    return needed <= 1 and (positional >= 1 or arguments.vararg is not None) and not by_name

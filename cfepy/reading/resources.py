@@ -1,0 +1,43 @@
+"""Paths of the files that cfepy brings along (boards, ready missions, apps) and of cfepy itself.
+
+In a source checkout they lie next to the package, in an installed wheel under cfepy/share.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+from cfepy.status import UsageError
+
+
+def shipped(kind: str) -> Path:
+    """The directory of one kind of shipped files.
+
+    Args:
+        kind: "apps", "boards", "missions" or "roscfe", the interface library for nodes in C++.
+
+    Raises:
+        UsageError: this installation has no such directory.
+    """
+    package = Path(__file__).resolve().parents[1]
+    places = [package / "share" / kind, package.parent / kind]
+    for place in places:
+        if place.is_dir():
+            return place
+    looked = " nor ".join(str(place) for place in places)
+    raise UsageError(f"this installation of cfepy has no {kind}: neither {looked} exists; install cfepy again")
+
+
+def import_path() -> str:
+    """PYTHONPATH of a process that is to find cfepy, however this process found it."""
+    return os.pathsep.join(path for path in sys.path if path) or os.curdir
+
+
+def python_command() -> tuple[str, ...]:
+    """The start of a command line that runs a module of cfepy in another Python; give it `import_path`.
+
+    The working directory is kept off its path (-P): a file there may have the name of a module of Python's.
+    """
+    return (sys.executable, "-P")

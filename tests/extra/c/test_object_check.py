@@ -1,0 +1,114 @@
+"""What `cfepy check` tells of compiled applications."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.pilot.mission_check import check_mission
+from tests.extra.c.building import compile_c, console_of, fly, needs_compiler, write_mission
+
+pytestmark = needs_compiler
+
+GOOD = "void TEST_Main(void) { OS_TaskDelay(1); }"
+
+
+def problems(folder: str) -> list[str]:
+    return [each.text for each in check_mission(folder)]
+
+
+def test_a_good_one_has_no_problem(tmp_path: Path) -> None:
+    compile_c(tmp_path, "TEST", GOOD)
+    assert problems(write_mission(tmp_path, "TEST")) == []
+
+
+def test_an_entry_point_that_is_not_there(tmp_path: Path) -> None:
+    compile_c(tmp_path, "TEST", "void TEST_Mian(void) {}")
+    [text] = problems(write_mission(tmp_path, "TEST"))
+    assert "TEST.so has no function TEST_Main" in text
+    assert "TEST_Mian" in text
+
+
+def test_functions_that_nobody_has(tmp_path: Path) -> None:
+    compile_c(tmp_path, "TEST", "int NONE_One(void); int fork(void); void TEST_Main(void) { NONE_One(); fork(); }")
+    [text] = problems(write_mission(tmp_path, "TEST"))
+    assert "TEST needs NONE_One, fork, which neither cfepy nor a library of the mission has" in text
+
+
+def test_a_library_that_is_loaded_too_late(tmp_path: Path) -> None:
+    compile_c(tmp_path, "TEST", "int LIB_One(void); void TEST_Main(void) { LIB_One(); }")
+    compile_c(tmp_path, "lib", "int LIB_One(void) { return 1; }")
+    folder = write_mission(tmp_path, "TEST", libraries="CFE_LIB, lib, NULL, LIB, 0, 0, 0x0, 0;\n")
+    assert problems(folder) == []
+    script = tmp_path / "startup.scr"
+    first, second, end = script.read_text(encoding="utf-8").splitlines()
+    script.write_text("\n".join((second, first, end)), encoding="utf-8")
+    [text] = problems(folder)
+    assert "TEST needs LIB_One of the library LIB, which line 2 loads later" in text
+
+
+@pytest.mark.parametrize(
+    ("at", "change", "what"),
+    [
+        (18, b"\x28\x00", "a 64-bit little-endian file for"),
+        (4, b"\x01", "a 32-bit little-endian file for"),
+        (16, b"\x02\x00", "is no shared object"),
+        (32, b"\xff\xff\xff", "TEST.so"),
+    ],
+)
+def test_a_file_for_another_computer_or_a_damaged_one(tmp_path: Path, at: int, change: bytes, what: str) -> None:
+    made = compile_c(tmp_path, "TEST", GOOD)
+    data = bytearray(made.read_bytes())
+    data[at : at + len(change)] = change
+    made.write_bytes(data)
+    assert what in problems(write_mission(tmp_path, "TEST"))[0]
+
+
+def test_an_elf_file_never_falls_back_to_a_python_application(tmp_path: Path) -> None:
+    (tmp_path / "hk.so").write_bytes(b"\x7fELF, but not more")
+    folder = write_mission(tmp_path, "hk")
+    assert "hk.so" in problems(folder)[0]
+
+
+TABLES = """
+    typedef struct { uint32_t id; } CFE_TBL_HandleId_t;
+    typedef HANDLE CFE_TBL_Handle_t;
+    int32_t CFE_TBL_Update(CFE_TBL_Handle_t);
+    static CFE_TBL_Handle_t handle;
+    void TEST_Main(void) { CFE_TBL_Update(handle); }
+"""
+HANDLES = {False: "int16_t", True: "CFE_TBL_HandleId_t"}
+OMITS = "compiled: {{omit_deprecated: {}}}\n"
+
+
+@pytest.mark.parametrize("of_file", [False, True])
+@pytest.mark.parametrize("of_mission", [None, False, True])
+def test_an_object_of_the_other_abi_profile(tmp_path: Path, of_file: bool, of_mission: bool | None) -> None:
+    made = compile_c(tmp_path, "TEST", TABLES, f"-DHANDLE={HANDLES[of_file]}")
+    folder = write_mission(tmp_path, "TEST")
+    if of_mission is not None:
+        (tmp_path / "mission.yaml").write_text(OMITS.format(str(of_mission).lower()), encoding="utf-8")
+    found = check_mission(str(tmp_path / "startup.scr"))
+    console = console_of(fly(folder, 1))
+    if of_file is bool(of_mission):
+        assert found == []
+        assert "OMIT_DEPRECATED" not in console
+        return
+    [problem] = found
+    assert not problem.is_warning
+    assert problem.file == made
+    word = str(of_file).lower()
+    assert problem.text.startswith(f"was built with OMIT_DEPRECATED={word}, where handles of tables are")
+    assert f"write `compiled: {{omit_deprecated: {word}}}` into the mission file" in problem.text
+    assert f"OS_ModuleLoad: /cf/TEST.so was built with OMIT_DEPRECATED={word}" in console
+
+
+def test_without_debug_data_the_abi_profile_cannot_be_told(tmp_path: Path) -> None:
+    compile_c(tmp_path, "TEST", TABLES, "-DHANDLE=int16_t", "-g0")
+    folder = write_mission(tmp_path, "TEST")
+    [problem] = check_mission(folder)
+    assert problem.is_warning
+    assert "whether TEST.so have OMIT_DEPRECATED cannot be told" in problem.text
+    (tmp_path / "mission.yaml").write_text(OMITS.format("false"), encoding="utf-8")
+    assert check_mission(folder) == []

@@ -1,0 +1,17 @@
+"""Shipped files are found."""
+
+from __future__ import annotations
+
+import pytest
+
+from cfepy.reading.resources import shipped
+from cfepy.status import UsageError
+
+
+def test_boards_are_found() -> None:
+    assert (shipped("boards") / "rx64m.yaml").is_file()
+
+
+def test_an_unknown_kind_says_where_it_looked() -> None:
+    with pytest.raises(UsageError, match="no nonsense"):
+        shipped("nonsense")
