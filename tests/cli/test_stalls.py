@@ -102,8 +102,7 @@ def test_one_signal_ends_a_run(tmp_path: Path, what: str, tasks: str, how: signa
         [sys.executable, "-u", "-m", "cfepy", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     assert process.stdout is not None
-    while "ready" not in process.stdout.readline():
-        pass
+    assert any("ready" in line for line in process.stdout), process.communicate()[1]
     process.send_signal(how)
     _, err = process.communicate()
     assert process.returncode == INTERRUPTED
