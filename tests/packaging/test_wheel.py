@@ -111,7 +111,7 @@ def test_engine_kernel_and_bus_are_compiled_where_they_are_wanted(home: Path, tm
     python = str(tmp_path / "venv/bin/python")
     execute([python, "-m", "pip", "install", "--quiet", str(ROOT)], tmp_path, CFEPY_ENGINE="1")
     (packages,) = tmp_path.glob("venv/lib/python*/site-packages")
-    assert list((packages / "cfepy" / "c").glob("_engine.*"))
+    assert list((packages / "cfepy" / "extra" / "c").glob("_engine.*"))
     (tags,) = packages.glob("cfepy-*.dist-info/WHEEL")
     assert "Root-Is-Purelib: false" in tags.read_text(encoding="utf-8")
     assert cfepy(home, "--version") == f"cfepy {__version__} (kernel and bus interpreted)\n"
