@@ -12,11 +12,11 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Any, Generic, TypeVar
+from types import MappingProxyType
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from cfepy.status import UsageError
 
@@ -25,8 +25,7 @@ GROUP = "cfepy.plugins"
 """The group of entry points in which other packages offer their add-ons."""
 
 
-@dataclass(frozen=True, slots=True)
-class Plugin:
+class Plugin(NamedTuple):
     """An add-on: what it offers, by name. A name that begins with a dot is one of its own package.
 
     Attributes:
@@ -43,7 +42,7 @@ class Plugin:
     commands: tuple[str, ...] = ()
     title: str = "Add-ons"
     parser: str = ".commands"
-    hooks: Mapping[str, str] = field(default_factory=dict)
+    hooks: Mapping[str, str] = MappingProxyType({})
 
     def load(self, hook: str) -> Any:
         """Import what fills a hook, which must be one of `hooks`.
