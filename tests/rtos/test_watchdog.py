@@ -113,7 +113,7 @@ class SlowToLeave:
 
 def test_the_kernel_is_not_hit_while_it_takes_leave_of_a_task(kernel: Kernel) -> None:
     def main() -> None:
-        kernel.current.held.append(SlowToLeave())  # type: ignore[arg-type]
+        kernel.current.held.append(SlowToLeave())  # type: ignore[arg-type]  # it stands for a mutex
         spin()
 
     assert "has not given up the CPU" in ended(kernel, main).summary

@@ -21,7 +21,7 @@ from cfepy.status import UsageError
 from cfepy.time import print_ as time_text
 
 PERF_LOG: Hook[Callable[[TextIO, Sequence[Mapping[str, Any]], Mapping[str, Any]], None]] = Hook("perf_log")
-"""Writes performance data for Perfetto: the file, the entries, what is to be known of them."""
+"""Writes performance data for Perfetto; takes the open file, the entries, and facts about the data by name."""
 PERF_FACTS = ("State", "Mode", "TriggerCount", "DataCount", "InvalidMarkerReported")
 
 

@@ -83,7 +83,7 @@ def _exported(folder: Path, entry: StartupEntry) -> set[str]:
 def check_profiles(script: Path, entries: list[StartupEntry], said: MissionSections) -> Iterator[MissionProblem]:
     """Shared objects that were built for the other profile than the mission's, and those of which that is not known.
 
-    Of the latter nothing is told when the mission file says itself which profile holds.
+    An object of unknown profile gets no warning when the mission file names the profile.
 
     Args:
         script: the startup script.

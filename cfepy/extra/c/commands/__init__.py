@@ -35,7 +35,9 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         action="store_true",
         help="leave deprecated names out, as OMIT_DEPRECATED=true does in a cFS build: table handles have 32 bits then",
     )
-    build.add_argument("--coverage", action="store_true", help="have the code count what is executed, for gcov")
+    build.add_argument(
+        "--coverage", action="store_true", help="make the code count the lines that it executes, for gcov"
+    )
     build.add_argument(
         "--sanitize-thread", action="store_true", help="have the code tell its accesses to memory (-fsanitize=thread)"
     )
