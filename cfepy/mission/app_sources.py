@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import importlib.util
 import os
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from cfepy.reading.input_limits import PYTHON_BYTES
 from cfepy.status import UsageError
 
 _MOST_MODULES = 100  # that are followed, one from the other
+_STAR_IMPORT = re.compile(rb"import\s*\\?\s*\*")
 PACKAGE_FILE = "__init__.py"
 
 
@@ -65,14 +67,36 @@ def defines(source: Path, name: str) -> bool:
 def _defines(source: Path, name: str, seen: set[Path]) -> bool:
     """As `defines`; modules that were seen before, which import each other in a circle, bring nothing new."""
     seen.add(source)
-    return any(_binds(statement, source, name, seen) for statement in _statements(tree_of(source).body))
+    text = _text_of(source)
+    if not _may_define(text, name):
+        return False
+    return any(_binds(statement, source, name, seen) for statement in _statements(_parsed(text).body))
+
+
+def _may_define(text: bytes, name: str) -> bool:
+    """Whether it is worth parsing a text for a name: most sources do not have its letters at all.
+
+    Python takes other letters for those of ASCII in names, hence a text with other characters is parsed always.
+    """
+    return not text.isascii() or name.encode() in text or b"__getattr__" in text or _STAR_IMPORT.search(text) is not None
 
 
 def tree_of(source: Path) -> ast.Module:
     """The syntax of a file; an empty module when it is not Python, which `syntax_error` tells."""
+    return _parsed(_text_of(source))
+
+
+def _text_of(source: Path) -> bytes:
     try:
-        return parsed_input(read_limited(source, PYTHON_BYTES))
-    except (SyntaxError, ValueError, OSError):
+        return read_limited(source, PYTHON_BYTES)
+    except (UsageError, OSError):
+        return b""
+
+
+def _parsed(text: bytes) -> ast.Module:
+    try:
+        return parsed_input(text)
+    except (SyntaxError, ValueError):
         return ast.Module(body=[], type_ignores=[])
 
 

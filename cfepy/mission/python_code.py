@@ -454,22 +454,26 @@ class ModuleNames:
         """A name for the module of an application; the one it had before goes, so that restarts pile up nothing."""
         if not self._root:
             self._root = _take_root()
-        self._forget(self._of.pop(owner, ""))
+        if owner in self._of:
+            _take_out({self._of.pop(owner)})
         self._number += 1
         self._of[owner] = name = f"{self._root}_{self._number}"
         return name
 
     def forget(self) -> None:
         """Take all modules of the mission out of the process."""
-        for name in self._of.values():
-            self._forget(name)
+        if self._of:
+            _take_out(set(self._of.values()))
         self._of.clear()
         sys.modules.pop(self._root, None)
         self._root = ""
 
-    def _forget(self, name: str) -> None:
-        """A module, and those that it consists of."""
-        for each in [each for each in list(sys.modules) if each.partition(".")[0] == name]:
+
+def _take_out(names: set[str]) -> None:
+    """Take modules, and those that they consist of, out of the process: in one pass, since it has thousands."""
+    ours = [each for each in list(sys.modules) if each.startswith(PREFIX)]
+    for each in ours:
+        if each.partition(".")[0] in names:
             del sys.modules[each]
 
 
