@@ -22,7 +22,13 @@ from cfepy.status import StallError
 from cfepy.units import NS_PER_S
 from tests.rtos.helpers import Clocks
 
-LIMIT_S = 0.1  # how much of the computer's time a spinning task gets here
+LIMIT_S = 0.05  # how much of the computer's time a spinning task gets here
+
+
+@pytest.fixture(autouse=True)
+def _looks_follow_quickly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A task that spins is looked at a dozen times, and takes the CPU all the while."""
+    monkeypatch.setattr(watchdog, "LOOK_AGAIN_S", 0.002)
 
 
 def is_here(file: str) -> bool:
