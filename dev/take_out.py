@@ -52,7 +52,7 @@ class Copy:
     def give(self, *words: str) -> subprocess.CompletedProcess[str]:
         """Give a command of this Python, which finds the copy and not the checkout."""
         environ = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
-        environ["PYTHONPATH"] = os.pathsep.join([str(self.folder), str(self.folder / "tests")])
+        environ["PYTHONPATH"] = str(self.folder)
         command = [sys.executable, *words]
         return subprocess.run(command, cwd=self.folder, env=environ, capture_output=True, text=True, check=False)
 

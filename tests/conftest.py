@@ -19,6 +19,7 @@ pytest.register_assert_rewrite(
 )
 
 from tests import quick  # noqa: E402
+from tests.add_ons import lacks_add_on  # noqa: E402
 
 pytest_plugins = ["pytester", "cfepy.testing.plugin"]  # the latter has this name when it is installed, too
 
@@ -75,8 +76,10 @@ def _signals_are_answered_as_before() -> Iterator[None]:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Files of which the quick loop has no test are not even read."""
-    return True if config.getoption("markexpr") == quick.MARK and quick.is_dear(collection_path) else None
+    """Do not even import files that need an add-on which is not here, nor those of which this run has no test."""
+    named = any("::" in word for word in config.args)  # then the marks say nothing about whole files
+    is_vain = not named and quick.is_read_in_vain(collection_path, config.getoption("markexpr"))
+    return True if is_vain or lacks_add_on(collection_path) else None
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)

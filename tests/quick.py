@@ -6,6 +6,7 @@ measures and writes. A new test is in it until it was measured.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -15,6 +16,8 @@ from dev.costs.table import ROOT, Table, file_of, function_of
 
 MARK = "quick"
 TABLE = Table.read()
+SLOW = "slow"
+_ALL_SLOW = re.compile(r"^pytestmark = (\[\s*)?([\w.]+,\s*)*pytest\.mark\.slow\b", re.MULTILINE)
 STALE = pytest.StashKey[list[str]]()
 """Lines of the table that name no test of the default suite, of the files that were collected whole."""
 
@@ -22,6 +25,16 @@ STALE = pytest.StashKey[list[str]]()
 def is_dear(path: Path) -> bool:
     """Whether no test of a file is in the quick loop, which need not be read then."""
     return path.relative_to(ROOT).as_posix() in TABLE.costs
+
+
+def is_read_in_vain(path: Path, marks: str) -> bool:
+    """Return whether a run of tests with `-m MARKS` has no test of a file: to import all files takes ten seconds."""
+    if marks == MARK and is_dear(path):
+        return True
+    if marks not in (MARK, SLOW, f"not {SLOW}") or not path.name.startswith("test_") or not path.is_file():
+        return False
+    text = path.read_text(encoding="utf-8")
+    return SLOW not in text if marks == SLOW else _ALL_SLOW.search(text) is not None
 
 
 def quick_ones(tests: Iterable[pytest.Item]) -> Iterator[pytest.Item]:

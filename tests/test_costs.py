@@ -115,3 +115,25 @@ def test_lines_are_about_cases_that_there_are(pytestconfig: pytest.Config) -> No
 def test_no_test_is_too_dear() -> None:
     dear = {line: cost for line, cost in quick.TABLE.costs.items() if cost >= MOST_S}
     assert dear == {}, "make these cheaper, or mark them slow, and measure again: python -m dev.costs FILE"
+
+
+@pytest.mark.parametrize(
+    ("text", "read_by"),
+    [
+        ("def test_it(): pass", ("quick", "not slow", "", "corpus")),
+        ("@pytest.mark.slow\ndef test_it(): pass", ("quick", "not slow", "slow", "", "corpus")),
+        ("pytestmark = pytest.mark.slow", ("slow", "", "corpus")),
+        ("pytestmark = [needs_cpp, pytest.mark.slow]", ("slow", "", "corpus")),
+        ("pytestmark = [\n    pytest.mark.slow,\n    needs_cpp,\n]", ("slow", "", "corpus")),
+        ("pytestmark = pytest.mark.skipif(slow)", ("quick", "not slow", "slow", "", "corpus")),
+    ],
+)
+def test_file_is_read_unless_marks_leave_out_all_of_its_tests(
+    text: str, read_by: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(quick, "is_dear", lambda path: False)
+    file = tmp_path / "test_it.py"
+    file.write_text(text, encoding="utf-8")
+    marks = ("quick", "not slow", "slow", "", "corpus")
+    assert tuple(each for each in marks if not quick.is_read_in_vain(file, each)) == read_by
+    assert not any(quick.is_read_in_vain(tmp_path, each) for each in marks)
