@@ -152,6 +152,7 @@ def test_only_the_kernel_knows_the_host(tree: Tree) -> None:
         )
 
 
+@pytest.mark.slow
 def test_libraries_are_code_of_nodes(tree: Tree) -> None:
     """They run in a node's universe, with its rospy and its clock: they import what a node does, none of the house."""
     libraries = ROOT / "ros_libraries"

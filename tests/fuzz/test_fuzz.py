@@ -9,7 +9,7 @@ import pytest
 from dev.fuzz.kinds import KINDS
 from dev.fuzz.runs import failures
 
-USUAL, MORE = 25, 12
+USUAL, MORE = 15, 12
 SLOW = {
     "mission": 3,
     "table": 5,

@@ -232,6 +232,7 @@ def entries_of(export: Export, command: Command) -> Iterator[ElementTree.Element
     yield from container
 
 
+@pytest.mark.slow
 def test_a_command_put_together_from_the_document_is_ours(export: Export) -> None:
     """What a ground system would send, with a different byte in every argument; the checksum it may leave zero."""
     for command in export.dictionary.commands.values():

@@ -50,7 +50,7 @@ def test_a_few_runs(folder: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("runs", "options"), [(20, []), (6, ["--schedule", "random", "--seed", "9"]), (6, ["--board", "rx64m"])]
+    ("runs", "options"), [(10, []), (6, ["--schedule", "random", "--seed", "9"]), (6, ["--board", "rx64m"])]
 )
 def test_many_runs_are_the_same(folder: str, runs: int, options: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     does_not_fit = "rx64m" in options  # which is a problem of the mission, the same in each run

@@ -20,14 +20,16 @@ from dev.quality.shrinking import shrunk
 
 EACH = pytest.mark.parametrize("bug", BUGS, ids=[bug.name for bug in BUGS])
 LONG = ("changed_while_iterated", "lost_wakeup", "packet_burst", "preempt_race")
+LONG_TO_SHRINK = ("lost_wakeup", "double_buffer", "check_then_act", "preempt_race")
+"""These take 150 s of CPU time together; `python -m dev.quality report` shrinks them, too."""
 MOST_LATER = pytest.mark.parametrize(
     "bug",
     [
-        pytest.param(bug, marks=[pytest.mark.slow] * bool(number % 4 or bug.name in LONG), id=bug.name)
+        pytest.param(bug, marks=[pytest.mark.slow] * bool(number % 8 or bug.name in LONG), id=bug.name)
         for number, bug in enumerate(BUGS)
     ],
 )
-"""Each bug; three of four, and those that take long, are left to the slow tests."""
+"""Each bug; seven of eight, and those that take long, are left to the slow tests."""
 
 
 def found_by(bug: Bug, policy: str) -> Verdict:
@@ -95,6 +97,6 @@ def shrinks(bug: Bug) -> None:
 
 
 @pytest.mark.slow
-@EACH
-def test_shrinking_leaves_few_preemptions_of_every_bug(bug: Bug) -> None:
+@pytest.mark.parametrize("bug", [bug for bug in BUGS if bug.name not in LONG_TO_SHRINK], ids=lambda bug: bug.name)
+def test_shrinking_leaves_few_preemptions(bug: Bug) -> None:
     shrinks(bug)

@@ -115,7 +115,7 @@ def is_message(full_name: str, octets: bytes) -> bool:
 
 @pytest.mark.parametrize("profile", [Profile.HOST, Profile.STRICT])
 def test_hostile_packets(tmp_path: Path, profile: Profile) -> None:
-    types = [*all_types()[::9], *ANGLED]
+    types = [*all_types()[::18], *ANGLED]
     program = Program(tmp_path, types, profile, "-O1", "-g", *SANITIZERS)
     read = 0
     for name in types:
@@ -129,4 +129,4 @@ def test_hostile_packets(tmp_path: Path, profile: Profile) -> None:
                 assert answer.allocated == 0, (name, packet)
                 assert not answer.good or is_message(name, packet), (name, packet)
             read += answer.good
-    assert read > 500, "most faults leave no message, but some do"
+    assert read > 250, "most faults leave no message, but some do"

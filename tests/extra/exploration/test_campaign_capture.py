@@ -32,7 +32,7 @@ def resident_kb(pid: int | str) -> int:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("seconds", "count"), [(0.2, 10_000), (0.8, 500)])
+@pytest.mark.parametrize(("seconds", "count"), [(0.2, 3_000), (0.8, 300)])
 def test_many_schedules_of_capture(tmp_path: Path, seconds: float, count: int) -> None:
     crew = make_crew(count)
     assert isinstance(crew, Processes)
