@@ -19,13 +19,14 @@ pytest.register_assert_rewrite(
 )
 
 from tests import quick  # noqa: E402
-from tests.add_ons import lacks_add_on  # noqa: E402
+from tests.add_ons import MISSING, lacks_add_on  # noqa: E402
 
 pytest_plugins = ["pytester", "cfepy.testing.plugin"]  # the latter has this name when it is installed, too
 
 settings.register_profile("cfepy", settings.default, deadline=None)
 settings.load_profile("cfepy")
 
+TESTS = Path(__file__).parent
 ENDING = tuple(ending_signals())
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell gives it ignored to what it runs in the background
 
@@ -79,12 +80,19 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     """Do not even import files that need an add-on which is not here, nor those of which this run has no test."""
     named = any("::" in word for word in config.args)  # then the marks say nothing about whole files
     is_vain = not named and quick.is_read_in_vain(collection_path, config.getoption("markexpr"))
-    return True if is_vain or lacks_add_on(collection_path) else None
+    return True if is_vain or lacks_add_on(collection_path.relative_to(TESTS).as_posix()) else None
+
+
+def test_of(item: pytest.Item) -> str:
+    """Return the file of a test below `tests`, and its function."""
+    return f"{item.path.relative_to(TESTS).as_posix()}::{getattr(item, 'originalname', item.name)}"
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Generator[None, None, None]:
     """Mark the tests of the quick loop, and see whether the table of costs is about the tests that there are."""
+    if MISSING:
+        items[:] = [item for item in items if not lacks_add_on(test_of(item))]
     for item in quick.quick_ones(items):
         item.add_marker(quick.MARK)
     if not any("::" in word for word in config.args) and not config.getoption("lf", False):
