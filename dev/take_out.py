@@ -23,6 +23,7 @@ from dev.house.tree import ROOT
 SHELF, ALL = "ros_libraries", "all"
 NAMES = (*(each.name for each in OWN), SHELF)
 COMPUTER = ("rtos", "osal", "psp", "msg", "fs", "es", "sb", "evs", "time", "tbl")
+PYTEST = ("-m", "pytest", "-p", "no:cacheprovider")
 BOOT = "import cfepy\nwith cfepy.boot('lab') as flight:\n    flight.run_for(1.0)\n"
 LEFT_OUT = shutil.ignore_patterns(".git", ".venv", "__pycache__", "*.so", ".*_cache", ".hypothesis", ".site")
 
@@ -71,9 +72,14 @@ class Copy:
         return tried
 
     def tests(self) -> list[Tried]:
-        """Run the quick tests of the rest; without all add-ons, those of the computer."""
-        where = [f"tests/{part}" for part in COMPUTER] if set(NAMES) <= set(self.names) else ["tests"]
-        return [self._well("tests", "-m", "pytest", "-q", "-m", "quick", "-p", "no:cacheprovider", *where)]
+        """Run the quick tests of the rest; without all add-ons, the default tests of the computer."""
+        if set(NAMES) <= set(self.names):
+            return [self.computer()]
+        return [self._well("quick tests", *PYTEST, "-m", "quick", "tests")]
+
+    def computer(self) -> Tried:
+        """Run the default tests of the computer: of kernel, OSAL, PSP and services."""
+        return self._well("tests of the computer", *PYTEST, *(f"tests/{part}" for part in COMPUTER))
 
     def _well(self, what: str, *words: str) -> Tried:
         done = self.give(*words)

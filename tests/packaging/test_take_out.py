@@ -16,3 +16,8 @@ def test_the_rest_flies(name: str, tmp_path: Path) -> None:
     copy = Copy(tmp_path / "cfepy", NAMES if name == ALL else [name])
     for tried in copy.flights():
         assert not tried.trouble, tried.what
+
+
+def test_the_computer_needs_no_add_on(tmp_path: Path) -> None:
+    tried = Copy(tmp_path / "cfepy", NAMES).computer()
+    assert not tried.trouble
