@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from cfepy.interpreter.garbage import collect_every
 from cfepy.interpreter.host_system import ending_signals
 
 # What tests share says as much when it fails, and is not left out by python -O.
@@ -27,6 +28,9 @@ settings.register_profile("cfepy", settings.default, deadline=None)
 settings.load_profile("cfepy")
 
 TESTS = Path(__file__).parent
+METER = "dev.costs.meter"
+RUNS_IN_MEMORY = 8  # missions that are over, before garbage is looked for
+collect_every(RUNS_IN_MEMORY)
 ENDING = tuple(ending_signals())
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell gives it ignored to what it runs in the background
 
@@ -97,5 +101,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         item.add_marker(quick.MARK)
     if not any("::" in word for word in config.args) and not config.getoption("lf", False):
         config.stash[quick.STALE] = quick.stale_lines(items)
+    if not config.pluginmanager.hasplugin(METER):  # which measures them, too
+        for item in quick.slow_ones(items):
+            item.add_marker(quick.SLOW)
     yield
     items.sort(key=lambda item: item.get_closest_marker("xdist_group") is None)  # long ones, one after the other, first

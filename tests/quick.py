@@ -24,7 +24,11 @@ STALE = pytest.StashKey[list[str]]()
 
 def is_dear(path: Path) -> bool:
     """Whether no test of a file is in the quick loop, which need not be read then."""
-    return path.relative_to(ROOT).as_posix() in TABLE.costs
+    return _name_of(path) in TABLE.costs
+
+
+def _name_of(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix() if path.is_relative_to(ROOT) else ""
 
 
 def is_read_in_vain(path: Path, marks: str) -> bool:
@@ -34,7 +38,14 @@ def is_read_in_vain(path: Path, marks: str) -> bool:
     if marks not in (MARK, SLOW, f"not {SLOW}") or not path.name.startswith("test_") or not path.is_file():
         return False
     text = path.read_text(encoding="utf-8")
-    return SLOW not in text if marks == SLOW else _ALL_SLOW.search(text) is not None
+    if marks == SLOW:
+        return SLOW not in text and _name_of(path) not in TABLE.slow_files
+    return _ALL_SLOW.search(text) is not None
+
+
+def slow_ones(tests: Iterable[pytest.Item]) -> Iterator[pytest.Item]:
+    """Yield the tests that are slow because of their costs."""
+    return (test for test in tests if TABLE.is_slow(test.nodeid))
 
 
 def quick_ones(tests: Iterable[pytest.Item]) -> Iterator[pytest.Item]:

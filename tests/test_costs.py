@@ -9,18 +9,22 @@ from pathlib import Path
 import pytest
 
 from dev.costs import meter
-from dev.costs.table import MOST_S, ROOT, Table, file_of, function_of, lines
+from dev.costs.table import ROOT, SLOW_S, Table, file_of, function_of, lines
 from tests import quick
 
-DEAR, CHEAP = 0.2, 0.01
+SLOW, DEAR, CHEAP = 0.5, 0.2, 0.01
 MEASURED = {
     "tests/a.py::test_one": DEAR,
     "tests/a.py::test_two[x]": CHEAP,
-    "tests/a.py::test_two[y]": DEAR + 0.1,
+    "tests/a.py::test_two[y]": DEAR + 0.01,
+    "tests/a.py::test_two[z]": SLOW,
     "tests/a.py::test_three[x]": CHEAP,
     "tests/a.py::test_three[y]": DEAR,
     "tests/a.py::test_three[z::[1]]": CHEAP,
     "tests/b.py::TestAll::test_it": DEAR,
+    "tests/d.py::test_one": DEAR,
+    "tests/d.py::test_two[x]": SLOW,
+    "tests/d.py::test_two[y]": SLOW + 0.1,
     "tests/c.py::test_one": CHEAP,
 }
 
@@ -28,9 +32,12 @@ MEASURED = {
 def test_a_line_is_a_file_a_test_or_a_case() -> None:
     assert dict(lines(MEASURED)) == {
         "tests/a.py::test_one": DEAR,
-        "tests/a.py::test_two": DEAR + 0.1,
+        "tests/a.py::test_two": DEAR + 0.01,
+        "tests/a.py::test_two[z]": SLOW,
         "tests/a.py::test_three[y]": DEAR,
         "tests/b.py": DEAR,
+        "tests/d.py::test_one": DEAR,
+        "tests/d.py::test_two": SLOW + 0.1,
     }
 
 
@@ -112,9 +119,11 @@ def test_lines_are_about_cases_that_there_are(pytestconfig: pytest.Config) -> No
     assert stale == [], f"python -m dev.costs {' '.join(sorted(set(map(file_of, stale))))}"
 
 
-def test_no_test_is_too_dear() -> None:
-    dear = {line: cost for line, cost in quick.TABLE.costs.items() if cost >= MOST_S}
-    assert dear == {}, "make these cheaper, or mark them slow, and measure again: python -m dev.costs FILE"
+def test_slow_is_a_test_whose_line_has_the_cost_of_one() -> None:
+    table = Table({"tests/a.py::test_one[x]": SLOW_S, "tests/b.py": SLOW_S, "tests/c.py::test_one": SLOW_S - 0.01})
+    tests = ("tests/a.py::test_one[x]", "tests/a.py::test_one[y]", "tests/b.py::test_it", "tests/c.py::test_one")
+    assert [table.is_slow(test) for test in tests] == [True, False, True, False]
+    assert table.slow_files == {"tests/a.py", "tests/b.py"}
 
 
 @pytest.mark.parametrize(

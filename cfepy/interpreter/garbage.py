@@ -56,6 +56,8 @@ CAN_FREEZE = hasattr(gc, "freeze")  # PyPy, which has generations of its own, ca
 MOST_OBJECTS = 20_000  # more objects are frozen: looking for garbage in them takes milliseconds
 LOOKS = 64  # of so many looks for garbage at the end of a run one goes through everything,
 OBJECTS = 100_000  # or of several times as many, when it has several times so many objects
+_every = 1  # garbage is looked for at the end of each so-many-th run
+_runs = 0
 
 
 def freeze() -> None:
@@ -73,13 +75,27 @@ def freeze_many() -> None:
         gc.freeze()
 
 
+def collect_every(runs: int) -> None:
+    """Have `collect_leftovers` look for garbage at the end of every `runs`-th run only.
+
+    A suite of thousands of short missions spends a tenth of its time on it otherwise. As many missions may then be in
+    memory at once.
+    """
+    global _every
+    _every = runs
+
+
 def collect_leftovers() -> None:
-    """Look for garbage in what is not frozen; every so many times in everything.
+    """Look for garbage in all objects that are not frozen; every `LOOKS` times in all objects.
 
     A run leaves classes, whose circles reference counting cannot free; the simulation itself is still
     referenced, and is found the next time. What was there before the first run stays frozen: to go through it takes
     longer than all the rest.
     """
+    global _runs
+    _runs += 1
+    if _runs % _every:
+        return
     looks = gc.get_stats()[-1]["collections"] + 1 if CAN_FREEZE else 1
     if looks % LOOKS == 0 and looks // LOOKS % max(1, gc.get_freeze_count() // OBJECTS) == 0:
         gc.unfreeze()

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from dev.costs.meter import FOLDER, measured
-from dev.costs.table import DEAR_S, MOST_S, PATH, ROOT, Table, file_of
+from dev.costs.table import DEAR_S, PATH, ROOT, SLOW_S, Table, file_of
 
 
 def run(folder: Path, words: Sequence[str]) -> None:
@@ -51,9 +51,7 @@ def main() -> None:
         return
     few = [cost for cost in costs.values() if cost < DEAR_S]
     print(f"{sum(few):8.1f} s for {len(few)} of them in the quick loop")
-    print(
-        f"{sum(cost >= MOST_S for cost in costs.values()):6} need {MOST_S} s and more: make them cheaper, or slow ones"
-    )
+    print(f"{sum(cost >= SLOW_S for cost in costs.values()):6} need {SLOW_S} s and more, and are slow ones from now on")
     Table.read().merged(costs).write() if PATH.exists() else Table({}).merged(costs).write()
 
 

@@ -1,4 +1,4 @@
-"""The table of costs, `tests/costs.tsv`: which tests need so much CPU time that the quick loop leaves them out.
+"""The table of costs, `tests/costs.tsv`: which tests the quick loop leaves out, and which of them are slow ones.
 
 A line is a cost in milliseconds and what has it: a case of a test, a test with most of its cases, of which the dearest
 counts, or a file none of whose tests is quick. What is in no line is quick, or was not measured yet.
@@ -6,15 +6,16 @@ counts, or a file none of whose tests is quick. What is in no line is quick, or 
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PATH = ROOT / "tests/costs.tsv"
 DEAR_S = 0.05  # of CPU time: the quick loop has no such test
-MOST_S = 0.6  # of CPU time, half a second and what a busy computer adds: such a test is a slow one, or is made cheaper
+SLOW_S = 0.25  # of CPU time: such a test is a slow one
 
 
 def file_of(test: str) -> str:
@@ -27,7 +28,7 @@ def function_of(test: str) -> str:
     return test.partition("[")[0]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Table:
     """The lines of the table."""
 
@@ -49,6 +50,15 @@ class Table:
         """Whether a test is a dear one, by its id (or a whole file, by its path)."""
         return isinstance(test, str) and not self.costs.keys().isdisjoint((test, function_of(test), file_of(test)))
 
+    def is_slow(self, test: str) -> bool:
+        """Return whether a test, by its id, needs so much CPU time that it is left to the slow tests."""
+        return any(self.costs.get(name, 0.0) >= SLOW_S for name in (test, function_of(test), file_of(test)))
+
+    @functools.cached_property
+    def slow_files(self) -> frozenset[str]:
+        """The files with tests that are slow because of their costs."""
+        return frozenset(file_of(name) for name, cost in self.costs.items() if cost >= SLOW_S)
+
     def merged(self, measured: Mapping[str, float]) -> Table:
         """This table, with other lines for the files that were measured.
 
@@ -61,17 +71,34 @@ class Table:
 
 
 def lines(measured: Mapping[str, float]) -> Iterator[tuple[str, float]]:
-    """The lines for tests: as few as say the same, with the dearest cost of what they stand for."""
+    """Yield the lines for tests: as few as say the same, with the highest cost of the tests that a line stands for.
+
+    No line stands for slow tests and for others.
+    """
     for file, tests in grouped(measured, file_of):
-        if all(cost >= DEAR_S for cost in tests.values()):
+        if all(cost >= DEAR_S for cost in tests.values()) and _are_alike(tests.values()):
             yield file, max(tests.values())
             continue
         for function, cases in grouped(tests, function_of):
-            dear = {case: cost for case, cost in cases.items() if cost >= DEAR_S}
-            if 2 * len(dear) >= len(cases):
-                yield function, max(dear.values())
-            else:
-                yield from dear.items()
+            yield from _lines_of(function, cases)
+
+
+def _lines_of(function: str, cases: Mapping[str, float]) -> Iterator[tuple[str, float]]:
+    slow = {case: cost for case, cost in cases.items() if cost >= SLOW_S}
+    if len(slow) == len(cases):
+        yield function, max(slow.values())
+        return
+    yield from slow.items()
+    dear = {case: cost for case, cost in cases.items() if DEAR_S <= cost < SLOW_S}
+    if dear and 2 * len(dear) >= len(cases) - len(slow):
+        yield function, max(dear.values())
+    else:
+        yield from dear.items()
+
+
+def _are_alike(costs: Collection[float]) -> bool:
+    """Return whether all tests are slow ones, or none is."""
+    return min(costs) >= SLOW_S or max(costs) < SLOW_S
 
 
 def grouped(tests: Mapping[str, float], name_of: Callable[[str], str]) -> Iterable[tuple[str, dict[str, float]]]:

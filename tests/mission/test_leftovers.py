@@ -11,12 +11,14 @@ from collections.abc import Iterator
 import pytest
 
 from cfepy.extra.exploration.trial import Trial
+from cfepy.interpreter.garbage import collect_every
 from cfepy.mission import Mission, read_mission
 from cfepy.nodes import Universe
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Kernel
 from cfepy.schedules import Schedule
 from cfepy.writing.console import Console
+from tests.conftest import RUNS_IN_MEMORY
 
 FLIGHTS = 6
 SECONDS = 0.65  # capture's nodes have begun
@@ -25,10 +27,12 @@ PARTS = (Mission, Kernel, Universe)
 
 @pytest.fixture(scope="module", autouse=True)
 def no_collector() -> Iterator[None]:
-    """Garbage is not found by chance."""
+    """Garbage is not found by chance, and is looked for at the end of each mission."""
     before = gc.get_threshold()
     gc.set_threshold(0)
+    collect_every(1)
     yield
+    collect_every(RUNS_IN_MEMORY)
     gc.set_threshold(*before)
     gc.unfreeze()
 
@@ -60,6 +64,17 @@ def test_missions_do_not_pile_up(tasks: str, flights: int) -> None:
     assert found["Mission"] <= 1  # of the last one, which nobody has looked for since
     assert found["Kernel"] <= 1
     assert found["Universe"] <= 4  # of which each flight makes four
+
+
+def test_garbage_is_looked_for_as_seldom_as_a_suite_wants() -> None:
+    collect_every(3)
+    try:
+        looks = gc.get_stats()[-1]["collections"]
+        for _ in range(6):
+            fly(0.1)
+        assert gc.get_stats()[-1]["collections"] == looks + 2
+    finally:
+        collect_every(1)
 
 
 @pytest.mark.slow
