@@ -78,9 +78,7 @@ def _may_define(text: bytes, name: str) -> bool:
 
     Python takes other letters for those of ASCII in names, hence a text with other characters is parsed always.
     """
-    return (
-        not text.isascii() or name.encode() in text or b"__getattr__" in text or _STAR_IMPORT.search(text) is not None
-    )
+    return not text.isascii() or name.encode() in text or b"__getattr__" in text or _STAR_IMPORT.search(text) is not None
 
 
 def tree_of(source: Path) -> ast.Module:

@@ -1,8 +1,9 @@
 """The simulated real-time kernel: virtual time, tasks with priorities, and the objects that tasks wait for.
 
-The modules here make tasks run or wait, decide which task runs next, or charge virtual time for it. Tasks, queues and
-mutexes of OSAL are in OSAL, which builds them on the names below. Only `context`, `cpus`, `realtime` and `watchdog` use
-the host's threads, CPUs and clock, and no package above does. The central file is `cfepy/rtos/scheduler.py`.
+Code that makes tasks run or wait, decides which task runs next, or charges virtual time for it belongs here. Tasks,
+queues and mutexes of OSAL are in OSAL, which builds them on the names below. Only `context`, `cpus`, `realtime` and
+`watchdog` use the host's threads, CPUs and clock, and no package above does. The central file is
+`cfepy/rtos/scheduler.py`.
 """
 
 from __future__ import annotations
