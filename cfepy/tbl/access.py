@@ -82,7 +82,7 @@ class TableAccess:
         return images, first
 
     def get_address(self, handle: int) -> tuple[memoryview, bool]:
-        """The active image, locked until `release_address` (CFE_TBL_GetAddress).
+        """Return the active image, locked until `release_address` (CFE_TBL_GetAddress).
 
         Returns:
             A view of the bytes, and whether they changed since the last call (CFE_TBL_INFO_UPDATED).
@@ -137,7 +137,7 @@ class TableAccess:
             The first status that is not CFE_SUCCESS.
 
         Raises:
-            CfeError: instead, when that is an error; the tables behind are released all the same.
+            CfeError: instead, if that is an error; the tables behind are released all the same.
         """
         answers: list[int | CfeError] = []
         for handle in handles:
@@ -164,7 +164,7 @@ class TableAccess:
         return CFE_TBL_INFO_DUMP_PENDING if table.dump_id != UNDEFINED else CFE_SUCCESS
 
     def get_info(self, full_name: str) -> TableInfo:
-        """All about a table, by its full name (CFE_TBL_GetInfo).
+        """Return all about a table, by its full name (CFE_TBL_GetInfo).
 
         Raises:
             CfeError: CFE_TBL_ERR_INVALID_NAME.
@@ -186,23 +186,23 @@ class TableAccess:
         )
 
     def handle_to_id(self, handle: int) -> int:
-        """The resource id of a handle, 0 for CFE_TBL_BAD_TABLE_HANDLE (CFE_TBL_HandleToID)."""
+        """Return the resource id of a handle, 0 for CFE_TBL_BAD_TABLE_HANDLE (CFE_TBL_HandleToID)."""
         return UNDEFINED if handle == BAD_TABLE_HANDLE else int(handle)
 
     def handle_from_id(self, handle_id: int) -> int:
-        """The handle of a resource id, CFE_TBL_BAD_TABLE_HANDLE for 0 (CFE_TBL_HandleFromID)."""
+        """Return the handle of a resource id, CFE_TBL_BAD_TABLE_HANDLE for 0 (CFE_TBL_HandleFromID)."""
         return BAD_TABLE_HANDLE if handle_id == UNDEFINED else handle_id
 
     def handle_id_is_equal(self, first: int, second: int) -> bool:
-        """Whether two handle ids are the same (CFE_TBL_HandleID_IsEqual)."""
+        """Return whether two handle ids are the same (CFE_TBL_HandleID_IsEqual)."""
         return first == second
 
     def handle_id_as_int(self, handle_id: int) -> int:
-        """The number to show a person (CFE_TBL_HandleID_AsInt)."""
+        """Return the number to show a person (CFE_TBL_HandleID_AsInt)."""
         return int(handle_id)
 
     def handle_id_is_defined(self, handle_id: int) -> bool:
-        """Whether it is the id of anything (CFE_TBL_HandleID_IsDefined)."""
+        """Return whether it is the id of anything (CFE_TBL_HandleID_IsDefined)."""
         return handle_id != UNDEFINED
 
     def _caller(self) -> tuple[int, str]:
@@ -212,7 +212,7 @@ class TableAccess:
         return caller.app_id, caller.name
 
     def _access(self, function: str, handle: int, owner_only: bool = False, log: str = _NO_ACCESS) -> Access:
-        """The access descriptor of a handle, once the caller is found to have the right to use it.
+        """Return the access descriptor of a handle, once the caller is found to have the right to use it.
 
         Args:
             function: that was called.

@@ -81,7 +81,7 @@ class Buffer:
         self.activate_requested = False
 
     def view(self) -> memoryview:
-        """The content, writable in place."""
+        """Return the content, writable in place."""
         return self.data[: self.content_size] if self.read is None else memoryview(self.read())
 
     def copy(self, image: Bytes) -> None:
@@ -137,7 +137,7 @@ class BufferIds:
         return category + 1, number
 
     def after(self, buffer_id: int, category: int) -> int:
-        """The id of a category that follows another id (CFE_TBL_LoadBuffIncrementSerial_Impl)."""
+        """Return the id of a category that follows another id (CFE_TBL_LoadBuffIncrementSerial_Impl)."""
         serial = get_serial(buffer_id) + 1
         actual, number = self._split(serial)
         if actual != category:
@@ -185,13 +185,13 @@ class BufferMemory:
         """Make the pool and take the shared buffers out of it.
 
         Raises:
-            CfeError: there is no room for them.
+            CfeError: if there is no room for them.
         """
         self.pool_id = self._ports.es.pool_create(self._size, "CFE_TBL")
         self._shared = [self.allocate(self._shared_size) for _ in range(self._count)]
 
     def __iter__(self) -> Iterator[Buffer]:
-        """The shared buffers."""
+        """Return the shared buffers."""
         return iter(self._shared)
 
     @property
@@ -200,21 +200,23 @@ class BufferMemory:
         return sum(buffer.load_id == UNDEFINED for buffer in self._shared)
 
     def shared(self, number: int) -> Buffer:
-        """A shared buffer by its number."""
+        """Return a shared buffer by its number."""
         return self._shared[number]
 
     def allocate(self, size: int, name: str = "") -> Buffer:
-        """A zeroed buffer of `size` bytes, for the table of a full name, or to be shared.
+        """Return a zeroed buffer of `size` bytes, for the table of a full name, or to be shared.
 
         Raises:
-            CfeError: CFE_ES_ERR_MEM_BLOCK_SIZE when the pool has no room for it.
+            CfeError: CFE_ES_ERR_MEM_BLOCK_SIZE if the pool has no room for it.
         """
         block = self._ports.es.get_pool_buf(self.pool_id, size)
         data = block.memory if self.places is None else self.places.take(size, name)
         return Buffer(data, self.address_for(size), block)
 
     def external(self) -> Buffer:
-        """A buffer for memory of an app, which stays the app's (CFE_TBL_OPT_USR_DEF_ADDR); it costs nothing here."""
+        """Return a buffer for memory of an app, which stays the app's (CFE_TBL_OPT_USR_DEF_ADDR); it costs nothing
+        here.
+        """
         return Buffer(memoryview(b""), 0)
 
     def free(self, buffer: Buffer) -> None:
@@ -237,7 +239,7 @@ class BufferMemory:
         return None
 
     def address_for(self, size: int) -> int:
-        """A number for telemetry that no other buffer has."""
+        """Return a number for telemetry that no other buffer has."""
         address = self._next_address
         self._next_address += size + -size % _ALIGNMENT
         return address

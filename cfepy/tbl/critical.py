@@ -67,7 +67,7 @@ class CriticalRecord:
         self.last_file = ""
 
     def pack(self) -> bytes:
-        """Its bytes in the CDS."""
+        """Return its bytes in the CDS."""
         return _packed(self.handle, self.name, self.file_time, self.last_update, self.last_file, self.loaded_once)
 
     def unpack(self, data: bytes, at: int) -> None:
@@ -118,10 +118,10 @@ class CriticalTables:
         """Make a new table critical, with the image it had before a reset if there is a good one.
 
         Returns:
-            CFE_SUCCESS, or CFE_TBL_INFO_RECOVERED_TBL.
+            CFE_SUCCESS; raises CFE_TBL_INFO_RECOVERED_TBL.
 
         Raises:
-            CfeError: the CDS has no room for it, or there is no CDS; the table is an ordinary one then.
+            CfeError: if the CDS has no room for it, or there is no CDS; the table is an ordinary one then.
         """
         handle, status = self._ports.es.register_cds_ex(table.size, table.name, critical_table=True)
         table.cds_handle, table.critical = handle, True
@@ -137,7 +137,7 @@ class CriticalTables:
         return CFE_SUCCESS
 
     def _restore(self, table: TableRecord) -> bool:
-        """Give a table the image that the CDS has (CFE_TBL_RestoreTableDataFromCDS); False when there is none.
+        """Give a table the image that the CDS has (CFE_TBL_RestoreTableDataFromCDS); False if there is none.
 
         As in cFE nobody says how much was put into the buffer: the CRC of what came back is that of nothing, 0, and a
         dump is empty, until the next load. Where there is no image, or with release 7.0.0 in any case, the load that
@@ -184,7 +184,7 @@ class CriticalTables:
         self._save(function, "Unable to update Critical Table Registry in CDS")
 
     def find(self, name: str) -> CriticalRecord | None:
-        """The record of a table's full name, also after its CDS was deleted, or None."""
+        """Return the record of a table's full name, also after its CDS was deleted, or None."""
         return next((record for record in self._records if record.name == name), None)
 
     def delete(self, record: CriticalRecord) -> None:

@@ -62,7 +62,7 @@ class TableType:
         return self.rows * self.row.size
 
     def pack(self, values: Rows) -> bytes:
-        """The table's bytes; rows and fields that are not given are zero.
+        """Return the table's bytes; rows and fields that are not given are zero.
 
         Args:
             values: the fields of the only row, a sequence of rows, or rows by their number, which begins at 0.
@@ -73,17 +73,17 @@ class TableType:
         return pack_rows(self.row, self._in_order(values), self.rows)
 
     def unpack(self, data: bytes | bytearray | memoryview) -> list[dict[str, Any]]:
-        """All rows of a table image, zero rows included.
+        """Return all rows of a table image, zero rows included.
 
         Raises:
-            UsageError: the image has another size than the table.
+            UsageError: if the image has another size than the table.
         """
         if len(data) != self.size:
             raise UsageError(f"{self.name} has {self.size} bytes, this image has {len(data)}", field="data")
         return unpack_rows(self.row, data)
 
     def image(self, values: Rows) -> TableImage:
-        """The image of a table file, ready for `cfepy.tbl.build`; errors as `pack`."""
+        """Return the image of a table file, ready for `cfepy.tbl.build`; errors as `pack`."""
         return TableImage(self.name, self.pack(values), self.description)
 
     def _in_order(self, values: Rows) -> Sequence[Row]:

@@ -34,7 +34,7 @@ DESCRIPTION = "Table Dump Image"
 
 
 def select_buffer(registry: TableRegistry, table: TableRecord, which: int) -> Buffer | None:
-    """The image that a dump or validate command means; None when there is none (CFE_TBL_GetSelectedBuffer)."""
+    """Return the image that a dump or validate command means; None if there is none (CFE_TBL_GetSelectedBuffer)."""
     if which == ACTIVE_BUFFER:
         return registry.active(table)
     return registry.inactive(table) if which == INACTIVE_BUFFER else None
@@ -140,10 +140,10 @@ class Dumps:
         The table goes on waiting until the file was written, and this was called once more.
 
         Returns:
-            CFE_SUCCESS, or CFE_TBL_INFO_NO_DUMP_PENDING.
+            CFE_SUCCESS; raises CFE_TBL_INFO_NO_DUMP_PENDING.
 
         Raises:
-            CfeError: CFE_TBL_ERR_INVALID_HANDLE when the buffer has lost its id, or the snapshot is taken already.
+            CfeError: CFE_TBL_ERR_INVALID_HANDLE if the buffer has lost its id, or the snapshot is taken already.
         """
         dump = self._dumps.find(table.dump_id)
         if dump is not None:

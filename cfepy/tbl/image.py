@@ -41,10 +41,10 @@ class TableImage(NamedTuple):
 
 
 def build(image: TableImage) -> bytes:
-    """The table file of an image.
+    """Return the table file of an image.
 
     Raises:
-        UsageError: the name is empty, has no dot, or is longer than 39 characters; or there is no data.
+        UsageError: if the name is empty, has no dot, or is longer than 39 characters; or there is no data.
     """
     if "." not in image.name or not 0 < len(image.name) < FULL_NAME_SIZE:
         text = f"{image.name!r} is no full table name; write APP.Table, at most {FULL_NAME_SIZE - 1} characters"
@@ -62,10 +62,10 @@ def build(image: TableImage) -> bytes:
 
 
 def read(data: bytes) -> TableImage:
-    """The image in a table file.
+    """Return the image in a table file.
 
     Raises:
-        CfeError: the file is no table file or is too short; the statuses are those of CFE_TBL_Load.
+        CfeError: if the file is no table file or is too short; the statuses are those of CFE_TBL_Load.
     """
     header, table, image = read_table_file(data)
     ids = header.spacecraft_id, header.processor_id
@@ -74,7 +74,7 @@ def read(data: bytes) -> TableImage:
 
 
 def mark_for(data: bytes) -> int:
-    """The integrity mark that belongs into a table file: MARK_TAG and the CRC of the file with a mark of 0.
+    """Return the integrity mark that belongs into a table file: MARK_TAG and the CRC of the file with a mark of 0.
 
     Args:
         data: the whole file, whether or not it has a mark.
@@ -83,15 +83,15 @@ def mark_for(data: bytes) -> int:
 
 
 def mark_in(data: bytes) -> int:
-    """The integrity mark that a table file has; 0 for none."""
+    """Return the integrity mark that a table file has; 0 for none."""
     return int.from_bytes(data[_MARK], "big")
 
 
 def with_mark(data: bytes) -> bytes:
-    """A table file with its integrity mark.
+    """Return a table file with its integrity mark.
 
     Raises:
-        UsageError: it is too short for a table file.
+        UsageError: if it is too short for a table file.
     """
     if len(data) < HEADER_SIZE + TABLE_HEADER_SIZE:
         raise UsageError(f"a table file has {HEADER_SIZE + TABLE_HEADER_SIZE} bytes at least, this one {len(data)}")
@@ -99,7 +99,7 @@ def with_mark(data: bytes) -> bytes:
 
 
 def is_intact(data: bytes) -> bool:
-    """Whether a table file has no integrity mark, or the one that belongs to it."""
+    """Return whether a table file has no integrity mark, or the one that belongs to it."""
     mark = mark_in(data)
     return mark == 0 or mark == mark_for(data)
 
@@ -116,7 +116,7 @@ def pack_rows(row: Layout, rows: Sequence[Mapping[str, Any]], capacity: int) -> 
 
 
 def unpack_rows(row: Layout, data: bytes | bytearray | memoryview) -> list[dict[str, Any]]:
-    """The rows of such a table, zero rows included."""
+    """Return the rows of such a table, zero rows included."""
     return [row.unpack(data, at) for at in range(0, len(data) - row.size + 1, row.size)]
 
 

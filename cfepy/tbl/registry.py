@@ -53,7 +53,7 @@ class TableHandle(int):
     status: int = CFE_SUCCESS
 
     def with_status(self, status: int) -> TableHandle:
-        """The same handle with another status."""
+        """Return the same handle with another status."""
         handle = TableHandle(self)
         handle.status = status
         return handle
@@ -124,7 +124,7 @@ class TableRecord:
         self.previous_id, self.active_id = self.active_id, buffer.load_id
 
     def image(self, buffer: Buffer) -> memoryview:
-        """The memory of the whole table in a buffer, also what was never put into it."""
+        """Return the memory of the whole table in a buffer, also what was never put into it."""
         return buffer.data[: self.size]
 
     def note_load(self, source: str, time: tuple[int, int]) -> None:
@@ -184,11 +184,11 @@ class TableRegistry:
         )
 
     def find(self, name: str) -> TableRecord | None:
-        """The table of a full name, or None."""
+        """Return the table of a full name, or None."""
         return next((table for table in self.tables if table.name == name), None)
 
     def by_name(self, name: str) -> TableRecord:
-        """The table of a full name.
+        """Return the table of a full name.
 
         Raises:
             CfeError: CFE_TBL_ERR_INVALID_NAME.
@@ -199,7 +199,7 @@ class TableRegistry:
         return table
 
     def check(self, app_name: str, name: str, size: int, options: int) -> str:
-        """The full name of a table to be, once name, options and size are found good, in that order.
+        """Return the full name of a table to be, once name, options and size are found good, in that order.
 
         Raises:
             CfeError: CFE_TBL_ERR_INVALID_NAME, _OPTIONS or _SIZE.
@@ -218,10 +218,10 @@ class TableRegistry:
         return f"{app_name}.{name}"
 
     def duplicate(self, full_name: str, size: int, app_id: int) -> Access | None:
-        """The handle that an app already has on a table of its own of that name and size; None for a new name.
+        """Return the handle that an app already has on a table of its own of that name and size; None for a new name.
 
         Raises:
-            CfeError: CFE_TBL_ERR_DUPLICATE_NOT_OWNED, _DUPLICATE_DIFF_SIZE, or _UNREGISTERED when it has no handle.
+            CfeError: CFE_TBL_ERR_DUPLICATE_NOT_OWNED, _DUPLICATE_DIFF_SIZE, or _UNREGISTERED if it has no handle.
         """
         table = self.find(full_name)
         if table is None:
@@ -279,7 +279,7 @@ class TableRegistry:
     # -- buffers of a table, by their ids --
 
     def locate(self, table: TableRecord, buffer_id: int) -> Buffer | None:
-        """The buffer that an id means, whatever id it has itself by now (CFE_TBL_LocateLoadBufferByID)."""
+        """Return the buffer that an id means, whatever id it has itself by now (CFE_TBL_LocateLoadBufferByID)."""
         if buffer_id == UNDEFINED:
             return None
         category, number = self._memory.ids.split(buffer_id)
@@ -288,11 +288,11 @@ class TableRegistry:
         return table.buffers[number if table.double_buffered else 0]
 
     def active(self, table: TableRecord) -> Buffer | None:
-        """The buffer that apps see; None before the first load."""
+        """Return the buffer that apps see; None before the first load."""
         return self.locate(table, table.active_id)
 
     def loading(self, table: TableRecord) -> Buffer | None:
-        """The buffer of the load in progress (CFE_TBL_GetLoadInProgressBuffer)."""
+        """Return the buffer of the load in progress (CFE_TBL_GetLoadInProgressBuffer)."""
         buffer = self.locate(table, table.next_id)
         if buffer is None or buffer.load_id == table.next_id:
             return buffer
@@ -302,18 +302,22 @@ class TableRegistry:
         return None
 
     def inactive(self, table: TableRecord) -> Buffer | None:
-        """The buffer of the load in progress, else the one that was active before (CFE_TBL_GetInactiveBuffer)."""
+        """Return the buffer of the load in progress, else the one that was active before
+        (CFE_TBL_GetInactiveBuffer).
+        """
         return self.loading(table) or self.locate(table, table.previous_id)
 
     def is_update_pending(self, table: TableRecord) -> bool:
-        """Whether the load in progress waits for the owner to switch to it; release 7.0.0 asks for no activation."""
+        """Return whether the load in progress waits for the owner to switch to it; release 7.0.0 asks for no
+        activation.
+        """
         buffer = self.locate(table, table.next_id)
         if buffer is None or buffer.load_id != table.next_id:
             return False
         return buffer.is_valid and (self._config.is_cfe_7_0_0 or buffer.activate_requested)
 
     def is_private(self, table: TableRecord, buffer: Buffer) -> bool:
-        """Whether a buffer is one of the table's own (CFE_TBL_LoadBuffIsPrivate)."""
+        """Return whether a buffer is one of the table's own (CFE_TBL_LoadBuffIsPrivate)."""
         return self._memory.ids.split(buffer.load_id)[0] == self._category(table)
 
     def place(self, table: TableRecord) -> int:
@@ -345,7 +349,7 @@ class TableRegistry:
         return buffer
 
     def working_buffer(self, table: TableRecord) -> Buffer | None:
-        """The buffer of the load in progress, which begins if there is none (CFE_TBL_GetWorkingBuffer)."""
+        """Return the buffer of the load in progress, which begins if there is none (CFE_TBL_GetWorkingBuffer)."""
         buffer = self.loading(table)
         if buffer is not None:
             return buffer
@@ -355,7 +359,7 @@ class TableRegistry:
         return buffer
 
     def _new_buffer(self, table: TableRecord) -> Buffer | None:
-        """A buffer that starts as a copy of the active image, so that a file may hold part of the table."""
+        """Return a buffer that starts as a copy of the active image, so that a file may hold part of the table."""
         buffer = self.exclusive_buffer(table) if table.double_buffered else self._memory.acquire_shared()
         if buffer is None:
             return None

@@ -119,7 +119,9 @@ class TableServices(TableAccess):
         return access.handle.with_status(self._make_critical(access.table)) if options & OPT_CRITICAL else access.handle
 
     def _checked(self, app_name: str, name: str, size: int, options: int) -> str:
-        """The full name; what is wrong with the table to be stands in the system log too (CFE_TBL_TxnCheckConfig)."""
+        """Return the full name; what is wrong with the table to be stands in the system log too
+        (CFE_TBL_TxnCheckConfig).
+        """
         try:
             return self.registry.check(app_name, name, size, options)
         except CfeError as error:
@@ -152,7 +154,7 @@ class TableServices(TableAccess):
             return CFE_TBL_WARN_NOT_CRITICAL
 
     def share(self, full_name: str) -> TableHandle:
-        """A handle on another app's table, "APP.name" (CFE_TBL_Share).
+        """Return a handle on another app's table, "APP.name" (CFE_TBL_Share).
 
         Raises:
             CfeError: CFE_TBL_ERR_INVALID_NAME, CFE_TBL_ERR_HANDLES_FULL.
@@ -303,7 +305,7 @@ class TableServices(TableAccess):
         """Run the validator as the ground asked (CFE_TBL_Validate).
 
         Returns:
-            CFE_SUCCESS whatever the validator found, or CFE_TBL_INFO_NO_VALIDATION_PENDING.
+            CFE_SUCCESS whatever the validator found; raises CFE_TBL_INFO_NO_VALIDATION_PENDING.
         """
         table = self._access("Validate", handle, owner_only=True).table
         request = self._validations.take(table)
@@ -359,7 +361,7 @@ class TableServices(TableAccess):
             CFE_SUCCESS or CFE_TBL_INFO_NO_DUMP_PENDING.
 
         Raises:
-            CfeError: CFE_TBL_ERR_INVALID_HANDLE when the image cannot be copied, as `Dumps.take_snapshot` tells.
+            CfeError: CFE_TBL_ERR_INVALID_HANDLE if the image cannot be copied, as `Dumps.take_snapshot` tells.
         """
         access = self._access(
             "DumpToBuffer", handle, log="App({app:x}) does not have access to Tbl Handle=0x{handle:x}"
@@ -402,7 +404,9 @@ class TableServices(TableAccess):
         return self._memory.pool_id
 
     def buffer_sizes(self) -> dict[str, list[int]]:
-        """Bytes of the buffers in the table buffer pool, by the full names of tables; "" has those that are shared."""
+        """Return the bytes of the buffers in the table buffer pool, by the full names of tables; "" has those that are
+        shared.
+        """
         found = {"": [len(buffer.data) for buffer in self._memory]}
         for table in self.registry.tables:
             found[table.name] = [table.size for buffer in table.buffers if buffer.block is not None]

@@ -52,7 +52,7 @@ class TableStorage(Protocol):
     """The file system as Table Services use it; failures raise OsalError."""
 
     def read_file(self, path: str) -> bytes:
-        """The whole content of a file."""
+        """Return the whole content of a file."""
 
     def leave_open(self, path: str) -> None:
         """Open a file and lose its descriptor."""
@@ -61,7 +61,7 @@ class TableStorage(Protocol):
         """Make or replace a file."""
 
     def exists(self, path: str) -> bool:
-        """Whether there is such a file."""
+        """Return whether there is such a file."""
 
 
 class Refused(CfeError):

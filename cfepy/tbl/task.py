@@ -121,7 +121,7 @@ class Housekeeping:
         self._failures += done.result != 0
 
     def collect(self) -> dict[str, Any]:
-        """The fields of packets.HOUSEKEEPING."""
+        """Return the fields of packets.HOUSEKEEPING."""
         self._count_a_validation()
         last, table = self._last_validation, self.last_updated
         if table is not None and table.reg_id in self._registry.tables:
@@ -148,7 +148,7 @@ class Housekeeping:
         return values | self._updated
 
     def registry_packet(self, table: TableRecord, owner_name: str) -> dict[str, Any]:
-        """The fields of packets.REGISTRY_PACKET for one table.
+        """Return the fields of packets.REGISTRY_PACKET for one table.
 
         As in cFE a field that nothing is known for has the value of the last packet: all of them for a table that is
         gone, CRC and file time for one that was never loaded.
@@ -168,7 +168,7 @@ class Housekeeping:
         return self._registry_fields
 
     def registry_record(self, table: TableRecord, owner_name: str) -> dict[str, Any]:
-        """The fields of packets.REGISTRY_RECORD for one table."""
+        """Return the fields of packets.REGISTRY_RECORD for one table."""
         active = self._registry.active(table)
         return {
             **self._common(table, owner_name),
@@ -430,7 +430,7 @@ class RegistryDump:
             return False
 
     def _record(self, number: int) -> tuple[bytes, bool]:
-        """The record in a slot of the registry, nothing for a free one, and whether it is the last."""
+        """Return the record in a slot of the registry, nothing for a free one, and whether it is the last."""
         table = self._registry.tables.at(number)
         is_last = number >= self._registry.tables.capacity - 1
         if table is None:

@@ -45,7 +45,7 @@ class Validations:
         """Keep a request until its result was told.
 
         Raises:
-            CfeError: there are too many already.
+            CfeError: if there are too many already.
         """
         request.number = self._slots.create(request)
 
