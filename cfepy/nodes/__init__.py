@@ -1,9 +1,10 @@
 """Unmodified Python programs on the simulated computer, each with its own module table ("universe").
 
 A ROS node expects a process of its own. Here it gets its own module table, clock, threads, environment and random
-numbers instead, all on the kernel; the host interpreter is not patched. What makes a program a process belongs here:
-the universe, finding and executing modules, refused modules, and tracebacks. Replacements for the standard library are
-in `cfepy.nodes.stdlib`. This package does not know ROS: rospy and the message packages come in as factories of modules.
+numbers instead, all on the kernel; the host interpreter is not patched. Everything that makes a program a process
+belongs here: the universe, finding and executing modules, refused modules, and tracebacks. Replacements for the
+standard library are in `cfepy.nodes.stdlib`. This package does not know ROS: rospy and the message packages come in as
+factories of modules.
 
 The names below are loaded on first use, so a mission without nodes does not load them. The central file is
 `cfepy/nodes/universe.py`.

@@ -1,4 +1,4 @@
-"""`Accesses`: reports to observers what tasks read and write in mission code, with optional scheduling points.
+"""`Accesses`: reports the reads and writes of tasks in mission code to observers, with optional scheduling points.
 
 Code compiled by `cfepy.nodes.instrument` calls the hooks of a run just before it reads or writes an attribute, an item
 of a container, or a variable that several functions share. Each object gets a number in order of first access, so the
@@ -223,7 +223,7 @@ class Accesses:
             self._point()
 
     def called(self, value: T) -> T:
-        """Let other tasks run after a call that entered cfepy, because what it returned may be out of date."""
+        """Let other tasks run after a call that entered cfepy, because its result may be out of date."""
         kernel = cast("CallPointKernel", self._kernel)
         task = kernel.current
         if kernel.entered.pop(task, False) and task not in self._loading:

@@ -1,4 +1,4 @@
-"""Tracebacks of nodes: lines of the node and its libraries, without those of the simulator."""
+"""Tracebacks of nodes: lines of the node and its libraries, without lines of the simulator."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""What a node on the simulated computer cannot use: processes, and sockets in virtual time.
+"""Modules that a node on the simulated computer cannot use: processes, and sockets in virtual time.
 
-The modules can be loaded, because many programs load them without need; the error at first use says what to do instead.
-A flight computer with an RTOS has no processes either.
+The modules can be loaded, because many programs load them without need; the error at first use gives an alternative. A
+flight computer with an RTOS has no processes either.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ _MULTIPROCESSING_ERRORS = ("AuthenticationError", "BufferTooShort", "ProcessErro
 
 
 class RefusedError(OSError):
-    """Error for something that the simulated computer does not have; the text says what to do instead.
+    """Error for something that the simulated computer does not have; the text gives an alternative.
 
     Args:
         what: the function or class.
-        advice: what to do instead.
+        advice: the alternative.
         node: the caller.
     """
 

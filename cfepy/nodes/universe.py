@@ -434,7 +434,7 @@ def _show(universe: Universe, error: BaseException) -> None:
 
 
 def _shut_down(universe: Universe) -> int:
-    """Do what the interpreter does at its end: join threads, run exit hooks."""
+    """Join threads and run exit hooks, as the interpreter does at its end."""
     threading = universe.importer.modules.get("threading")
     status = 0
     if threading is not None:

@@ -1,8 +1,9 @@
-"""Files of a run: what its programs write goes into a layer over the host's files, which are only read.
+"""Files of a run: a layer for the output of its programs over the host's files, which are only read.
 
-What determines what a program finds at a path belongs here: the layers and copying on write (`overlay`), paths and
-places (`paths`), metadata (`stamps`), and Python's functions that take paths or descriptors: `open` (`opened`), those
-of `os` (`file_calls`) and those of modules that open files in C (`shared`). The files of OSAL are in `cfepy.osal`.
+Everything that determines a program's view of a path belongs here: the layers and copying on write (`overlay`), paths
+and places (`paths`), metadata (`stamps`), and Python's functions that take paths or descriptors: `open` (`opened`),
+those of `os` (`file_calls`) and those of modules that open files in C (`shared`). The files of OSAL are in
+`cfepy.osal`.
 """
 
 from __future__ import annotations

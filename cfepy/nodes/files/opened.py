@@ -56,7 +56,7 @@ class OpenFiles:
 
     Args:
         where: makes a path of the program absolute.
-        overlay: files of its run; None for those of the host.
+        overlay: files of its run; None for the host's files.
 
     Attributes:
         raw_type: `io.FileIO` of the program.

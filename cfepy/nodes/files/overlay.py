@@ -1,8 +1,8 @@
-"""`Overlay`: the files that the programs of one run see: the host's, under a layer with what the run wrote.
+"""`Overlay`: the files that the programs of one run see: the host's, under a layer with the files written by the run.
 
-What a run writes is stored in a temporary folder, at the same path below it; a host file is copied there before it is
-changed. Removals are only recorded. Descriptors are therefore real, and C code that is given a descriptor or place
-works. The folder is created on first use and removed with the mission.
+Files written by a run are stored in a temporary folder, at the same path below it; a host file is copied there before
+it is changed. Removals are only recorded. Descriptors are therefore real, and C code that is given a descriptor or
+place works. The folder is created on first use and removed with the mission.
 
 Paths here are absolute and as programs see them; a "place" is where a file is really stored.
 """
@@ -124,8 +124,8 @@ class Overlay:
     def allows(self, path: str, bits: int) -> bool:
         """Return whether the program may access the file at a path without links.
 
-        The program owns all files and is not root, whoever runs cfepy. It cannot read what cfepy cannot read on the
-        host; writes go to a copy.
+        The program owns all files and is not root, whoever runs cfepy. It cannot read files that cfepy cannot read on
+        the host; writes go to a copy.
 
         Args:
             path: path of the file.
@@ -552,7 +552,7 @@ class Overlay:
     # -- end and fork -----------------------------------------------------------------------------------------------
 
     def close(self) -> None:
-        """Remove what the run wrote, at the end of the mission."""
+        """Remove the files of the run, at the end of the mission."""
         self._remove()
         self._remove = bool
         self._top = ""

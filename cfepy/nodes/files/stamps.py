@@ -171,7 +171,7 @@ class Stamps:
 
 
 def key_of(real: os.stat_result) -> Key:
-    """Return what identifies a real file."""
+    """Return the identity of a real file."""
     return real.st_dev, real.st_ino
 
 
@@ -192,7 +192,7 @@ def is_special(place: str) -> bool:
 
 
 def copy_tree(old: str, new: str, stamps: Stamps) -> None:
-    """Copy what a run wrote to another folder, for a run that continues in a forked process."""
+    """Copy the files of a run to another folder, for a run that continues in a forked process."""
     from shutil import copy2
 
     links: dict[tuple[int, int], str] = {}

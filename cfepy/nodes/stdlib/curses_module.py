@@ -1,8 +1,8 @@
 """`_curses` of a node: the screen library on the node's terminal, used by the standard library's own `curses`.
 
 Constants are the host's. A node draws into windows, grids of characters with a cursor; `refresh` prints the screen rows
-that changed as lines of the node, so a log shows what a user at the terminal would have seen. Attributes and colours
-are accepted and ignored. A key is one number, although a terminal sends several bytes for some keys.
+that changed as lines of the node, so a log shows the same as the terminal. Attributes and colours are accepted and
+ignored. A key is one number, although a terminal sends several bytes for some keys.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ def read_key(terminal: Terminal, keypad: bool) -> int:
 
 
 class Shown(Protocol):
-    """What a window needs from its screen; see `cfepy.nodes.stdlib.curses_module.Screen`."""
+    """Methods of a screen for its windows; see `cfepy.nodes.stdlib.curses_module.Screen`."""
 
     @property
     def terminal(self) -> Terminal: ...
@@ -187,7 +187,7 @@ class CursesWindow:
         """Write text: `[y, x,] text [, attributes]`.
 
         Raises:
-            _curses.error: it does not fit; what fits is written, as curses does.
+            _curses.error: if the text does not fit; the part that fits is written, as in curses.
         """
         text, _ = self._place(args)
         self._write(text.decode() if isinstance(text, bytes) else str(text))
@@ -205,7 +205,7 @@ class CursesWindow:
     echochar = addch
 
     def insstr(self, *args: Any) -> None:
-        """Insert text; what follows moves to the right."""
+        """Insert text; the following text moves to the right."""
         text, _ = self._place(args)
         row = self._cells[self._y]
         row[self._x : self._x] = list(str(text))
@@ -319,7 +319,7 @@ class CursesWindow:
         self._wait = None if milliseconds < 0 else milliseconds / 1e3
 
     def getch(self, *place: int) -> int:
-        """Return the next key, or -1 if none comes in time. What was written is shown first."""
+        """Return the next key, or -1 if none comes in time. Written text is shown first."""
         screen = self._screen
         self.refresh()
         if screen.pushed_back:

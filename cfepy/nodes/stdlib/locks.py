@@ -4,8 +4,8 @@ A free lock is taken and given back without a kernel call. A contended one is ha
 come first within a priority, so that it cannot be snatched in between. Locks hash by serial number, because the
 standard library keeps them in sets and iterates those.
 
-The classes are made per universe: their methods then reach the kernel through a cell, which is what keeps a
-lock-and-release near the price of a native one.
+The classes are made per universe: their methods then reach the kernel through a cell, which keeps a lock-and-release
+near the price of a native one.
 """
 
 from __future__ import annotations

@@ -32,7 +32,7 @@ def host_of(name: Any, family: int, host_name: str) -> str:
     Args:
         name: as a node gives it.
         family: AF_INET or AF_INET6.
-        host_name: what the simulated computer is called.
+        host_name: name of the simulated computer.
 
     Raises:
         socket.gaierror: there is no such host.
@@ -60,7 +60,7 @@ def place_of(address: Any, family: int, host_name: str, call: str) -> Place:
     Args:
         address: a tuple of host and port.
         family: of the socket.
-        host_name: what the simulated computer is called.
+        host_name: name of the simulated computer.
         call: the function that was called, for texts of errors.
 
     Raises:
@@ -87,7 +87,7 @@ def name_functions(host_name: str) -> dict[str, Callable[..., Any]]:
     """Return the functions of the module `socket` that look up names.
 
     Args:
-        host_name: what the simulated computer is called.
+        host_name: name of the simulated computer.
     """
 
     def gethostbyname(name: str) -> str:
@@ -132,5 +132,5 @@ def _port_of(port: Any) -> int:
 
 
 def unreachable() -> OSError:
-    """Return what a network reports that has only this computer."""
+    """Return the answers of a network with only this computer."""
     return failure(errno.ENETUNREACH)

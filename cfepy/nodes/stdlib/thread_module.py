@@ -91,7 +91,7 @@ class ThreadHandle:
     Args:
         gate: a fresh lock of the universe; it is held until the thread is done.
         ident: of a thread that runs already.
-        kernel: is told who has seen the end.
+        kernel: its observer is told which tasks have observed the end.
     """
 
     def __init__(self, gate: Any, ident: int | None = None, kernel: Kernel | None = None) -> None:
