@@ -3,8 +3,8 @@
 An attachment that observes a run without changing it belongs here, as does the reader of the section of the mission
 file that configures it. Faults are in `cfepy.faults`, commands and expected answers in `cfepy.script`.
 
-The names below are loaded on first use, so a run loads only what it needs of this package. The central file is
-`cfepy/monitors/observer.py`.
+The names below are loaded on first use, so a run loads only the parts of this package that it needs. The central file
+is `cfepy/monitors/observer.py`.
 """
 
 from __future__ import annotations

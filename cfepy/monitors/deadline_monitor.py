@@ -102,7 +102,7 @@ class DeadlineMonitor(Observer):
             state.last_ns, state.is_late = None, False
 
     def conclude(self) -> None:
-        """Record what is late now, and stop measuring."""
+        """Record messages that are late now, and stop measuring."""
         self._find_late(self._kernel.now)
         self._is_over = True
 

@@ -37,7 +37,7 @@ class Latest(dict[str, Any]):
 
 
 class Judge:
-    """Checks one invariant; remembers what it needs since the last reset.
+    """Checks one invariant; keeps its state since the last reset.
 
     Args:
         invariant: the invariant.

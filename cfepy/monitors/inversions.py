@@ -101,7 +101,9 @@ class InversionWatch(Observer):
         return call
 
     def _holder_of(self, task: Task) -> Task | None:
-        """Return the less urgent task that holds what a task is about to wait for, if there is exactly one."""
+        """Return the less urgent task that holds the lock which a task is about to wait for, if there is
+        exactly one.
+        """
         waits = task.waits
         if waits is None:
             return None

@@ -23,7 +23,7 @@ from cfepy.schedules import ExploringKernel, Race, RaceSide, VectorClocks
 
 Frames = tuple[tuple[CodeType, int], ...]
 Key = Callable[[tuple[Any, ...]], Hashable]
-"""Returns what a call orders by, from its arguments."""
+"""Returns the objects by which a call orders tasks, from its arguments."""
 
 _ANY_ITEM = "[*]"  # all items of a container
 
@@ -52,9 +52,7 @@ _LETS_GO: dict[str, Key] = {
     **dict.fromkeys(("setParam", "deleteParam"), _always("parameters")),
     **dict.fromkeys(("run_loop", "wait_for_startup_sync", "wait_for_system_state"), _always("startup")),
 }
-"""Things passed on by service calls and calls of the parameter server: the receiver knows what the caller did
-before.
-"""
+"""Things passed on by service calls and calls of the parameter server: the receiver is ordered after the caller."""
 _ASKING = ("getParam", "hasParam", "searchParam", "getParamNames")
 _ENDING = ("delete_child_task", "task_delete")
 _TAKES: dict[str, Key] = {
@@ -210,7 +208,7 @@ class RaceWatch(Attachment):
         self._waiting.pop(pipe, None)
 
     def _out(self, packet: bytes, pipe: Pipe) -> dict[Task, int] | None:
-        """Return the clock that a packet in a pipe carries; for one changed by faults, that of the oldest."""
+        """Return the clock that a packet in a pipe carries; for one changed by faults, the clock of the oldest."""
         waiting = self._waiting.get(pipe)
         if not waiting:
             return None

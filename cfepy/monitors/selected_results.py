@@ -1,6 +1,6 @@
 """Results of a mission that must not depend on the schedule: the section `results` of a mission file.
 
-`cfepy explore` compares them with those of the run under the default schedule. See docs/exploration.md.
+`cfepy explore` compares them with the results under the default schedule. See docs/exploration.md.
 """
 
 from __future__ import annotations
