@@ -1,7 +1,7 @@
 """Journals: recorded runs that can be repeated, on this computer or another, and compared with others.
 
-What belongs here defines the contents and file of a journal (`journal`), writes it during a run (`recorder`), or
-repeats the run and compares it (`replay_files`, `replay`, `header_diff`). Flying a run belongs to `cfepy.pilot`; input
+Code that defines the contents and file of a journal (`journal`), writes it during a run (`recorder`), or repeats the
+run and compares it (`replay_files`, `replay`, `header_diff`) belongs here. Flying a run belongs to `cfepy.pilot`; input
 from outside belongs to `cfepy.mission`. Commands that show journals are in `cfepy.cli`. The central file is
 `cfepy/journal/journal.py`.
 """

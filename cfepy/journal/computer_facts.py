@@ -1,4 +1,4 @@
-"""What a mission can see of the computer and the user: versions, environment, operating system."""
+"""Facts about the computer and the user that a mission can see: versions, environment, operating system."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Validation of a journal's frames: kinds of values, sizes, and paths that stay inside a folder.
 
-A journal may come from somebody else. Frames that pass need no further checks.
+A journal may come from another person. Frames that pass need no further checks.
 """
 
 from __future__ import annotations

@@ -45,7 +45,7 @@ _NOT_OF_THE_RUN = (
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """What was known at the start of the run.
+    """Facts known at the start of the run.
 
     Attributes:
         plan: plan of the run.
@@ -139,10 +139,10 @@ class Journal:
 
     Attributes:
         path: its file.
-        header: what was known at the start.
+        header: facts known at the start.
         files: files of the mission, by path on the computer of the run.
-        folders: what nodes saw in folders that they listed: by path, names and whether they are folders.
-        looks: what nodes and applications learned about paths, by path.
+        folders: contents of listed folders: by path, names and whether they are folders.
+        looks: facts about paths that nodes and applications checked, by path.
         pauses: input from outside.
         answers: which calls of the mission to the outside were answered, in order.
         decisions: answers of the policy that differ from fifo's, by number of the decision.

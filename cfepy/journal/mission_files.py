@@ -111,7 +111,9 @@ class Carrier:
 
 
 def files_of(spec: MissionSpec) -> list[str]:
-    """Return the files that a mission can use by itself, sorted: those of its folder, if it has a startup script."""
+    """Return the files that a mission can use by itself, sorted: the files of its folder, if it has a startup
+    script.
+    """
     if spec.startup is not None and spec.mission_file is None:
         return []  # made from a launch file or a node script, which may be anywhere; files that it uses are observed
     found = [str(path) for path in _below(spec.folder)]
@@ -195,7 +197,7 @@ class ReadFiles:
         self._known.add(name)
         if flags & (os.O_WRONLY | os.O_RDWR | os.O_CREAT):
             self._written.add(name)
-            return  # what a run writes is its own product, even if it reads it again
+            return  # a file written by the run is its own product, even if the run reads it again
         source = _source_of(name)
         if (source in self._known and source != name) or source.startswith((*_VOLATILE, *_left_out())):
             return

@@ -1,6 +1,6 @@
 """Repeating a journal's run: input from outside comes at the same instants, and the records are compared.
 
-`Replay` holds what makes a run a replay, for a caller that flies the mission in parts; `replay` flies it at once. A
+`Replay` holds everything for a replay, for a caller that flies the mission in parts; `replay` flies it at once. A
 `Checker` compares the records with the checkpoints of the journal during the replay.
 """
 
@@ -79,7 +79,8 @@ class ReplayCourse(Course):
         outside, pauses = self.mission.outside, self._pauses
         while pauses and (pauses[-1].until_ns, pauses[-1].visits) <= (outside.until_ns, outside.visits):
             for event in pauses.pop().events:
-                with suppress(Exception):  # what failed then fails again, and a run that differs may lack its target
+                # it may have failed in the recorded run too, and a run that differs may lack its target
+                with suppress(Exception):
                     outside.repeat(event)
         stop_ns = super().next_stop()
         return min(stop_ns, pauses[-1].until_ns) if pauses else stop_ns
@@ -101,7 +102,7 @@ class _Answers(Attachment):
 
 
 class Replay:
-    """What makes a run the replay of a journal.
+    """The plan, policy and attachments that make a run the replay of a journal.
 
     Args:
         journal: the run.
@@ -321,7 +322,7 @@ class Difference:
     Attributes:
         after: the records agree up to there.
         before: they differ there; its numbers are those of the journal.
-        lines: what the replay did between the two, as text.
+        lines: the replay's records between the two, as text.
     """
 
     after: Checkpoint

@@ -1,4 +1,4 @@
-"""Files of a replayed mission, and what has changed since the run was recorded.
+"""Files of a replayed mission, and their changes since the run was recorded.
 
 Files in the journal are unpacked into a folder that replaces the root of the computer: the mission sees them at their
 old paths, and can write there without harm. The mission must not see that folder, so its parameters, arguments and
@@ -183,7 +183,7 @@ def _in_place_of(header: Header, root: str) -> Iterator[None]:
 
 
 def _warnings(journal: Journal) -> Iterator[str]:
-    """Yield the differences between this cfepy and Python and those of the run."""
+    """Yield the differences between cfepy and Python now and in the run."""
     then, now = journal.header.versions, versions()
     for name in ("cfepy", "cfe"):
         if then.get(name) != now[name]:

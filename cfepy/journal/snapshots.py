@@ -1,4 +1,4 @@
-"""What a run learned about paths without opening them: existence, kind, size, age.
+"""Facts about paths that a run checked without opening them: existence, kind, size, age.
 
 A program that only checks whether a file exists gets the same answer in a replay, where the file may be missing or
 newly created.
@@ -22,7 +22,7 @@ _LARGEST = 1 << 40  # largest size in bytes of a file that is created; it takes 
 
 @dataclass(frozen=True, slots=True)
 class PathLook:
-    """What was at a path when a run first checked it.
+    """State of a path when a run first checked it.
 
     Attributes:
         path: absolute path, with links resolved except in the last part.
@@ -42,7 +42,7 @@ class PathLook:
 
 
 def look_at(path: str) -> PathLook:
-    """Return what is at a path now."""
+    """Return the current state of a path."""
     try:
         found = os.lstat(path)
         target = os.readlink(path) if stat.S_ISLNK(found.st_mode) else ""
@@ -59,11 +59,11 @@ def look_at(path: str) -> PathLook:
 def put_in_place(root: Path, looks: Iterable[PathLook]) -> frozenset[str]:
     """Create files, folders and links below a root that look like those that a run checked.
 
-    What is there already stays, with its content: it was opened, too. What was no file, such as a device, is left out.
+    Existing files keep their contents, because they were opened too. Other kinds, such as devices, are left out.
 
     Args:
         root: folder that replaces the root of the computer.
-        looks: what the run learned.
+        looks: states of the checked paths.
 
     Returns:
         The paths at which there was nothing.
