@@ -1,6 +1,6 @@
 """Real sockets of this computer, with which a run and a ground system reach other programs.
 
-What belongs here opens a real socket, or waits for somebody outside: the bridge of a paced run to the loopback
+Code that opens a real socket, or waits for input from outside, belongs here: the bridge of a paced run to the loopback
 interface (`host_network`), datagrams of a ground system (`udp`), typed lines (`typed_lines`), non-blocking connections
 with programs (`peer_socket`), their counts (`peer_counts`) and limits (`peer_places`), and the names by which they
 address this computer (`own_names`). The simulation does not know this package; the command that runs a mission connects

@@ -1,6 +1,6 @@
 """The bridge between a mission's virtual network and this computer's loopback interface.
 
-A port that an application binds is opened on 127.0.0.1 too; what arrives there enters the mission at its current
+A port that an application binds is opened on 127.0.0.1 too; data that arrives there enters the mission at its current
 virtual time, with a record in the trace. A datagram for a port that no socket in the mission has bound is sent to
 127.0.0.1. No other interface is used. The pacer sleeps in `wait`, which input ends; after every part of the run
 `exchange` transfers all waiting bytes. Each TCP connection is a `HostConnection`: a real socket connected to a virtual
@@ -104,7 +104,7 @@ class HostNetwork:
             _poll(readers, writers, seconds)
 
     def exchange(self) -> None:
-        """Open newly bound ports, bring in what arrived, and send what is waiting.
+        """Open newly bound ports, bring in received data, and send waiting data.
 
         Raises:
             UsageError: if a port is taken on this computer.
@@ -126,7 +126,7 @@ class HostNetwork:
             guest.exchange()
 
     def close(self) -> None:
-        """Send what is left, and close everything."""
+        """Send the remaining data, and close everything."""
         while self._outbox:
             self._send_out(self._outbox.pop(0))
         for connection in self._connections:
@@ -288,7 +288,7 @@ class HostConnection:
         return bool(self._pending)
 
     def move(self) -> bool:
-        """Transfer what is possible; returns False if the connection has ended and is closed."""
+        """Transfer as much as possible; returns False if the connection has ended and is closed."""
         try:
             self._bring_in()
             self._send_out()

@@ -89,7 +89,7 @@ class PeerSocket:
             self.dropped += 1
 
     def flush(self) -> None:
-        """Send as much as possible of what waits."""
+        """Send as much waiting data as possible."""
         while self.is_open and (self._under_way or self._waiting):
             if not self._under_way:
                 self._under_way = self._waiting.popleft()

@@ -21,7 +21,7 @@ def send(host: str, port: int, data: bytes) -> bool:
         data: its bytes.
 
     Returns:
-        False when the host answers that no program listens at the port. True does not say that it arrived.
+        False if the host answers that there is no listener at the port. True does not mean that the datagram arrived.
 
     Raises:
         UsageError: if there is no such host, or no way to it.
