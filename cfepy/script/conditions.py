@@ -1,7 +1,7 @@
-"""What a mission script can expect: an application's state, a file, a line of the console, an event, telemetry.
+"""Conditions in a mission script: an application's state, a file, a line of the console, an event, telemetry.
 
-A condition has no state: it checks the current mission, or a packet from the Software Bus, and describes what it found
-instead.
+A condition has no state: it checks the current mission, or a packet from the Software Bus, and describes the actual
+state.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class Collected:
 
 
 class Scene:
-    """What conditions check and steps act on: a mission, its dictionary, and the packets sent so far.
+    """Objects that conditions check and steps act on: a mission, its dictionary, and the packets sent so far.
 
     Args:
         mission: None for another computer, of which only packets are known.
@@ -85,7 +85,7 @@ class Scene:
         packets: collects them.
 
     Attributes:
-        mark_ns, since: when a script last did something, and what counts from there on.
+        mark_ns, since: time of a script's last action, and the position from which packets count after it.
     """
 
     def __init__(self, mission: Mission | None, dictionary: Dictionary, packets: Collected) -> None:
@@ -132,7 +132,7 @@ class Scene:
             must_arrive: whether a packet without subscribers is an error.
 
         Returns:
-            What was wrong; "" when all was well.
+            The error; "" if there was none.
         """
         detail = ""
         if must_arrive and not receivers(self.mission.cfe.sb, get_msg_id(packet)):
@@ -172,7 +172,7 @@ class Condition(Protocol):
         """Return whether the current mission meets it."""
 
     def instead(self, scene: Scene, since: Since) -> str:
-        """Return what there was instead; for an unwanted condition, what there was."""
+        """Return a description of the actual state; for an unwanted condition, of the finding that met it."""
 
 
 class StateCondition:

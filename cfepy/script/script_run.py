@@ -91,7 +91,7 @@ class Expectation:
     Args:
         step: its step.
         condition: the step's condition.
-        since: start of what counts.
+        since: position from which packets and lines count.
         deadline_ns: virtual time at which it is decided; None for the end of the script.
 
     Attributes:
@@ -147,7 +147,7 @@ class Expectation:
         return StepVerdict.of(self._step, False, now_ns, OVER) if is_over else None
 
     def _met(self, scene: Scene, now_ns: int) -> tuple[int, Seen | None] | None:
-        """Return when it was met, and by which packet; checks only what is new since the last check."""
+        """Return when it was met, and by which packet; checks only new packets and lines."""
         condition, looked = self._condition, self._looked
         self._looked = scene.here()
         if not condition.msg_ids:
@@ -228,7 +228,7 @@ class ScriptRun(PacketWatch):
         return self.stopped or len(self._verdicts) == len(self.script.steps)
 
     def advance(self) -> int:
-        """Execute what is due now.
+        """Execute the steps that are due.
 
         Returns:
             The virtual time in ns at which it wants to be asked again; far in the future when it is finished.

@@ -25,7 +25,7 @@ class StandingScript:
     """Steps, one at a time.
 
     Args:
-        scene: what they check and act on.
+        scene: objects that they check and act on.
         spec: the mission whose topics they may name; None for another computer.
     """
 
@@ -59,7 +59,7 @@ class StandingScript:
         self._runs.append(run)
 
     def advance(self) -> int:
-        """Execute what is due now.
+        """Execute the steps that are due.
 
         Returns:
             The virtual time in ns at which it wants to be asked again; far in the future when nothing is open.

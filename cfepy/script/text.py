@@ -144,7 +144,7 @@ class Step:
     sends a packet, or expects something (`condition`), or neither: "end". A packet with `must_arrive` fails when no
     pipe subscribes to it; after one with `is_reset` the script waits for the reset. `within_ns` counts from the last
     packet sent or time waited for, `until_ns` from the start of the run; without both, an expectation of a state is
-    judged at once, and what must not come must not come until the script ends.
+    checked at once, and an unwanted condition must not be met until the script ends.
     """
 
     line: int
