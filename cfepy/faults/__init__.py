@@ -1,7 +1,7 @@
 """Faults: errors injected into a run, from a plan or from a seed, at the same times in every run.
 
-What belongs here defines the contents of a plan, reads and checks it, and injects its faults: a `FaultInjector` is an
-attachment, so the mission and its parts do not know it. Checking a run, with or without faults, belongs to
+Code that defines the contents of a plan, reads and checks it, or injects its faults belongs here: a `FaultInjector` is
+an attachment, so the mission and its parts do not know it. Checking a run, with or without faults, belongs to
 `cfepy.monitors`. The central file is `cfepy/faults/injector.py`.
 """
 

@@ -1,7 +1,7 @@
 """Faults on applications: crash, hang, slow, compute, stop, restart.
 
-Applications are those of Executive Services, found by name when the fault happens. For applications that hang, are slow
-or compute longer, the calls of the kernel are wrapped, but only in runs whose plan contains such faults.
+Applications are found in Executive Services by name when the fault happens. For applications that hang, are slow or
+compute longer, the calls of the kernel are wrapped, but only in runs whose plan contains such faults.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class AppFault(ABC):
     Args:
         fault: the fault in the plan.
         app_name: the application.
-        report: receives what happens.
+        report: receives a text for each occurrence.
     """
 
     def __init__(self, fault: Fault, app_name: str, report: FaultReport) -> None:
@@ -82,7 +82,7 @@ class Hang(AppFault):
     Args:
         fault: the fault in the plan.
         app_name: the application.
-        report: receives what happens.
+        report: receives a text for each occurrence.
         strain: holds its tasks.
     """
 
@@ -202,7 +202,7 @@ class Work:
     """Makes applications' work take longer, at its start or where its duration is given.
 
     A task's work begins where a wait ends, but for one for a mutex: as a `response` among the deadlines of a mission
-    file does. What a task says to take is a call of `Kernel.compute`, which stands below `cfe.psp.compute`,
+    file does. Computing time given by a task is a call of `Kernel.compute`, which is below `cfe.psp.compute`,
     `cfepy.compute` and `compute:` of a node.
 
     Args:

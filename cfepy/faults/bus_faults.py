@@ -173,7 +173,7 @@ def faulty(base: type[SoftwareBus], switchboard: MessageSwitchboard) -> type[Sof
             pass_through(faults, packet, packet[2] & 0xC0, sender, where, send)
 
         def _send(self, packet: bytes, owner: Any, forward: Callable[[bytes, bool], None]) -> None:
-            """Send what was already counted, in the name of its sender."""
+            """Send a message that was already counted, in the name of its sender."""
             task = self.kernel.current
             before, task.owner = task.owner, owner
             route = self.routes.get(packet[0] << 8 | packet[1])
@@ -204,7 +204,7 @@ def faulty(base: type[SoftwareBus], switchboard: MessageSwitchboard) -> type[Sof
                     timeout_ms = max(0, -((self.kernel.now - end_ns) // NS_PER_MS))
 
         def _taken(self, packet: bytes, pipe: Pipe) -> bytes | None:
-            """Return what the receiver of a message gets; None if nothing now."""
+            """Return the bytes for the receiver of a message; None if there are none now."""
             if type(packet) is Passed:
                 return bytes(packet)
             faults = switchboard.on_receive(packet, pipe)

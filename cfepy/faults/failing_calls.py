@@ -43,7 +43,7 @@ class CallFault:
     Args:
         fault: the fault in the plan.
         gate: selects the calls.
-        report: receives what happens.
+        report: receives a text for each occurrence.
         kernel: gives the caller and the time.
     """
 
@@ -256,7 +256,7 @@ class Fill:
     Args:
         fault: the fault in the plan; its target is the pipe's name.
         agenda: ends it.
-        report: receives what happens.
+        report: receives a text for each occurrence.
     """
 
     def __init__(self, fault: Fault, agenda: Agenda, report: FaultReport) -> None:

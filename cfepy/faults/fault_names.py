@@ -1,7 +1,7 @@
 """The names of messages, fields and applications of a mission in a fault plan.
 
-ROS topics have their own names, commands and telemetry those of the dictionary, and all can be given by MsgId. An
-application with a node can be given by its cFE name or by the node's name.
+ROS topics have their own names, commands and telemetry have the names of the dictionary, and all can be given by MsgId.
+An application with a node can be given by its cFE name or by the node's name.
 """
 
 from __future__ import annotations

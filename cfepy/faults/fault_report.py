@@ -21,7 +21,7 @@ class FaultRecord:
         times: how often it happened.
         last_ns: time of its last occurrence.
         at_ns: virtual times in ns of its first 1000 occurrences.
-        texts: what happened, likewise.
+        texts: their descriptions.
         why_not: why it has not happened so far.
     """
 

@@ -1,7 +1,7 @@
 """`FaultInjector`: injects the faults of a plan into a mission, as an attachment unknown to the mission.
 
-A run without a plan has no injector and no cost. With a plan, only what its faults need is wrapped: the bus for
-messages, the kernel's calls for applications that hang, one function for calls that fail.
+A run without a plan has no injector and no cost. With a plan, only the parts that its faults need are wrapped: the bus
+for messages, the kernel's calls for applications that hang, one function for calls that fail.
 """
 
 from __future__ import annotations
@@ -151,7 +151,7 @@ class FaultInjector(Attachment):
             self._at_times(fault, self._once(fault))
 
     def _once(self, fault: Fault) -> Strike:
-        """Return what happens at each of a fault's times."""
+        """Return the action for each of a fault's times."""
         if fault.kind == "fill":
             return Fill(fault, self._agenda, self.report).strike
         return (Jump if fault.kind == "jump_clock" else ProcessorFault)(fault, self.report).strike

@@ -27,7 +27,7 @@ DEFAULT_WITHIN_NS = NS_PER_S
 
 
 class Setting:
-    """What all faults on messages need of the run: time, agenda, report, names."""
+    """Objects of the run for all faults on messages: time, agenda, report, names."""
 
     def __init__(self, kernel: Kernel, agenda: Agenda, report: FaultReport, names: MissionNames) -> None:
         self.kernel = kernel

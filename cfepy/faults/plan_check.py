@@ -108,7 +108,7 @@ def check_plan(plan: FaultPlan, spec: MissionSpec, found: Found | None = None) -
     Args:
         plan: the plan.
         spec: the mission.
-        found: what a run has shown; None checks only what is known without a run.
+        found: findings of a run; None checks only names that are known without a run.
     """
     return [
         UsageError(text, file=plan.file or None, line=fault.line or None, field=fault.name)

@@ -58,7 +58,7 @@ class Jump:
 
     Args:
         fault: the fault in the plan; its target is the change in s.
-        report: receives what happens.
+        report: receives a text for each occurrence.
     """
 
     def __init__(self, fault: Fault, report: FaultReport) -> None:
@@ -116,7 +116,7 @@ class LostSignal:
     Args:
         fault: the fault in the plan; its target is "1hz" or "tone".
         gate: selects the signals.
-        report: receives what happens.
+        report: receives a text for each occurrence.
         kernel: for the time.
     """
 
@@ -146,7 +146,7 @@ class ProcessorFault:
 
     Args:
         fault: the fault in the plan; its target is the kind of reset.
-        report: receives what happens.
+        report: receives a text for each occurrence.
     """
 
     def __init__(self, fault: Fault, report: FaultReport) -> None:
@@ -183,7 +183,7 @@ class MemoryFault(ABC):
     Args:
         fault: the fault in the plan.
         random: chooses random bits.
-        report: receives what happens.
+        report: receives a text for each occurrence.
     """
 
     def __init__(self, fault: Fault, random: Random, report: FaultReport) -> None:

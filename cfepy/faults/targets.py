@@ -169,7 +169,7 @@ class _Maker:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What exists in a mission, by name.
+    """Possible names in a mission.
 
     Attributes:
         messages: all names of messages that were sent or subscribed to.
