@@ -1,10 +1,10 @@
 """A ground system's view of a mission: names, dictionary, topics, values, link, bags and files.
 
-What belongs here works on packets, files and names of a ground system, with or without a running mission. Checking a
-run is in `cfepy.monitors`; flying one is in `cfepy.pilot`.
+Code that works on packets, files and names of a ground system, with or without a running mission, belongs here.
+Checking a run is in `cfepy.monitors`; flying one is in `cfepy.pilot`.
 
-The names below are loaded on first use, so a run loads only what it needs of this package. The central file is
-`cfepy/ground/dictionary.py`.
+The names below are loaded on first use, so a run loads only the parts of this package that it needs. The central file
+is `cfepy/ground/dictionary.py`.
 """
 
 from __future__ import annotations

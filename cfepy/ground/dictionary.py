@@ -244,7 +244,7 @@ def declared(spec: MissionSpec | None, attributes: Sequence[str], problems: list
 
 
 def table_types(mission: str | None, problems: list[str]) -> dict[str, TableType]:
-    """Return the known tables by full name, those of a mission before those of the apps included in cfepy.
+    """Return the known tables by full name, with tables of a mission before tables of the apps included in cfepy.
 
     Args:
         mission: as for `read_mission`, or None.

@@ -1,8 +1,8 @@
 """The ground link: commands to a mission and telemetry from it as over UDP, but inside the process.
 
 It acts as a ground system that is connected to CI_LAB's and TO_LAB's sockets. The host uses it between two parts of a
-run; what it sends arrives at the current virtual time, and is recorded in the trace with its bytes. So a run with a
-ground link is as deterministic as one without.
+run; its data arrives at the current virtual time, and is recorded in the trace with its bytes. So a run with a ground
+link is as deterministic as one without.
 """
 
 from __future__ import annotations

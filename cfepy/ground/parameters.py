@@ -1,6 +1,6 @@
 """ROS parameters of a mission for tools: at its start, after some seconds, or in table files.
 
-ROS's rules and tables are those of `rospy_shim.parameters`.
+ROS's rules and tables are in `rospy_shim.parameters`.
 """
 
 from __future__ import annotations

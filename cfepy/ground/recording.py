@@ -1,4 +1,4 @@
-"""A whole recording, a bag or an MCAP file, possibly damaged: its contents, and a rewritten copy of what is left.
+"""A whole recording, a bag or an MCAP file, possibly damaged: its contents, and a rewritten copy of the readable part.
 
 summary_of("run.mcap").text() rewrite("cut.bag", "whole.bag")  # what is left of it rewrite("run.mcap", "run.bag",
 strict=True)  # a conversion: nothing may be lost
@@ -66,7 +66,7 @@ class RecordingSummary:
         finished: whether it has its end and index.
         chunks: number of chunks, by compression.
         topics: by name.
-        losses: what could not be read.
+        losses: parts that could not be read.
         doubtful: number of messages in chunks with a wrong checksum.
         metadata: metadata of an MCAP file, by name.
     """
@@ -213,7 +213,7 @@ def packets_of(file: str) -> Iterator[RecordedMessage]:
 def rewrite(file: str, output: str, compression: str | None = None, strict: bool = False) -> RecordingSummary:
     """Write the contents of a recording to another file, whose name determines the format.
 
-    Messages keep their bytes, times, connections and order. What a bag has no place for is left out: channels of an
+    Messages keep their bytes, times, connections and order. Data that a bag cannot store is left out: channels of an
     MCAP file that are no topics of ROS 1, its metadata and attachments.
 
     Args:
@@ -223,7 +223,7 @@ def rewrite(file: str, output: str, compression: str | None = None, strict: bool
         strict: whether losses are an error.
 
     Returns:
-        What is in the recording.
+        The contents of the recording.
 
     Raises:
         UsageError: if there is no such recording, nothing is left of it, the file cannot be written, or, if `strict`,

@@ -307,7 +307,7 @@ def meanings(word: str) -> Iterator[tuple[str, str]]:
 
 
 def candidates(name: str) -> list[str]:
-    """Return the possible topics in a name: itself, or what precedes a field, as in /odom/pose/pose/position/x."""
+    """Return the possible topics in a name: itself, or the part before a field, as in /odom/pose/pose/position/x."""
     parts = name.split("[")[0].strip("/").split("/")
     return ["/" + "/".join(parts[:count]) for count in range(len(parts), 0, -1)]
 
@@ -317,7 +317,7 @@ def bag_series(file: str, words: Sequence[str] = (), seconds: float | None = Non
 
     Args:
         file: the bag.
-        words: what to read, as for `SeriesRecorder`; everything if empty.
+        words: selection, as for `SeriesRecorder`; everything if empty.
         seconds: duration to read, from its first message on a topic on; None for all.
 
     Raises:
@@ -399,8 +399,8 @@ class SeriesRecorder(SeriesSet, Attachment):
     """Records the messages of a run.
 
     Args:
-        words: what to record: topics, patterns such as "/arm/*", packets of the mission's dictionary and MsgIds,
-            optionally with fields (`SeriesSet.found`). Without any, all topics and all declared telemetry.
+        words: selection: topics, patterns such as "/arm/*", packets of the mission's dictionary and MsgIds, optionally
+            with fields (`SeriesSet.found`). Without any, all topics and all declared telemetry.
         most: as for `SeriesSet`.
 
     Raises:

@@ -7,7 +7,8 @@ Nested structs and arrays are flattened, padding is given as binary parameters. 
 flight software. Names are the dictionary's, with "_" for characters that XTCE forbids: CFE_EVS_HK_TLM_AppData_0_AppID.
 
 In ROS messages, numbers, texts with their length and arrays of numbers (as bytes) can be described, but not arrays of
-texts or messages: what follows them is described as bytes if its place in the packet is fixed, and otherwise left out.
+texts or messages: the data after them is described as bytes if its place in the packet is fixed, and otherwise left
+out.
 """
 
 from __future__ import annotations

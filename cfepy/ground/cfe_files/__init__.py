@@ -1,4 +1,4 @@
 """Files for or from a flight computer: table files, and the logs and registries that cFE dumps.
 
-What belongs here reads, writes, checks or shows such a file without a running mission.
+Code that reads, writes, checks or shows such a file without a running mission belongs here.
 """

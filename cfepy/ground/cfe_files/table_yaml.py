@@ -158,7 +158,7 @@ def _number(said: dict[str, Marked], name: str, default: int = 0) -> int:
 
 
 def _wants_mark(said: dict[str, Marked]) -> bool:
-    """Return whether to add an integrity mark: always, unless the file says otherwise or uses that place."""
+    """Return whether to add an integrity mark: always, unless the file excludes it or uses that place."""
     if "mark" not in said:
         return "reserved" not in said
     if not isinstance(said["mark"].value, bool):

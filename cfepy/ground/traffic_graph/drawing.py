@@ -1,8 +1,8 @@
 """The graph of a mission as a drawing (SVG): senders, messages, receivers, from left to right.
 
 A unit that sends and receives is on both sides, so that no line goes back. Messages with the same senders and receivers
-share a box. Boxes are ordered so that few lines cross (the barycentre method), then placed beside what they are
-connected with. No other program is needed, and the same graph gives the same bytes.
+share a box. Boxes are ordered so that few lines cross (the barycentre method), then placed beside connected boxes. No
+other program is needed, and the same graph gives the same bytes.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Box:
     """A box of the drawing, and its neighbours in the columns beside it, each with the height of its port.
 
     Attributes:
-        key: what it represents.
+        key: the represented object.
         height: in px, like all places and sizes.
         y: its upper edge.
     """

@@ -13,7 +13,8 @@ _NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
 def graph_text(graph: MissionGraph, width: int = 100) -> str:
-    """Return a paragraph for each application and node: what it sends to whom, and what it receives in which pipe.
+    """Return a paragraph for each application and node: the messages that it sends, with receivers, and those that it
+    receives, with pipes.
 
     Args:
         graph: the graph.
