@@ -22,7 +22,7 @@ class Exploration:
     Attributes:
         seeds: number of schedules.
         policies: their policies, in turn.
-        depth: depth of the bugs that PCT looks for; None for that of `cfepy explore`.
+        depth: depth of the bugs that PCT looks for; None for the default of `cfepy explore`.
         steps: minimum number of decisions that PCT expects in a run.
         options: a schedule with the options of all except fifo.
         shrink: maximum number of runs for shrinking; None for as many as before, 300 to 800.
@@ -61,7 +61,7 @@ def explore(
         steps: minimum number of decisions that PCT expects in a run; they are counted.
         any_priority: whether less urgent tasks may go before more urgent ones.
         hold: longest delay of the running task, such as "500us"; empty for none.
-        connect: longest duration of a connection between two ROS nodes, such as "50ms"; empty for that of the mission.
+        connect: longest duration of a connection between two ROS nodes, such as "50ms"; empty for the mission's own.
         points: where other tasks may run in addition to calls: "lines", "attributes" or "calls", optionally only in
             some modules as in "lines:arm,util"; empty for nowhere.
         races: whether unordered accesses in Python code are failures too.

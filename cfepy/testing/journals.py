@@ -61,7 +61,7 @@ class FlightJournal:
 
 
 class FlightJournals:
-    """Writes a journal for each mission, and keeps those of tests that fail.
+    """Writes a journal for each mission, and keeps the journals of tests that fail.
 
     Args:
         folder: folder of the journals; it is created if necessary.

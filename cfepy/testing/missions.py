@@ -86,7 +86,7 @@ class Missions:
         current: key of the running test in the stash of `config`.
 
     Attributes:
-        flown: the missions of this test, in order, without those of fixtures with a wider scope.
+        flown: the missions of this test, in order, without missions of fixtures with a wider scope.
     """
 
     def __init__(self, config: pytest.Config, current: pytest.StashKey[pytest.Item]) -> None:
@@ -112,14 +112,14 @@ class Missions:
         races: bool | None = None,
         attachments: Sequence[Attachment] = (),
     ) -> Flight:
-        """Boot a mission: it is at virtual time 0, and runs when the test says so.
+        """Boot a mission: it is at virtual time 0, and runs when the test lets it run.
 
         Args:
             name: a mission's folder, startup script or launch file, searched relative to the test's file first; or the
                 name of a mission included in cfepy.
             board: name or file of a board; None for the mission's own.
             seed: seed of everything random in it; None for --cfepy-seed.
-            schedule: which task goes first, such as "random:7"; None for that of @explore or --cfepy-schedule.
+            schedule: which task goes first, such as "random:7"; None for the schedule of @explore or --cfepy-schedule.
             tasks: "thread", "greenlet" or "auto"; None for --cfepy-tasks.
             faults: injected faults: a plan's path, "seed:N", a `cfepy.faults.FaultPlan` or a dictionary of that form.
             args: arguments of a launch file.
@@ -205,7 +205,7 @@ class Missions:
         """Return the schedule of the next mission.
 
         Args:
-            given: schedule given by the test; None for that of @explore or --cfepy-schedule.
+            given: schedule given by the test; None for the schedule of @explore or --cfepy-schedule.
         """
         if given is not None:
             return schedule_of(given)

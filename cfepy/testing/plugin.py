@@ -48,7 +48,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Load what tests with @explore need, if there are any."""
+    """Load the modules for tests with @explore, if there are any."""
     if any(item.get_closest_marker(EXPLORE_MARK) for item in items):
         from cfepy.plugins import Hook
 
@@ -69,7 +69,7 @@ def _add(config: pytest.Config, name: str, plugin: type) -> None:
 
 @pytest.fixture(scope="session")
 def mission(request: pytest.FixtureRequest) -> Missions:
-    """Return what boots missions: `flight = mission("capture", seed=1)`, by folder, launch file or name."""
+    """Return a function that boots missions: `flight = mission("capture", seed=1)`, by folder, launch file or name."""
     from cfepy.testing.missions import Missions
 
     found = request.config.pluginmanager.get_plugin("cfepy-missions")
