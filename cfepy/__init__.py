@@ -12,8 +12,8 @@
 
     cfepy.explore("my_mission", seeds=200).failures
 
-Here is what a program needs that flies missions. What applications import is in the packages (`cfepy.app`, `cfepy.evs`
-and so on), what tests use beyond this in `cfepy.testing`. Names are loaded when they are first used.
+This module offers the names that a program needs to fly missions. Applications import from the packages (`cfepy.app`,
+`cfepy.evs` and so on). Tests find more in `cfepy.testing`. Names are loaded when they are first used.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from __future__ import annotations
 import os as _os
 import sys as _sys
 
-if _os.path.basename((_sys.argv or [""])[0]).startswith(("cfepy", "-m")):  # perhaps the command
+if _os.path.basename((_sys.argv or [""])[0]).startswith(("cfepy", "-m")):  # this may be the `cfepy` command
     import cfepy.interpreter.early_end as _early_end
 
     if _early_end.is_command():
-        _early_end.leave_on_interrupt()  # before any other import, in which Ctrl-C would give its traceback
+        _early_end.leave_on_interrupt()  # before any other import: Ctrl-C during one would print a traceback
 
 from typing import TYPE_CHECKING
 
@@ -94,21 +94,22 @@ __all__ = [
 
 
 def compute(seconds: float) -> None:
-    """In a ROS node that flies in a mission: work for so long, a stand-in for code whose time counts.
+    """Use virtual CPU time in a ROS node of a mission, in place of code whose execution time matters.
 
-    More urgent tasks get in meanwhile. Anywhere else nothing happens: there the processor is really at work.
+    Tasks with a higher priority can preempt the node meanwhile. Outside a mission the call does nothing, because there
+    the real processor does the work.
 
     Args:
-        seconds: of virtual CPU time.
+        seconds: virtual CPU time to use, in s.
 
     Raises:
-        ValueError: it is negative.
+        ValueError: if `seconds` is negative.
     """
     if seconds < 0:
         raise ValueError(f"nothing takes {seconds:g} s; give 0 or more")
 
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

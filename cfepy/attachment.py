@@ -1,6 +1,7 @@
-"""Attachments: objects that watch a mission or change its course, such as a bag, invariants, or faults.
+"""Attachments: objects that observe or modify a mission, such as a bag, invariants or faults.
 
-`Mission` takes any number of attachments. None of its parts knows of them, and a run without any pays nothing for them.
+`Mission` takes any number of attachments. No part of the mission depends on them, and a run without attachments pays
+nothing for them.
 """
 
 from __future__ import annotations
@@ -14,48 +15,58 @@ if TYPE_CHECKING:
 
 
 class Attachment:
-    """Does nothing; derived classes override what they need."""
+    """Base class of attachments; its methods do nothing, and derived classes override the ones they need."""
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """The class of Software Bus that it needs, made of another one; every processor gets a bus of it.
+        """Return the Software Bus class that this attachment needs, derived from `base`.
+
+        Every processor gets a bus of the resulting class.
 
         Args:
-            base: what the attachments before this one need.
+            base: the class that the attachments before this one need.
         """
         return base
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """The class of kernel that it needs, made of another one; the mission's kernel is of it.
+        """Return the kernel class that this attachment needs, derived from `base`.
+
+        The mission's kernel is an instance of the resulting class.
 
         Args:
-            base: what the attachments before this one need.
+            base: the class that the attachments before this one need.
         """
         return base
 
     def begin(self, mission: Any) -> None:
-        """The mission (`cfepy.mission.Mission`) was made, and nothing of it has run."""
+        """Handle a new mission (`cfepy.mission.Mission`), before any part of it has run."""
 
     def power_up(self, processor: Any) -> None:
-        """A processor (`cfepy.mission.processor.Processor`) was made, at the beginning and after each reset.
+        """Handle a new processor (`cfepy.mission.processor.Processor`), at the start and after each reset.
 
-        Nothing of it has run. The first one comes after `begin`.
+        No part of the processor has run yet. The first call comes after `begin`.
         """
 
     def conclude(self) -> None:
-        """The time of the run is over; the nodes are about to be asked to shut down. Called in the host, once."""
+        """Handle the end of the run's time, just before the nodes are asked to shut down.
+
+        It is called once, in host code.
+        """
 
     def finish(self) -> None:
-        """The run is over, and its digest is taken: what tasks do while they are ended is no part of it."""
+        """Handle the end of the run, after its digest was taken.
+
+        Actions of tasks while they are being ended do not belong to the run.
+        """
 
     def close(self) -> None:
-        """The mission is over, and all its tasks have ended."""
+        """Handle the end of the mission, after all its tasks have ended."""
 
 
 class Recorder(Attachment):
-    """An attachment that takes the trace of the run; a context manager around the mission.
+    """An attachment that records the trace of the run; a context manager around the mission.
 
     Attributes:
-        trace: what the mission records in.
+        trace: the trace that the mission records in.
     """
 
     trace: Trace
@@ -64,4 +75,4 @@ class Recorder(Attachment):
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, where: Any) -> None:
-        """The run is over, or there was none."""
+        """Handle the end of the run; the mission may never have started."""

@@ -1,4 +1,4 @@
-"""What the five core applications have in common: the loop of their main tasks, and answers to commands."""
+"""Code that the five core applications share: the loop of their main tasks, and their replies to commands."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from cfepy.ports import ERROR, INFORMATION, PEND_FOREVER, SYSTEM_CORE_READY, Por
 def serve(
     ports: Ports, config: PlatformConfig, pipe: int, perf_id: int, process: Callable[[bytes], object]
 ) -> NoReturn:
-    """The loop of a main task: wait until all core applications run, then handle packet after packet.
+    """Run the loop of a main task: wait until all core applications run, then handle each packet.
 
     Args:
         ports: the services.
-        config: says how long to wait for the others.
+        config: has the time limit of the wait for the other core applications.
         pipe: the command pipe.
-        perf_id: marks in the performance log when the task works; its entry was logged before.
+        perf_id: the marker in the performance log; the caller has already logged its entry.
         process: handles a packet.
     """
     es, receive = ports.es, ports.sb.receive_buffer
@@ -33,14 +33,14 @@ def serve(
 
 
 class Replies:
-    """How commands are answered: a counter goes up and an event goes out.
+    """Replies to commands: each reply counts the command and sends an event.
 
     Args:
-        ports: for the events.
+        ports: gives access to the event services.
 
     Attributes:
-        command_counter: commands that were done.
-        error_counter: commands that were refused.
+        command_counter: number of accepted commands.
+        error_counter: number of rejected commands.
     """
 
     def __init__(self, ports: Ports) -> None:
@@ -52,15 +52,15 @@ class Replies:
         self.command_counter = self.error_counter = 0
 
     def accept(self, event_id: int, text: str, event_type: int = INFORMATION) -> None:
-        """The command was carried out."""
+        """Count an accepted command and send its event."""
         self.command_counter += 1
         self.send(event_id, text, event_type)
 
     def reject(self, event_id: int, text: str) -> None:
-        """The command was refused, or failed."""
+        """Count a rejected or failed command and send an error event."""
         self.error_counter += 1
         self.send(event_id, text, ERROR)
 
     def send(self, event_id: int, text: str, event_type: int = INFORMATION) -> None:
-        """Say something, and count nothing."""
+        """Send an event without counting a command."""
         self._ports.evs.send_event(event_id, event_type, text)

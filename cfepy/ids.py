@@ -1,8 +1,8 @@
-"""Resource ids: the numbers by which OSAL and cFE name tasks, queues, apps, pipes and the like (CFE_ResourceId, idmap).
+"""Resource ids: the numbers of tasks, queues, apps, pipes and other objects of OSAL and cFE (CFE_ResourceId, idmap).
 
-An id is `base << 16 | serial`; the base tells the kind, the serial counts up with every creation, so that the id of
-something deleted does not soon mean something else. A record sits in slot `serial % capacity` of its table. Here a base
-is the small number (app 0x11); C's CFE_ES_APPID_BASE and CFE_ResourceId_GetBase have it already shifted (0x110000).
+An id is `base << 16 | serial`. The base identifies the kind of object. The serial number increases with every creation,
+so the id of a deleted object is not reused soon. A record is in slot `serial % capacity` of its table. A base is the
+small number here (app 0x11). C's CFE_ES_APPID_BASE and CFE_ResourceId_GetBase have it shifted (0x110000).
 """
 
 from __future__ import annotations
@@ -60,42 +60,42 @@ Record = TypeVar("Record")
 
 
 def make(base: int, serial: int) -> int:
-    """The id of one serial number under a base."""
+    """Return the id with a serial number and a base."""
     return base << SHIFT | serial
 
 
 def get_base(resource_id: int) -> int:
-    """The kind of thing an id names, e.g. 0x11 for an app (CFE_ResourceId_GetBase without the shift)."""
+    """Return the base of an id, e.g. 0x11 for an app (CFE_ResourceId_GetBase without the shift)."""
     return resource_id >> SHIFT
 
 
 def get_serial(resource_id: int) -> int:
-    """The serial number within the kind (CFE_ResourceId_GetSerial)."""
+    """Return the serial number within the kind (CFE_ResourceId_GetSerial)."""
     return resource_id & SERIAL_MAX
 
 
 def is_defined(resource_id: int) -> bool:
-    """Whether an id is anything else than 0 (CFE_ResourceId_IsDefined)."""
+    """Return whether an id is not 0 (CFE_ResourceId_IsDefined)."""
     return resource_id != UNDEFINED
 
 
 def equal(first: int, second: int) -> bool:
-    """Whether two ids are the same (CFE_ResourceId_Equal)."""
+    """Return whether two ids are the same (CFE_ResourceId_Equal)."""
     return first == second
 
 
 def to_integer(resource_id: int) -> int:
-    """The number to show a person or put into a packet; ids are plain integers here (CFE_ResourceId_ToInteger)."""
+    """Return the id as a number for texts and packets; ids are plain integers here (CFE_ResourceId_ToInteger)."""
     return resource_id
 
 
 def from_integer(value: int) -> int:
-    """The id that a number out of a packet stands for (CFE_ResourceId_FromInteger)."""
+    """Return the id for a number from a packet (CFE_ResourceId_FromInteger)."""
     return value & 0xFFFFFFFF
 
 
 def to_index(resource_id: int, base: int, capacity: int) -> int:
-    """The slot of an id in a table of `capacity` slots (CFE_ResourceId_ToIndex).
+    """Return the slot of an id in a table of `capacity` slots (CFE_ResourceId_ToIndex).
 
     Raises:
         CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID when the id is of another kind or the table has no slots.
@@ -106,20 +106,20 @@ def to_index(resource_id: int, base: int, capacity: int) -> int:
 
 
 def name_size(name: str) -> int:
-    """Bytes that a name takes in C, without the NUL at its end: what the limits of names count."""
+    """Return the bytes of a name in C without its final NUL; limits of name lengths count these."""
     return len(to_bytes(name))
 
 
 def find_next(start_id: int, capacity: int, is_used: Callable[[int], bool]) -> int:
-    """The first unused id after `start_id`, trying each slot once (CFE_ResourceId_FindNext).
+    """Return the first unused id after `start_id`, trying each slot once (CFE_ResourceId_FindNext).
 
     Args:
-        start_id: the id handed out last; the first one ever is serial 1.
+        start_id: the id that was allocated last; the first id has serial number 1.
         capacity: slots of the table.
-        is_used: tells whether the slot of an id is taken.
+        is_used: returns whether the slot of an id is taken.
 
     Returns:
-        The id, or 0 when every slot is taken.
+        The id, or 0 if every slot is taken.
     """
     base, serial = get_base(start_id), get_serial(start_id)
     for _ in range(capacity):
@@ -132,7 +132,13 @@ def find_next(start_id: int, capacity: int, is_used: Callable[[int], bool]) -> i
 
 
 def find_next_ex(start_id: int, increment: Callable[[int], int], is_used: Callable[[int], bool]) -> int:
-    """As `find_next` with the caller's own stepping; `increment` returns 0 to give up (CFE_ResourceId_FindNextEx)."""
+    """Return the first unused id, with the caller's own increment (CFE_ResourceId_FindNextEx).
+
+    Args:
+        start_id: the id that was allocated last.
+        increment: returns the id to try next, or 0 to give up.
+        is_used: returns whether the slot of an id is taken.
+    """
     candidate = increment(start_id)
     while is_defined(candidate) and is_used(candidate):
         candidate = increment(candidate)
@@ -140,12 +146,12 @@ def find_next_ex(start_id: int, increment: Callable[[int], int], is_used: Callab
 
 
 class IdTable(Generic[Record]):
-    """A table of records under ids of one base, as every OSAL and cFE object table is.
+    """A table of records by id, with ids of one base; every OSAL and cFE object table is one.
 
     Args:
         base: one of the *_BASE numbers.
-        capacity: how many records at most.
-        full: status raised when there is no free slot; by default OS_ERR_NO_FREE_IDS for an OSAL base, else
+        capacity: maximum number of records.
+        full: status raised if there is no free slot; by default OS_ERR_NO_FREE_IDS for an OSAL base, otherwise
             CFE_ES_NO_RESOURCE_IDS_AVAILABLE.
         invalid: status raised for an id that is not in the table; by default OS_ERR_INVALID_ID or
             CFE_ES_ERR_RESOURCEID_NOT_VALID.
@@ -171,7 +177,7 @@ class IdTable(Generic[Record]):
         """Put a record into the next free slot and return its id.
 
         Raises:
-            CfeError: no free slot (OsalError for an OSAL base).
+            CfeError: if there is no free slot (OsalError for an OSAL base).
         """
         new_id = self.skip()
         self._slots[self.index(new_id)] = new_id
@@ -179,10 +185,13 @@ class IdTable(Generic[Record]):
         return new_id
 
     def skip(self) -> int:
-        """Use up the next free id without a record: a creation that reserved its slot, and then failed.
+        """Use up the next free id without a record, for a creation that failed after it reserved its slot.
+
+        Returns:
+            The id.
 
         Raises:
-            CfeError: no free slot (OsalError for an OSAL base).
+            CfeError: if there is no free slot (OsalError for an OSAL base).
         """
         new_id = find_next(self._last_id, self.capacity, lambda candidate: self._slots[self.index(candidate)] != 0)
         if not new_id:
@@ -191,11 +200,11 @@ class IdTable(Generic[Record]):
         return new_id
 
     def find(self, resource_id: int) -> Record | None:
-        """The record of an id, or None."""
+        """Return the record of an id, or None if there is none."""
         return self.records.get(resource_id)
 
     def get(self, resource_id: int) -> Record:
-        """The record of an id.
+        """Return the record of an id.
 
         Raises:
             CfeError: the id is not in the table (OsalError for an OSAL base).
@@ -206,27 +215,28 @@ class IdTable(Generic[Record]):
         return record
 
     def delete(self, resource_id: int) -> Record:
-        """Take a record out and return it; its serial comes back only after all others were used.
+        """Remove a record and return it; its serial number is reused only after all others.
 
         Raises:
-            CfeError: the id is not in the table.
+            CfeError: if the id is not in the table.
         """
         record = self.get(resource_id)
-        # The slot first: an interrupt between the two steps then leaves nothing that items() would miss.
+        # Clear the slot first. An interrupt between the two steps then leaves no id in a slot without a record, so
+        # items() works.
         self._slots[self.index(resource_id)] = UNDEFINED
         del self.records[resource_id]
         return record
 
     def index(self, resource_id: int) -> int:
-        """The slot of an id, 0 to capacity - 1, whether or not it is in use."""
+        """Return the slot of an id, 0 to capacity - 1, whether or not it is in use."""
         return get_serial(resource_id) % self.capacity
 
     def at(self, index: int) -> Record | None:
-        """The record in a slot, or None when the slot is free or out of range."""
+        """Return the record in a slot, or None when the slot is free or out of range."""
         return self.records.get(self._slots[index]) if 0 <= index < self.capacity else None
 
     def items(self) -> list[tuple[int, Record]]:
-        """(id, record) of everything in the table, in slot order, as a list that stays as it is."""
+        """Return a copy of the table as a list of (id, record) in slot order."""
         return [(used, self.records[used]) for used in self._slots if used]
 
     def __iter__(self) -> Iterator[Record]:

@@ -1,7 +1,7 @@
-"""The door through which add-ons come in: those of `cfepy.extra`, and those of other packages.
+"""Add-ons: how cfepy finds those in `cfepy.extra` and those of other packages.
 
-An add-on is a `Plugin`: a table of names of what it offers. Nothing of it is imported before it is used. A package
-elsewhere offers one in its pyproject.toml; docs/plugins.md explains how to write it:
+An add-on is a `Plugin`: a table of the names that it offers. It is loaded only when it is used. Another package offers
+an add-on in its pyproject.toml; docs/plugins.md explains how to write one:
 
     [project.entry-points."cfepy.plugins"]
     yamcs = "cfepy_yamcs:PLUGIN"
@@ -22,19 +22,20 @@ from cfepy.status import UsageError
 
 T = TypeVar("T")
 GROUP = "cfepy.plugins"
-"""The group of entry points in which other packages offer their add-ons."""
+"""The entry-point group for add-ons of other packages."""
 
 
 class Plugin(NamedTuple):
-    """An add-on: what it offers, by name. A name that begins with a dot is one of its own package.
+    """An add-on and the names that it offers. A module name that begins with a dot is relative to the add-on's package.
 
     Attributes:
-        name: of the add-on.
-        package: the Python package that it is in.
-        commands: names of the subcommands of `cfepy` that it adds.
-        title: the heading above them in `cfepy --help`.
-        parser: the module whose function `add` gives these commands their parsers; it imports little, for a quick help.
-        hooks: by the name of a hook, where to find what fills it, as "MODULE:NAME".
+        name: name of the add-on.
+        package: its Python package.
+        commands: names of the subcommands that it adds to `cfepy`.
+        title: the heading above these commands in `cfepy --help`.
+        parser: the module whose function `add` adds the parsers of these commands; it imports little, to keep the help
+            quick.
+        hooks: for each hook name the object that fills it, as "MODULE:NAME".
     """
 
     name: str
@@ -45,21 +46,21 @@ class Plugin(NamedTuple):
     hooks: Mapping[str, str] = MappingProxyType({})
 
     def load(self, hook: str) -> Any:
-        """Import what fills a hook, which must be one of `hooks`.
+        """Import the object that fills a hook, which must be in `hooks`.
 
         Raises:
-            UsageError: the add-on is of another package, and cannot be imported.
+            UsageError: if the add-on is in another package and cannot be imported.
         """
         return self._imported(self.hooks[hook])
 
     def add_commands(self, commands: Any) -> None:
-        """Give its commands their parsers.
+        """Add the parsers of its commands.
 
         Args:
             commands: the subparsers of the parser of `cfepy`.
 
         Raises:
-            UsageError: as of `load`.
+            UsageError: if the add-on is in another package and cannot be imported.
         """
         self._imported(f"{self.parser}:add")(commands)
 
@@ -76,7 +77,7 @@ class Plugin(NamedTuple):
 
 
 def _own(name: str, **offers: Any) -> Plugin:
-    """An add-on of `cfepy.extra`."""
+    """Return an add-on of `cfepy.extra`."""
     return Plugin(name, f"cfepy.extra.{name}", **offers)
 
 
@@ -134,33 +135,33 @@ OWN = (
 
 
 class Hook(Generic[T]):
-    """A place for something that add-ons offer; the type is what fills it.
+    """An extension point that add-ons can fill; `T` is the type of the objects that fill it.
 
     Args:
-        name: as in `Plugin.hooks`.
+        name: the key in `Plugin.hooks`.
     """
 
     def __init__(self, name: str) -> None:
         self.name = name
 
     def all(self) -> Iterator[T]:
-        """Load what installed add-ons offer here, those of cfepy first."""
+        """Load this hook's object from each installed add-on, cfepy's own add-ons first."""
         for plugin in installed():
             if self.name in plugin.hooks:
                 yield plugin.load(self.name)
 
     def first(self) -> T | None:
-        """Load what the first of them offers; None if no add-on offers it."""
+        """Load the object of the first add-on that fills this hook; None if no add-on does."""
         return next(self.all(), None)
 
     def need(self, what: str) -> T:
-        """Load what the first of them offers.
+        """Load the object of the first add-on that fills this hook.
 
         Args:
-            what: for which it is needed, as a subject: "`--gdb`".
+            what: the feature that needs it, as the subject of the error text, such as "`--gdb`".
 
         Raises:
-            UsageError: no add-on offers it.
+            UsageError: if no add-on fills this hook.
         """
         found = self.first()
         if found is None:
@@ -169,30 +170,30 @@ class Hook(Generic[T]):
 
 
 def missing(what: str, *names: str) -> str:
-    """Say which add-on is missing, and what to do.
+    """Return the error text for a missing add-on, with the remedy.
 
     Args:
-        what: what needs it, as a subject.
-        names: of the add-on.
+        what: the feature that needs it, as the subject of the text.
+        names: names of the add-ons, one of which is needed.
     """
     return f"{what} needs the add-on {' or '.join(names)}, which this installation lacks; install cfepy again"
 
 
 def owner_of(command: str) -> Plugin | None:
-    """The add-on of `cfepy.extra` that has a command, installed or not; None if it is none of theirs."""
+    """Return the add-on of `cfepy.extra` that has a command, installed or not, or None."""
     return next((each for each in OWN if command in each.commands), None)
 
 
 @cache
 def installed() -> tuple[Plugin, ...]:
-    """The add-ons that are installed, those of cfepy first, then those of other packages by name."""
+    """Return the installed add-ons: cfepy's own first, then the others by name."""
     return (*(each for each in OWN if find_spec(each.package) is not None), *_outside())
 
 
 def _outside() -> Iterator[Plugin]:
-    """Those of other packages; one that cannot be loaded is left out, and standard error says why."""
+    """Yield the add-ons of other packages; report an add-on that cannot be loaded on standard error and skip it."""
     if not any(map(_is_offered, sys.path)):
-        return  # which is quickly known: to ask importlib.metadata takes as long as a tenth of a boot
+        return  # this check is quick, while importlib.metadata takes a tenth of the boot time
     from importlib.metadata import entry_points
 
     for entry in sorted(entry_points(group=GROUP), key=lambda entry: entry.name):
@@ -208,7 +209,7 @@ def _outside() -> Iterator[Plugin]:
 
 
 def _is_offered(folder: str) -> bool:
-    """Whether a package that is installed in a folder offers an add-on."""
+    """Return whether any package installed in a folder offers an add-on."""
     try:
         names = [entry.name for entry in os.scandir(folder or os.curdir) if entry.name.endswith(("-info", ".egg"))]
     except OSError:

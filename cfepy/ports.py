@@ -1,8 +1,8 @@
-"""The seams between the core services: what each of them may ask of the others, as Protocols.
+"""The interfaces between the core services, as Protocols: the calls that each service may make to the others.
 
-ES, SB, EVS, TIME and TBL need one another (SB reports through EVS, EVS sends through SB), yet none imports another.
-A mission makes one `Ports`, hands it to all of them, and fills it in once they exist. Here are also the few
-numbers that a service gives to another.
+ES, SB, EVS, TIME and TBL need one another (SB reports through EVS, EVS sends through SB), yet none of them knows
+another one. A mission makes one `Ports`, passes it to all services, and fills it in once they exist. This module also
+has the few numbers that services pass to one another.
 """
 
 from __future__ import annotations
@@ -14,14 +14,16 @@ DEBUG, INFORMATION, ERROR, CRITICAL = 1, 2, 3, 4
 """Event types (CFE_EVS_EventType_Enum_t), for `Events.send_event`."""
 
 SYSTEM_CORE_READY = 3
-"""All core applications run (CFE_ES_SystemState_CORE_READY), for `AppTable.wait_for_system_state`."""
+"""The system state in which all core applications run (CFE_ES_SystemState_CORE_READY), for
+`AppTable.wait_for_system_state`.
+"""
 
 PEND_FOREVER = -1
-"""No limit of time (CFE_SB_PEND_FOREVER), for `Bus.receive_buffer`."""
+"""No time limit (CFE_SB_PEND_FOREVER), for `Bus.receive_buffer`."""
 
 
 class Caller(Protocol):
-    """The application that a task belongs to, as found in `Task.owner`."""
+    """The application that owns a task, as found in `Task.owner`."""
 
     app_id: int
     name: str
@@ -29,7 +31,7 @@ class Caller(Protocol):
 
 
 def application_of(owner: Any) -> Caller | None:
-    """The application that `Task.owner` names; None for host code, and for tasks that belong to no application."""
+    """Return the application in `Task.owner`; None for host code and for tasks without an application."""
     return owner if getattr(owner, "app_id", 0) else None
 
 
@@ -37,23 +39,23 @@ class SysLog(Protocol):
     """The ES system log (CFE_ES_WriteToSysLog)."""
 
     def write_to_sys_log(self, text: str) -> object:
-        """Add one line, stamped with the spacecraft time, and show it on the console."""
+        """Add a line with the spacecraft time, and print it on the console."""
 
 
 class Block(Protocol):
-    """A block of a memory pool; `memory` is its bytes."""
+    """A block of a memory pool; `memory` has its bytes."""
 
     memory: memoryview
 
 
 class AppTable(Protocol):
-    """What ES knows of applications and their life, and the memory that it lends."""
+    """The application table of ES, its application lifecycle calls and its memory."""
 
     def get_app_id(self) -> int:
-        """AppId of the application that the current task belongs to (CFE_ES_GetAppID)."""
+        """Return the AppId of the application that the current task belongs to (CFE_ES_GetAppID)."""
 
     def get_app_name(self, app_id: int) -> str:
-        """Name of an application (CFE_ES_GetAppName)."""
+        """Return name of an application (CFE_ES_GetAppName)."""
 
     def get_app_id_by_name(self, name: str) -> int:
         """AppId of a named application (CFE_ES_GetAppIDByName)."""
@@ -62,7 +64,7 @@ class AppTable(Protocol):
         """Block until the mission reached a system state (CFE_ES_WaitForSystemState)."""
 
     def run_loop(self, status: int = 1) -> bool:
-        """Whether the calling application shall go on (CFE_ES_RunLoop)."""
+        """Return whether the calling application should continue (CFE_ES_RunLoop)."""
 
     def exit_app(self, status: int) -> None:
         """End the calling application (CFE_ES_ExitApp)."""
@@ -73,46 +75,52 @@ class AppTable(Protocol):
         """Start a task that belongs to the calling application (CFE_ES_CreateChildTask)."""
 
     def increment_task_counter(self) -> None:
-        """Count one cycle of the calling task (CFE_ES_IncrementTaskCounter)."""
+        """Count a cycle of the calling task (CFE_ES_IncrementTaskCounter)."""
 
     def perf_log_entry(self, marker: int) -> None:
-        """Note that the code with a performance id begins (CFE_ES_PerfLogEntry)."""
+        """Log the entry of code with a performance marker (CFE_ES_PerfLogEntry)."""
 
     def perf_log_exit(self, marker: int) -> None:
-        """Note that it ends (CFE_ES_PerfLogExit)."""
+        """Log the exit of code with a performance marker (CFE_ES_PerfLogExit)."""
 
     def pool_create(self, size: int, owner: str = "") -> int:
-        """Make a memory pool (CFE_ES_PoolCreate); `owner` is for the board's books when no application calls."""
+        """Create a memory pool (CFE_ES_PoolCreate).
+
+        `owner` names the owner in the memory accounting if no application makes the call.
+        """
 
     def pool_create_ex_with_alignment(
         self, size: int, block_sizes: Sequence[int], use_mutex: bool, *, owner: str = ""
     ) -> int:
-        """Make a memory pool of given block sizes (CFE_ES_PoolCreateEx_WithAlignment); `owner` as above."""
+        """Create a memory pool with given block sizes (CFE_ES_PoolCreateEx_WithAlignment).
+
+        `owner` names the owner in the memory accounting if no application makes the call.
+        """
 
     def get_pool_buf(self, pool_id: int, size: int) -> Block:
-        """Take a block of a pool (CFE_ES_GetPoolBuf)."""
+        """Take a block from a pool (CFE_ES_GetPoolBuf)."""
 
     def put_pool_buf(self, pool_id: int, block: Any) -> int:
-        """Give a block back that `get_pool_buf` gave (CFE_ES_PutPoolBuf)."""
+        """Return a block from `get_pool_buf` to its pool (CFE_ES_PutPoolBuf)."""
 
     def register_cds_ex(self, block_size: int, full_name: str, critical_table: bool) -> tuple[int, int]:
-        """Handle and status of a block of the Critical Data Store (CFE_ES_RegisterCDSEx)."""
+        """Register a block of the Critical Data Store; return its handle and the status (CFE_ES_RegisterCDSEx)."""
 
     def copy_to_cds(self, handle: int, data: bytes | bytearray | memoryview) -> None:
         """Save a block's data (CFE_ES_CopyToCDS)."""
 
     def restore_from_cds(self, handle: int) -> bytes:
-        """A block's data (CFE_ES_RestoreFromCDS)."""
+        """Return a block's data (CFE_ES_RestoreFromCDS)."""
 
     def delete_cds(self, full_name: str, called_by_tbl_services: bool = False) -> None:
-        """Delete a block whose owner is gone (CFE_ES_DeleteCDS)."""
+        """Delete a block whose application has ended (CFE_ES_DeleteCDS)."""
 
 
 class Bus(Protocol):
     """The Software Bus as a service or an app uses it."""
 
     def create_pipe(self, depth: int, name: str) -> int:
-        """Make a pipe (CFE_SB_CreatePipe)."""
+        """Create a pipe (CFE_SB_CreatePipe)."""
 
     def subscribe(self, msg_id: int, pipe_id: int) -> None:
         """Route a MsgId to a pipe (CFE_SB_Subscribe)."""
@@ -130,7 +138,7 @@ class Bus(Protocol):
         """Send a packet to all subscribers (CFE_SB_TransmitMsg)."""
 
     def receive_buffer(self, pipe_id: int, timeout_ms: int) -> bytes | None:
-        """Next packet of a pipe, or None (CFE_SB_ReceiveBuffer)."""
+        """Return the next packet of a pipe, or None after a timeout (CFE_SB_ReceiveBuffer)."""
 
     def cleanup_app(self, app_id: int) -> None:
         """Release everything that an application holds."""
@@ -149,60 +157,64 @@ class Events(Protocol):
         """Send an event in the name of an application (CFE_EVS_SendEventWithAppID)."""
 
     def cleanup_app(self, app_id: int) -> None:
-        """Forget an application that ended."""
+        """Remove an ended application from the event services."""
 
 
 class SpacecraftClock(Protocol):
-    """Time services as the other services use them."""
+    """Time Services as seen by the other services."""
 
     def now(self) -> tuple[int, int]:
         """Spacecraft time (TAI or UTC as configured) as (seconds, subseconds of 2**-32 s)."""
 
     def stamp(self) -> int:
-        """The same as the 48-bit integer of a telemetry secondary header: seconds << 16 | upper subseconds."""
+        """Return the same as the 48-bit integer of a telemetry secondary header: seconds << 16 | upper subseconds."""
 
     def text(self) -> str:
-        """The same as CFE_TIME_Print writes it: "1980-012-14:03:20.00000"."""
+        """Return the same time in the format of CFE_TIME_Print: "1980-012-14:03:20.00000"."""
 
     def print_(self, time: tuple[int, int]) -> str:
-        """Any time as CFE_TIME_Print writes it."""
+        """Return any time in the format of CFE_TIME_Print."""
 
     def cleanup_app(self, app_id: int) -> None:
         """Release everything that an application holds."""
 
 
 class Cleanup(Protocol):
-    """A service that holds things for applications and gives them back when one ends."""
+    """A service that holds resources for applications and releases them when an application ends."""
 
     def cleanup_app(self, app_id: int) -> None:
         """Release everything that an application holds."""
 
 
 class Files(Protocol):
-    """File Services, as the other services use them."""
+    """File Services as seen by the other services."""
 
     def write_header(self, filedes: int, file_header: Any) -> int:
         """Write a cFE header, with ids and time filled in, at the start of an open file (CFE_FS_WriteHeader)."""
 
     def background_file_dump_request(self, meta: Any) -> None:
-        """Have a file written by the background task (CFE_FS_BackgroundFileDumpRequest)."""
+        """Request that the background task writes a file (CFE_FS_BackgroundFileDumpRequest)."""
 
     def run_background_file_dump(self, elapsed_ms: int) -> bool:
-        """Write some of the files that wait; whether more is to do (CFE_FS_RunBackgroundFileDump)."""
+        """Write a part of the waiting files; return whether more is left (CFE_FS_RunBackgroundFileDump)."""
 
 
 class Memory(Protocol):
-    """The board's memory, as far as it is counted."""
+    """The memory of the board, as far as cfepy accounts for it."""
 
     def claim(self, owner: str, kind: str, size: int) -> int:
-        """Take bytes for an owner ("HK", "pipe HK_PIPE", 1280); the token gives them back."""
+        """Claim bytes for an owner, such as ("HK", "pipe HK_PIPE", 1280).
+
+        Returns:
+            A token, with which `release` frees the bytes.
+        """
 
     def release(self, token: int) -> None:
-        """Give a claim back."""
+        """Free the bytes of a claim."""
 
 
 class Ports:
-    """The services of one mission, as they see each other; filled in by `cfepy.mission`."""
+    """The services of one mission, as they see each other; `cfepy.mission` fills it in."""
 
     __slots__ = ("es", "evs", "fs", "memory", "sb", "syslog", "tbl", "time")
 

@@ -1,8 +1,8 @@
-"""Status codes of cFE, OSAL and PSP under NASA's names, and the errors that carry them.
+"""Status codes of cFE, OSAL and PSP under NASA's names, and the exceptions that carry them.
 
-The numbers are those of cfe_error.h, cfe_psp_error.h and osapi-error.h, as the signed 32-bit integers that NASA's code
-prints. A call that fails in C by returning one of them raises `CfeError` here. Event ids are not status codes: each
-service keeps its own.
+The numbers come from cfe_error.h, cfe_psp_error.h and osapi-error.h, as the signed 32-bit integers that NASA's code
+prints. A call that returns an error code in C raises `CfeError` here. Event ids are not status codes: each service
+keeps its own.
 """
 
 from __future__ import annotations
@@ -235,7 +235,9 @@ _SERVICES = {1: "EVS", 2: "ES", 3: "FS", 4: "GENERIC", 5: "SB", 6: "TBL", 7: "TI
 
 
 def _names() -> dict[int, str]:
-    """Number to name; where PSP or MSG share a number with OSAL or SB, the latter's name wins, as in NASA's logs."""
+    """Return the name of each number. If PSP or MSG share a number with OSAL or SB, the name of OSAL or SB wins, as in
+    NASA's logs.
+    """
     found: dict[int, str] = {}
     for name, value in globals().items():
         if name.isupper() and name.startswith(("OS_", "CFE_")) and not name.startswith(("CFE_SEV", "CFE_SERVICE")):
@@ -248,43 +250,43 @@ _NAMES = _names()
 
 
 def to_signed(status: int) -> int:
-    """A number of 32 bits as a C int, whichever way round it came (0xCA000003 and -905969661 are the same)."""
+    """Return a 32-bit number as a C int, from its signed or unsigned form (0xCA000003 and -905969661 are the same)."""
     return _signed(status & 0xFFFFFFFF)
 
 
 def name_of(status: int) -> str:
-    """NASA's name of a status, signed or unsigned; an unknown one reads "UNKNOWN_STATUS"."""
+    """Return NASA's name of a status, signed or unsigned; "UNKNOWN_STATUS" for an unknown one."""
     return _NAMES.get(to_signed(status), "UNKNOWN_STATUS")
 
 
 def status_to_string(status: int) -> str:
-    """A status as eight hexadecimal digits, e.g. "0xca000003" (CFE_ES_StatusToString)."""
+    """Return a status as eight hexadecimal digits, e.g. "0xca000003" (CFE_ES_StatusToString)."""
     return f"0x{status & 0xFFFFFFFF:08x}"
 
 
 def status_to_decimal(status: int) -> str:
-    """A status as a signed decimal number, e.g. "-35" (OS_StatusToString, CFE_PSP_StatusToString)."""
+    """Return a status as a signed decimal number, e.g. "-35" (OS_StatusToString, CFE_PSP_StatusToString)."""
     return str(to_signed(status))
 
 
 def severity_of(status: int) -> int:
-    """One of CFE_SEVERITY_SUCCESS, _INFO, _ERROR; OSAL's and PSP's small negative codes are errors too."""
+    """Return CFE_SEVERITY_SUCCESS, _INFO or _ERROR; small negative codes of OSAL and PSP are errors too."""
     return status & CFE_SEVERITY_BITMASK
 
 
 def service_of(status: int) -> str:
-    """Which service a status belongs to: "ES", "EVS", "FS", "GENERIC", "SB", "TBL", "TIME", or "OSAL"."""
+    """Return the service that a status belongs to: "ES", "EVS", "FS", "GENERIC", "SB", "TBL", "TIME", or "OSAL"."""
     if _LOWEST_SMALL_STATUS < to_signed(status) <= 0:
         return "OSAL"
     return _SERVICES.get((status & CFE_SERVICE_BITMASK) >> 25, "UNKNOWN")
 
 
 class CfeError(Exception):
-    """A cFE call failed.
+    """Exception for a failed cFE call.
 
     Args:
         status: the code that NASA's function would return, signed or unsigned.
-        text: what happened, in words.
+        text: a description of the error.
     """
 
     def __init__(self, status: int, text: str = "") -> None:
@@ -299,12 +301,12 @@ class CfeError(Exception):
 
     @property
     def hex(self) -> str:
-        """The status as NASA's texts print it: "0xCA000003"."""
+        """The status as NASA's texts print it, such as "0xCA000003"."""
         return f"0x{self.status & 0xFFFFFFFF:08X}"
 
     @property
     def long_hex(self) -> str:
-        """The status as a C unsigned long, in texts of lab and sample apps: "0xFFFFFFFFCA000003"."""
+        """The status as a C unsigned long, as lab and sample apps print it, such as "0xFFFFFFFFCA000003"."""
         return f"0x{self.status & 0xFFFFFFFFFFFFFFFF:08X}"
 
     def __str__(self) -> str:
@@ -314,19 +316,19 @@ class CfeError(Exception):
 
 
 class OsalError(CfeError):
-    """An OSAL or PSP call failed; `status` is an OS_* (or CFE_PSP_*) code."""
+    """Exception for a failed OSAL or PSP call; `status` is an OS_* (or CFE_PSP_*) code."""
 
 
 class UsageError(ValueError):
-    """A mission, board, table or script file, or an argument from a person, is wrong.
+    """Exception for an error in a mission, board, table or script file, or in an argument of the user.
 
     Args:
-        text: what is wrong, and what to do about it.
-        file: path of the file it is in.
+        text: what is wrong, and how to fix it.
+        file: path of the file with the error.
         line: line number in that file, counted from 1.
-        field: the field that is wrong, e.g. "limits.sb_max_pipes".
+        field: the field with the error, e.g. "limits.sb_max_pipes".
 
-    As a string it is for people: control characters in it are escapes.
+    `str()` gives the text for the user, with control characters escaped.
     """
 
     def __init__(
@@ -345,15 +347,15 @@ class UsageError(ValueError):
 
 
 class StallError(RuntimeError):
-    """A task did not give up the CPU, and the run was ended for that. The text has the user's own lines.
+    """Exception for a run that was ended because a task did not give up the CPU. Its text has the user's own lines.
 
     Args:
-        summary: which task, since when, how long: one line.
-        lines: where it was, the innermost of the user's own lines first.
-        app: the application of the task; empty when it is none of one.
+        summary: one line with the task, since when it has the CPU, and how long the watchdog waited.
+        lines: where the task was; the innermost of the user's own lines comes first.
+        app: the application of the task; empty if the task belongs to none.
         task: its name.
-        place: where it spins, such as "spin.py:4"; empty when that is not known.
-        at_ns: virtual time at which it had the CPU.
+        place: where the task spins, such as "spin.py:4"; empty if unknown.
+        at_ns: virtual time at which it got the CPU, in ns.
     """
 
     def __init__(

@@ -1,7 +1,7 @@
-"""The trace of a run: everything that happened, in order, and the digest that says whether two runs were the same.
+"""The trace of a run: a record of every event in order, and a digest that is equal if two runs are the same.
 
-A record is a bytes object whose first byte tells its kind; packets are records as they are (their first byte is below
-0x20). Appending one costs some ten nanoseconds, because records are kept by reference and hashed in batches.
+A record is a bytes object. Its first byte is its kind. A packet is recorded unchanged, because its first byte is below
+0x20. Appending a record costs about ten nanoseconds, because records are kept by reference and hashed in batches.
 """
 
 from __future__ import annotations
@@ -27,25 +27,26 @@ ONLY_COMPARED = (CALLED,)
 
 BATCH = 4096
 LARGE = 65536
-"""Bytes of a record that is not kept until a batch is full."""
+"""Size in bytes above which a record is not kept until its batch is full."""
 
 pack_time: Callable[[bytes, int], bytes] = struct.Struct("<cq").pack
 unpack_time = struct.Struct("<xq").unpack
 
 
 def mark(kind: bytes, number: int) -> bytes:
-    """The record for something that happened to task, queue or pipe `number`."""
+    """Return the record for an event of task, queue or pipe `number`."""
     return kind + (number & 0xFFFF).to_bytes(2, "little")
 
 
 class TimedRecords(list[bytes]):
-    """A trace's list of records that knows when each was made, for who shows them.
+    """A list of trace records that also keeps the time of each record, for viewers.
 
-    The records themselves tell the moves of the clock only, and a task that uses the CPU is further than that.
+    The records themselves hold only the steps of the clock. A task that uses the CPU is already later than the last
+    step.
 
     Attributes:
         times: virtual time of each record in ns.
-        now: tells the virtual time in ns.
+        now: returns the virtual time in ns.
     """
 
     def __init__(self) -> None:
@@ -54,31 +55,28 @@ class TimedRecords(list[bytes]):
         self.now: Callable[[], int] = lambda: 0
 
     def append(self, record: bytes) -> None:
-        """As of a list."""
         self.add(record, self.now())
 
     def add(self, record: bytes, time_ns: int) -> None:
-        """Append one that was made then."""
+        """Append a record that was made at `time_ns`."""
         self.times.append(time_ns)
         super().append(record)
 
     def pop(self, index: SupportsIndex = -1) -> bytes:
-        """As of a list."""
         self.times.pop(index)
         return super().pop(index)
 
     def clear(self) -> None:
-        """As of a list."""
         self.times.clear()
         super().clear()
 
 
 class Trace:
-    """Collects records; `digest()` is 128 bits of BLAKE2b over all of them.
+    """Collects the records of a run. `digest()` is 128 bits of BLAKE2b over all of them.
 
     Args:
-        sink: called with each batch of records, in order, before it is forgotten (a trace file, a detector).
-        records: the list in which they are collected; None makes a plain one.
+        sink: called with each batch of records, in order, before the batch is dropped (a trace file, a detector).
+        records: the list in which they are collected; None makes a plain list.
     """
 
     __slots__ = ("_hash", "_sink", "append", "records")
@@ -90,7 +88,7 @@ class Trace:
         self._sink = sink
 
     def take_times(self, now: Callable[[], int]) -> None:
-        """Records that know their times (`TimedRecords`) have them from this clock, in ns."""
+        """Set the clock, in ns, for records that keep their times (`TimedRecords`)."""
         if isinstance(self.records, TimedRecords):
             self.records.now = now
 
@@ -107,13 +105,13 @@ class Trace:
 
     @property
     def hashed(self) -> str:
-        """The digest of all records that were hashed so far; in a sink, those of its batch are among them."""
+        """The digest of all records hashed so far; within a sink it includes the sink's batch."""
         return self._hash.hexdigest()
 
     def flush(self) -> None:
-        """Hash what was collected and let it go."""
+        """Hash the collected records and drop them."""
         records = self.records
-        if records and len(records[-1]) > LARGE:  # which is not copied
+        if records and len(records[-1]) > LARGE:  # do not copy the large record
             self._hash.update(b"".join(records[:-1]))
             self._hash.update(records[-1])
         else:
@@ -123,7 +121,7 @@ class Trace:
         self.records.clear()
 
     def drop_empty(self) -> None:
-        """Take an empty record at the end out again."""
+        """Remove an empty record at the end, if there is one."""
         if self.records and not self.records[-1]:
             self.records.pop()
 
@@ -132,6 +130,6 @@ class Trace:
         self.append(NOTE + text.encode("utf-8", "backslashreplace"))
 
     def digest(self) -> str:
-        """32 hexadecimal digits that stand for the whole run so far."""
+        """Return the digest of the run so far, as 32 hexadecimal digits."""
         self.flush()
         return self._hash.hexdigest()

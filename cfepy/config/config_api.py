@@ -1,7 +1,7 @@
-"""`ConfigServices`: what an application finds as `cfe.config` (cFE's configuration registry, CFE_Config_*).
+"""`ConfigServices`: the object behind `cfe.config` (cFE's configuration registry, CFE_Config_*).
 
-NASA's keys come first, in NASA's order and so with NASA's ids but for the applications of a C build, which have keys
-there and none here. The platform configuration follows, as a mission's own keys would.
+NASA's keys come first, in NASA's order. They have NASA's ids, except that a C build also has keys for its applications.
+The platform configuration follows, like a mission's own keys.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ Value = int | str | Array | None
 
 
 class ConfigServices:
-    """The registry of one processor. As NASA's, its functions never fail: an unknown id gives 0, "[unknown]", None.
+    """The registry of one processor. Its functions never fail: for an unknown id they return 0, "[unknown]" or None, as
+    NASA's do.
 
     Args:
         config: the platform's limits.
@@ -42,33 +43,34 @@ class ConfigServices:
         self._values = list(values.values())
 
     def get_value(self, config_id: int) -> int:
-        """A number; 0 when the key has none (CFE_Config_GetValue)."""
+        """Return a number; 0 if the key has none (CFE_Config_GetValue)."""
         value = self._find(config_id)
         return value if isinstance(value, int) else 0
 
     def get_string(self, config_id: int) -> str:
-        """A text; "[unknown]" when the key has none (CFE_Config_GetString)."""
+        """Return a text; "[unknown]" if the key has none (CFE_Config_GetString)."""
         value = self._find(config_id)
         return value if isinstance(value, str) else UNKNOWN
 
     def get_array_value(self, config_id: int) -> Array:
-        """The numbers of an array; none when the key has no array (CFE_Config_GetArrayValue)."""
+        """Return the numbers of an array; an empty tuple if the key has no array (CFE_Config_GetArrayValue)."""
         value = self._find(config_id)
         return value if isinstance(value, tuple) else ()
 
     def get_obj_pointer(self, config_id: int) -> str | None:
-        """What a key points to: a text, or None for the EDS databases, which this build has not
-        (CFE_Config_GetObjPointer)."""
+        """Return the object that a key points to: a text, or None for the EDS databases, which this build lacks
+        (CFE_Config_GetObjPointer).
+        """
         value = self._find(config_id)
         return value if isinstance(value, str) else NO_OBJECT
 
     def get_name(self, config_id: int) -> str:
-        """The name of a key, without CFE_CONFIGID_; "[unknown]" when there is none (CFE_Config_GetName)."""
+        """Return the name of a key, without CFE_CONFIGID_; "[unknown]" if there is no such key (CFE_Config_GetName)."""
         index = self._index(config_id)
         return self._names[index] if index is not None else UNKNOWN
 
     def get_id_by_name(self, name: str) -> int:
-        """The id of a key, 0 when there is none of that name (CFE_Config_GetIdByName).
+        """Return the id of a key, or 0 if no key has that name (CFE_Config_GetIdByName).
 
         >>> config = ConfigServices(PlatformConfig(), "demo")
         >>> config.get_string(config.get_id_by_name("MISSION_NAME"))
@@ -77,7 +79,7 @@ class ConfigServices:
         return make(CONFIGID_BASE, self._names.index(name)) if name in self._names else UNDEFINED
 
     def iterate_all(self, callback: Callable[[int, str], object]) -> None:
-        """Call a function with id and name of each key, in the order of their ids (CFE_Config_IterateAll)."""
+        """Call a function with the id and name of each key, in the order of the ids (CFE_Config_IterateAll)."""
         for index, name in enumerate(self._names):
             callback(make(CONFIGID_BASE, index), name)
 
@@ -91,7 +93,7 @@ class ConfigServices:
 
 
 def _build_info(config: PlatformConfig, mission: str) -> dict[str, Value]:
-    """The keys of config_ids_base.cmake."""
+    """Return the keys of config_ids_base.cmake."""
     release = config.release
     major, minor, revision, mission_revision = release.number
     return {
@@ -114,7 +116,7 @@ def _build_info(config: PlatformConfig, mission: str) -> dict[str, Value]:
 
 
 def _arrays(config: PlatformConfig) -> dict[str, Value]:
-    """The keys of config_ids_dynamic.cmake; block sizes from the largest to the smallest."""
+    """Return the keys of config_ids_dynamic.cmake, with block sizes from the largest to the smallest."""
     es_blocks = ES_MEM_BLOCK_SIZES[::-1]
     return {
         "PLATFORM_TBL_VALID_SCID": (),
@@ -126,6 +128,8 @@ def _arrays(config: PlatformConfig) -> dict[str, Value]:
 
 
 def _platform(config: PlatformConfig) -> dict[str, Value]:
-    """The fields of the platform configuration: PLATFORM_ES_MAX_APPLICATIONS; OSAL's without a prefix: OS_MAX_TASKS."""
+    """Return the fields of the platform configuration as keys, such as PLATFORM_ES_MAX_APPLICATIONS. OSAL's keys have
+    no prefix: OS_MAX_TASKS.
+    """
     fields: dict[str, Value] = {name: value for name, value in asdict(config).items() if name not in NOT_LIMITS}
     return {name.upper() if name.startswith("os_") else f"PLATFORM_{name.upper()}": fields[name] for name in fields}

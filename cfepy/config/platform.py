@@ -1,6 +1,6 @@
-"""Platform configuration: the CFE_PLATFORM_* and CFE_MISSION_* values that services read, with the defaults of cFE 7.0.
+"""Platform configuration: the values CFE_PLATFORM_* and CFE_MISSION_* that services read, with the defaults of cFE 7.0.
 
-A board profile and a mission file may change them (`PlatformConfig.with_limits`).
+A board profile and a mission file can change them (`PlatformConfig.with_limits`).
 """
 
 from __future__ import annotations
@@ -11,13 +11,15 @@ from dataclasses import dataclass, fields, replace
 from cfepy.config.versions import CFE_7_0_0, DEFAULT_RELEASE, RELEASES, Release
 
 ES_MEM_BLOCK_SIZES = (8, 16, 32, 48, 64, 96, 128, 160, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768, 80000)
-"""Bytes of the blocks in memory pools and in the CDS (CFE_PLATFORM_ES_MEM_BLOCK_SIZE_01 and on)."""
+"""Bytes of the blocks in memory pools and in the CDS (CFE_PLATFORM_ES_MEM_BLOCK_SIZE_01 and following)."""
 
 SB_MEM_BLOCK_SIZES = (8, 16, 20, 36, 64, 96, 128, 160, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768)
-"""Bytes of the blocks in the Software Bus's pool, but for the largest (CFE_PLATFORM_SB_MEM_BLOCK_SIZE_01 and on)."""
+"""Bytes of the blocks in the Software Bus's pool, without the largest (CFE_PLATFORM_SB_MEM_BLOCK_SIZE_01 and
+following).
+"""
 
 SB_LARGEST_BLOCK_MORE = 128
-"""The largest block of that pool is the largest message and so many bytes (CFE_PLATFORM_SB_MAX_BLOCK_SIZE)."""
+"""Bytes by which the largest block of that pool exceeds the largest message (CFE_PLATFORM_SB_MAX_BLOCK_SIZE)."""
 
 MAY_BE_ZERO = frozenset(
     {
@@ -34,7 +36,7 @@ MAY_BE_ZERO = frozenset(
         "time_def_leaps",
     }
 )
-"""Values whose default is another, but for which 0 says something too: a mode, no bit, never, off."""
+"""Fields that accept 0 although their default is not 0; here 0 means a mode, no bit, never or off."""
 
 COUNTED_BY_ID = frozenset(
     {
@@ -53,14 +55,14 @@ COUNTED_BY_ID = frozenset(
         "tbl_max_num_handles",
     }
 )
-"""Numbers of things that have resource ids, which tell no more than 65534 of a kind apart."""
+"""Limits on objects with resource ids; ids distinguish at most 65534 objects of a kind."""
 
 
 NOT_LIMITS = frozenset({"cfe_version", "given"})
-"""What no board and no `limits:` of a mission file says."""
+"""Fields that neither a board profile nor the `limits:` of a mission file can set."""
 
 IDENTITIES: Mapping[str, str] = {"processor_id": "--cpuid", "spacecraft_id": "--scid"}
-"""What a run can be given in place of what it was built with, and the option of NASA's executable for it."""
+"""Identities that a run can override, with the option of NASA's executable for each."""
 
 MOST_ID = 0xFFFF_FFFF
 
@@ -70,8 +72,8 @@ class PlatformConfig:
     """Limits and identities of one processor; field names are cFE's macro names without CFE_PLATFORM_/CFE_MISSION_.
 
     Attributes:
-        cfe_version: the release of cFE that it runs, a key of `RELEASES`; a mission file names it by itself.
-        given: the identities that the command line of the flight software gave, of `IDENTITIES`.
+        cfe_version: the release of cFE that it runs, a key of `RELEASES`; a mission file has a field of its own for it.
+        given: the keys of `IDENTITIES` that the command line of the flight software set.
     """
 
     cfe_version: str = DEFAULT_RELEASE
@@ -169,17 +171,17 @@ class PlatformConfig:
 
     @property
     def is_cfe_7_0_0(self) -> bool:
-        """Whether the release is 7.0.0; what differs from 7.0.1 is in docs/differences.md."""
+        """Whether the release is 7.0.0; docs/differences.md lists the differences from 7.0.1."""
         return self.cfe_version == CFE_7_0_0
 
     def with_limits(self, limits: Mapping[str, int | str | tuple[int, ...]]) -> PlatformConfig:
-        """A copy with some values replaced.
+        """Return a copy with some values replaced.
 
         Args:
-            limits: field name to value, as under `limits:` of a board profile.
+            limits: values by field name, as under `limits:` of a board profile.
 
         Raises:
-            KeyError: a name that is not a field here.
+            KeyError: if a name is not a field.
         """
         known = {field.name for field in fields(self)}
         for name in limits:

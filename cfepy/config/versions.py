@@ -1,4 +1,4 @@
-"""The releases of cFE that a mission can choose from, and the versions that cFE, OSAL and PSP show."""
+"""The releases of cFE that a mission can select, and the versions that cFE, OSAL and PSP report."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ CODENAME = "Draco"
 APP_VERSION = "v7.0.0+dev0"
 OFFICIAL = "v7.0.0"
 VERSION_NUMBER = (7, 0, 0, 0)
-"""Major, minor, revision, mission revision of OSAL and PSP, which are the same with both releases of cFE."""
+"""Major, minor, revision and mission revision of OSAL and PSP; the same with both releases of cFE."""
 
 BUILD_NUMBER = 0  # of a release
 MODULES = ("CORE_API", "ES", "EVS", "FS", "SB", "TBL", "TIME", "OSAL", "PSP", "MSG", "SBR", "RESOURCEID", "CONFIG")
-"""The parts of the flight software, in the order in which ES tells their versions."""
+"""The parts of the flight software, in the order of ES's version messages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class Release:
 
     Attributes:
         number: major, minor, revision, mission revision.
-        longest_entry: characters of an entry of the startup script, without blanks, that are read.
+        longest_entry: number of characters of a startup script entry, without blanks, that ES reads.
     """
 
     number: tuple[int, int, int, int]
@@ -41,11 +41,11 @@ class Release:
         return f"{self.official}+dev{BUILD_NUMBER}"
 
     def module(self, name: str) -> str:
-        """The version of the source of one of `MODULES`; OSAL's and the PSP's are the same with both releases."""
+        """Return the source version of one of `MODULES`; it is the same for OSAL and the PSP in both releases."""
         return f"git:{OFFICIAL if name in ('OSAL', 'PSP') else self.official}"
 
     def text(self, component: str) -> str:
-        """The long version text of one of its parts."""
+        """Return the long version text of a component."""
         return version_string(component, self.source, CODENAME, self.official)
 
 
@@ -53,21 +53,21 @@ RELEASES = {
     CFE_7_0_0: Release((7, 0, 0, 0), longest_entry=128),
     CFE_7_0_1: Release((7, 0, 1, 0), longest_entry=127),
 }
-"""Releases by what a mission file calls them."""
+"""The releases by their name in a mission file."""
 
 DEFAULT_RELEASE = CFE_7_0_1
-"""What a mission flies on that names none: 7.0.0 refuses every table that the ground loads."""
+"""The release of a mission that names none; not 7.0.0, which refuses every table that the ground loads."""
 
 
 def version_string(
     component: str, version: str = APP_VERSION, codename: str = CODENAME, official: str = OFFICIAL
 ) -> str:
-    """The long version text of a component, as CFE_Config_GetVersionString makes it.
+    """Return the long version text of a component, as CFE_Config_GetVersionString makes it.
 
     Args:
         component: its name.
-        version: of this build.
-        codename: of the release that it belongs to.
+        version: version of this build.
+        codename: code name of its release.
         official: version of the last official release.
     """
     return f"{component} {version} ({codename}) {official} Official Release, EDS disabled"
@@ -79,17 +79,17 @@ class VersionFunctions:
     _version = OFFICIAL
 
     def get_version_string(self) -> str:
-        """The version that this is like (OS_GetVersionString, CFE_PSP_GetVersionString)."""
+        """Return the version that this one corresponds to (OS_GetVersionString, CFE_PSP_GetVersionString)."""
         return self._version
 
     def get_version_code_name(self) -> str:
-        """The code name of that release (OS_GetVersionCodeName, CFE_PSP_GetVersionCodeName)."""
+        """Return the code name of that release (OS_GetVersionCodeName, CFE_PSP_GetVersionCodeName)."""
         return CODENAME
 
     def get_version_number(self) -> tuple[int, int, int, int]:
-        """Major, minor, revision, mission revision (OS_GetVersionNumber, CFE_PSP_GetVersionNumber)."""
+        """Return major, minor, revision and mission revision (OS_GetVersionNumber, CFE_PSP_GetVersionNumber)."""
         return VERSION_NUMBER
 
     def get_build_number(self) -> int:
-        """The build number, 0 for a release (OS_GetBuildNumber, CFE_PSP_GetBuildNumber)."""
+        """Return the build number, 0 for a release (OS_GetBuildNumber, CFE_PSP_GetBuildNumber)."""
         return BUILD_NUMBER

@@ -1,7 +1,7 @@
 """Executive Services: boot, resets, applications, tasks, logs, critical data, memory pools, counters (cFE ES).
 
-What belongs here is NASA's ES: what applications ask of it, what the ground commands, and what it does by itself. The
-five services do not import each other; what ES needs of the others it finds in its `Ports`. The central file is
+NASA's ES belongs here: the functions for applications, the ground commands, and its own background work. The five
+services are independent of one another; ES reaches the others through its `Ports`. The central file is
 `cfepy/es/service.py`.
 """
 
@@ -76,7 +76,7 @@ __all__ = [
     "parse",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

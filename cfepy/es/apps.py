@@ -1,6 +1,6 @@
-"""Applications and libraries: loading, starting, asking for their end, and the end itself (cfe_es_apps.c).
+"""Applications and libraries: loading, starting, requests to end, and the end itself (cfe_es_apps.c).
 
-At its end an application gives back what it held; it may be started again.
+An application that ends releases its resources. It can be started again.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from cfepy.status import (
 MAX_NAME = OS_MAX_API_NAME - 1
 NO_SYMBOLS = ("", "NULL")
 Loaded = TypeVar("Loaded")
-# What was asked for, to the words of its event, the id when it is done and when starting again failed.
+# The words of each request's event, and the event ids for success and for a failed new start.
 _REPORTS = {
     APP_EXIT: ("Exit", ev.EXIT_APP_INF_EID, ev.EXIT_APP_ERR_EID),
     APP_ERROR: ("Exit", ev.ERREXIT_APP_INF_EID, ev.ERREXIT_APP_ERR_EID),
@@ -57,15 +57,15 @@ _REPORTS = {
 
 
 def _no_init(lib_id: int) -> None:
-    """Stands for the init function of a library without one."""
+    """Replace the init function of a library without one."""
 
 
 class SymbolError(OsalError):
-    """A module has no entry point of that name."""
+    """Exception for a module without an entry point of the given name."""
 
 
 class AppServices(ResetApi):
-    """How applications begin, and how their end is asked for."""
+    """The start of applications, and the requests for their end."""
 
     # -- starting --------------------------------------------------------------------------------------------------
 
@@ -74,7 +74,7 @@ class AppServices(ResetApi):
 
         Args:
             name: at most 19 characters.
-            params: the rest of its line in the startup script.
+            params: the other fields of its line in the startup script.
             entry: for a core application, its main function; otherwise the loader finds it.
 
         Returns:
@@ -86,7 +86,7 @@ class AppServices(ResetApi):
         """
         self._check_new_app(name)
         record = AppRecord(name, params, entry, is_core=entry is not None)
-        record.app_id = self.apps.create(record)  # first of all: as in C the id of one that fails is used up
+        record.app_id = self.apps.create(record)  # this comes first: as in C, a failed start uses up an id
         try:
             if entry is None:
                 record.entry = self._load_app(name, params)
@@ -101,8 +101,8 @@ class AppServices(ResetApi):
         return record.app_id
 
     def _load_app(self, name: str, params: StartParams) -> Entry | None:
-        """The main function of an application; None when no symbol names it, which NASA's takes."""
-        if any(lib.name == name for lib in self.libs):  # OSAL's modules have the names of what they are loaded for
+        """Return the main function of an application, or None if no symbol names it, which NASA's ES accepts."""
+        if any(lib.name == name for lib in self.libs):  # OSAL's modules are named after the application or library
             taken = f"CFE_ES_LoadModule: Could not load file:{params.file}. EC = {OS_ERR_NAME_TAKEN}"
             self.write_to_sys_log(taken)
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"a library is called {name!r}")
@@ -121,7 +121,7 @@ class AppServices(ResetApi):
             raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"{self.apps.capacity} applications run already")
 
     def _explain(self, failure: CfeError) -> None:
-        """What the cause adds to NASA's line, if anything: the users of the board's memory."""
+        """Print details about a failure, if there are any: the users of the board's memory."""
         if "\n" in failure.text:
             self.console.write(failure.text)
 
@@ -133,7 +133,7 @@ class AppServices(ResetApi):
 
         Raises:
             CfeError: CFE_ES_BAD_ARGUMENT, CFE_ES_ERR_DUPLICATE_NAME, CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
-                CFE_STATUS_EXTERNAL_RESOURCE_FAIL (cannot be loaded) or what the init function returned.
+                CFE_STATUS_EXTERNAL_RESOURCE_FAIL (cannot be loaded) or the status of the init function.
         """
         self._check_new_library(name)
         record = LibRecord(name, file, symbol)
@@ -168,7 +168,7 @@ class AppServices(ResetApi):
         try:
             return load()
         except SymbolError as missing:
-            if symbol in NO_SYMBOLS:  # they are not looked up
+            if symbol in NO_SYMBOLS:  # these names are not looked up
                 return nameless()
             self.write_to_sys_log(f"CFE_ES_LoadModule: Could not find symbol:{missing.text}. EC = {missing.status}")
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(missing)) from missing
@@ -180,7 +180,7 @@ class AppServices(ResetApi):
         """Start a task of an application; its entry runs after NASA's start delay of 50 ms (CFE_ES_StartAppTask).
 
         Raises:
-            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL: OSAL cannot create it.
+            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL if OSAL cannot create it.
         """
         record = TaskRecord(0, name, stack_size, priority)
 
@@ -201,11 +201,11 @@ class AppServices(ResetApi):
 
     def _main_of(self, app: AppRecord) -> Entry:
         def main() -> None:
-            if app.entry is None:  # NASA's task waits for its function, and ends without a word
+            if app.entry is None:  # NASA's task waits for its function, and ends silently
                 self.osal.task_delay(self.config.es_startup_script_timeout_ms)
                 return
             app.entry()
-            self.exit_app(APP_EXIT)  # in C the task would end and ES never know
+            self.exit_app(APP_EXIT)  # in C the task would end without notice to ES
 
         return main
 
@@ -215,15 +215,15 @@ class AppServices(ResetApi):
         """End the calling application; does not return (CFE_ES_ExitApp).
 
         Args:
-            status: why, one of APP_*, SYS_*, CORE_APP_*. A core application cannot end itself: only the last two do
-                something for it.
+            status: the reason, one of APP_*, SYS_*, CORE_APP_*. A core application cannot end itself; only the last two
+                have an effect for it.
         """
         app = self.calling_app()
         if not APP_RUN <= status <= CORE_APP_RUNTIME_ERROR:
             self.write_to_sys_log(f"CFE_ES_ExitApp: Called with invalid status ({status}).")
             status = APP_ERROR
         if app.control_request == APP_RUN:
-            app.control_request = status  # a request that is pending already stays
+            app.control_request = status  # keep a pending request
             if status == APP_ERROR:
                 self.history_of(app.name).failed_ns = self.kernel.now
         if app.is_core:
@@ -231,7 +231,7 @@ class AppServices(ResetApi):
             return
         self.write_to_sys_log(f"CFE_ES_ExitApp: Application {app.name} called CFE_ES_ExitApp")
         app.state = STOPPED
-        while True:  # until the background scan deletes the application and this task with it
+        while True:  # until the background scan deletes the application together with this task
             self.osal.task_delay(500)
 
     def _exit_core(self, app: AppRecord, status: int) -> None:
@@ -245,11 +245,11 @@ class AppServices(ResetApi):
             self.write_to_sys_log(f"CFE_ES_ExitApp: Cannot Exit CORE Application {app.name}")
 
     def restart_app(self, app_id: int) -> None:
-        """Ask for an application to be cleaned up and started again (CFE_ES_RestartApp).
+        """Request a cleanup and a new start of an application (CFE_ES_RestartApp).
 
         Raises:
             CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID (no such application, a core application, not running),
-                CFE_ES_FILE_IO_ERR (its file is gone).
+                CFE_ES_FILE_IO_ERR (its file no longer exists).
         """
         app = self._user_app(app_id, "Restart")
         self._require_file(app, app.params.file, "Restart")
@@ -257,7 +257,7 @@ class AppServices(ResetApi):
         app.control_request = SYS_RESTART
 
     def reload_app(self, app_id: int, file: str) -> None:
-        """As `restart_app`, from another file (CFE_ES_ReloadApp).
+        """Request a new start of an application from another file; see `restart_app` (CFE_ES_ReloadApp).
 
         Args:
             app_id: the application.
@@ -270,7 +270,7 @@ class AppServices(ResetApi):
         app.control_request = SYS_RELOAD
 
     def delete_app(self, app_id: int) -> None:
-        """Ask for an application to be ended and cleaned up (CFE_ES_DeleteApp).
+        """Request the end and cleanup of an application (CFE_ES_DeleteApp).
 
         Raises:
             CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID (no such application, a core application, not running).
@@ -280,7 +280,7 @@ class AppServices(ResetApi):
         app.control_request = SYS_DELETE
 
     def _user_app(self, app_id: int, action: str) -> AppRecord:
-        """A running application that is none of the core's (CFE_ES_LockUserAppRecord)."""
+        """Return a running application that is not a core application (CFE_ES_LockUserAppRecord)."""
         app = self.apps.find(app_id)
         if app is None:
             text = f"Invalid Application ID received for {action}, AppID = {app_id}"
@@ -305,7 +305,7 @@ class AppEnd(AppServices):
     """Cleaning up."""
 
     def process_control_request(self, app: AppRecord) -> None:
-        """Clean up an application, start it again if that was asked for, and say so (CFE_ES_ProcessControlRequest)."""
+        """Clean up an application, start it again if requested, and report it (CFE_ES_ProcessControlRequest)."""
         request = app.control_request
         history = self.history_of(app.name)
         history.error_exits += request == APP_ERROR
@@ -331,9 +331,9 @@ class AppEnd(AppServices):
         self.ports.evs.send_event(event, ev.ERROR, text)
 
     def cleanup_app(self, app: AppRecord) -> None:
-        """End an application's tasks and give back everything it holds (CFE_ES_CleanUpApp).
+        """End an application's tasks and release its resources (CFE_ES_CleanUpApp).
 
-        The tasks go first, so that their `finally` blocks still find what they clean up.
+        The tasks end first, because their `finally` blocks may still use the resources.
         """
         history = self.history_of(app.name)
         for task_id in [*(each for each in app.tasks if each != app.main_task_id), app.main_task_id]:
@@ -350,7 +350,7 @@ class AppEnd(AppServices):
         self.loader.unload(app.name)
 
     def end_task(self, app: AppRecord, task_id: int) -> None:
-        """End one task of an application."""
+        """End a task of an application."""
         record = app.tasks.pop(task_id, None)
         if record is None:
             return
@@ -360,7 +360,7 @@ class AppEnd(AppServices):
         try:
             self.osal.task_delete(task_id)
         except OsalError:
-            pass  # the task ended by itself: nothing is left to delete
+            pass  # the task has already ended, so there is nothing to delete
 
     def _release_pools(self, app: AppRecord) -> None:
         for pool_id, (owner, claim) in list(self.pool_owners.items()):

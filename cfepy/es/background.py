@@ -1,6 +1,6 @@
 """The background task of Executive Services (cfe_es_backgroundtask.c): jobs that take turns at low priority.
 
-One of the jobs is here too: the scan for applications that end or were asked to (CFE_ES_RunAppTableScan).
+One of the jobs is in this module: the scan for applications that end or should end (CFE_ES_RunAppTableScan).
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ MAX_IDLE_DELAY_MS = 30000
 
 
 class Job(NamedTuple):
-    """Something to call again and again.
+    """A job that is called repeatedly.
 
-    `run` gets the ms that passed since the last call and says whether there is more to do; `active_ms` and `idle_ms`
-    are how soon it wants to be called again then.
+    `run` gets the ms since the last call and returns whether there is more to do. `active_ms` and `idle_ms` are the
+    times to the next call if there is or is not.
     """
 
     run: Callable[[int], bool]
@@ -32,11 +32,11 @@ class Job(NamedTuple):
 
 
 class BackgroundTask:
-    """Calls its jobs when one of them wants to be called, and all of them when woken.
+    """Calls its jobs when they are due, and all of them when it is woken.
 
     Args:
-        es: whose task it is.
-        jobs: in the order in which they are called.
+        es: the services that own the task.
+        jobs: the jobs, in the order of the calls.
     """
 
     def __init__(self, es: InfoApi, jobs: Sequence[Job]) -> None:
@@ -44,7 +44,7 @@ class BackgroundTask:
         self._jobs = jobs
 
     def main(self) -> None:
-        """The child task."""
+        """Run the child task."""
         es = self._es
         last = es.kernel.now
         while True:
@@ -55,11 +55,11 @@ class BackgroundTask:
 
 
 class AppScan:
-    """Looks once in a scan period, at once after a command, and at every call while something ends.
+    """Scans once per scan period, at once after a command, and at every call while an application ends.
 
     Args:
         es: the applications.
-        command_count: counts the commands that were accepted.
+        command_count: returns the number of accepted commands.
     """
 
     def __init__(self, es: AppEnd, command_count: Callable[[], int]) -> None:
@@ -70,7 +70,7 @@ class AppScan:
         self._pending = False
 
     def run(self, elapsed_ms: int) -> bool:
-        """One call of the background task; whether an application is about to end."""
+        """Run one call of the background task; return whether an application is about to end."""
         config, count = self._es.config, self._command_count()
         if not self._pending and count == self._last_count and self._timer_ms > elapsed_ms:
             self._timer_ms -= elapsed_ms
@@ -89,6 +89,6 @@ class AppScan:
 
 
 def _is_over(app: AppRecord, elapsed_ms: int) -> bool:
-    """Whether the time that an application had for its end has passed."""
+    """Return whether an application's time to end has passed."""
     app.timer_ms = max(0, app.timer_ms - elapsed_ms)
     return app.timer_ms == 0

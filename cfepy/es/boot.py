@@ -27,14 +27,14 @@ NONVOL_STARTUP_FILE = "/cf/cfe_es_startup.scr"
 VOLATILE_STARTUP_FILE = "/ram/cfe_es_startup.scr"
 PANIC_CORE_APP = 6  # CFE_PSP_PANIC_CORE_APP
 PANIC_DELAY_MS = 500
-BOOT_SOURCE = 1  # what NASA's Linux PSP hands to CFE_ES_Main
+BOOT_SOURCE = 1  # the value that NASA's Linux PSP passes to CFE_ES_Main
 
 
 def initialize_file_systems(es: EsCore, start_type: int) -> None:
-    """Make the RAM disk ready.
+    """Prepare the RAM disk.
 
     Args:
-        es: whose board and limits.
+        es: provides the board and the limits.
         start_type: RST_TYPE_*.
     """
     if start_type == RST_TYPE_POWERON:
@@ -62,8 +62,11 @@ class CoreApp(NamedTuple):
 
 
 class ObjectTable(NamedTuple):
-    """What the executive sets up before any application (cfe_es_objtab.c): calls with what the log names them, then
-    core apps; `failed` is what it says of a call that failed, with its name and the status."""
+    """The calls and core applications before any other application (cfe_es_objtab.c).
+
+    `calls` are functions with their names in the log. `failed` is the log text for a failed call, with its name and
+    status.
+    """
 
     calls: Sequence[tuple[str, Callable[[], object]]]
     core_apps: Sequence[CoreApp]
@@ -71,11 +74,11 @@ class ObjectTable(NamedTuple):
 
 
 class Boot:
-    """One boot of the executive.
+    """A boot of the executive.
 
     Args:
         es: Executive Services.
-        table: what to set up.
+        table: the object table.
         script: the bytes of the startup script.
         on_operational: called when the mission is operational.
     """
@@ -94,7 +97,7 @@ class Boot:
         self.log = es.write_to_sys_log
 
     def main(self) -> None:
-        """The main task of the processor."""
+        """Run the main task of the processor."""
         start = self.es.psp.get_restart_type()
         self.es.setup_reset_variables(start.reset_type, start.subtype, BOOT_SOURCE)
         self.log("CFE_ES_Main: CFE_ES_Main in EARLY_INIT state")
@@ -140,13 +143,13 @@ class Boot:
             raise CfeError(CFE_ES_OPERATION_TIMED_OUT, f"{core.name} does not come up")
 
     def _panic(self, text: str, cause: CfeError) -> None:
-        """The executive cannot go on: say so, and let the board do what it does then."""
+        """Report that the executive cannot continue, and call the board's panic function."""
         self.log(f"CFE_ES_CreateObjects: {text}")
         self.es.osal.task_delay(PANIC_DELAY_MS)
         self.es.psp.panic(PANIC_CORE_APP, cause)
 
     def start_applications(self, reset_type: int) -> None:
-        """Start what the startup script names (CFE_ES_StartApplications).
+        """Start the libraries and applications of the startup script (CFE_ES_StartApplications).
 
         Args:
             reset_type: RST_TYPE_*; after a processor reset a script on the RAM disk comes first.
@@ -181,7 +184,7 @@ class Boot:
                 params = StartParams(entry.path, entry.symbol, entry.stack_size, entry.priority, entry.exception_action)
                 self.es.create_app(entry.name, params)
         except CfeError:
-            pass  # it is in the system log; as in cFE the next entry gets its chance
+            pass  # the error is in the system log; as in cFE, the next entry is tried
 
     def _wait_until_running(self, app: AppRecord) -> bool:
         return self._wait(self.es.config.es_core_max_startup_ms, lambda: app.state >= RUNNING)
@@ -190,7 +193,9 @@ class Boot:
         return self._wait(self.es.config.es_startup_script_timeout_ms, lambda: self.es.reached(state))
 
     def _wait(self, limit_ms: int, done: Callable[[], bool]) -> bool:
-        """Look every 50 ms (CFE_ES_MainTaskSyncDelay); False when it took too long."""
+        """Wait until `done` returns true, checking every 50 ms (CFE_ES_MainTaskSyncDelay); return False after the time
+        limit.
+        """
         waited = 0
         while not done():
             if waited >= limit_ms:

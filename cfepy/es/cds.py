@@ -1,12 +1,11 @@
 """The Critical Data Store (cfe_es_cds.c, cfe_es_cds_mempool.c): named blocks that outlive a processor reset.
 
-All of it is bytes in the PSP's CDS memory: a signature, the registry, a pool with the blocks, another signature. What a
-reset leaves is used again as far as it is whole: without the signatures nothing is, a damaged record or descriptor
-costs its block, damaged data show when their owner reads them.
+The whole store is bytes in the PSP's CDS memory: a signature, the registry, a pool with the blocks, another signature.
+After a reset, the intact parts are used again. Without the signatures, the whole store is lost. A damaged record or
+descriptor loses its block. Damaged data are detected when the owner reads them.
 
 The registry has one record of 72 bytes for each block. The layout is C's (CFE_ES_CDS_RegRec_t), with one addition: the
-four bytes that are padding there hold a check value, so that a damaged record is recognised after a reset. A free
-record is all zeros.
+four padding bytes hold a check value, which reveals a damaged record after a reset. A free record is all zeros.
 """
 
 from __future__ import annotations
@@ -41,10 +40,10 @@ from cfepy.status import (
 
 RECORD = struct.Struct("<IIQQ40s?7x")
 FULL_NAME_SIZE = 40
-"""Bytes of a block's full name, the NUL included (CFE_MISSION_ES_CDS_MAX_FULL_NAME_LEN)."""
+"""Bytes of a block's full name, including the NUL (CFE_MISSION_ES_CDS_MAX_FULL_NAME_LEN)."""
 
 BLOCK_HEADER = struct.Struct("<I")
-"""In front of a block's data: their CRC (CFE_ES_CDS_BlockHeader_t)."""
+"""The header of a block's data: their CRC (CFE_ES_CDS_BlockHeader_t)."""
 
 FREE_RECORD = bytes(RECORD.size)
 _CHECK_AT = 4
@@ -60,7 +59,9 @@ MAX_NAME_LENGTH = 16
 
 @dataclass(slots=True, eq=False)
 class CdsBlock:
-    """A block: its handle, where it is, its bytes with the header, its full name, whether it is a critical table."""
+    """A block: its handle, its offset, its size with the header, its full name, and whether it holds a
+    critical table.
+    """
 
     handle: int
     offset: int
@@ -70,25 +71,25 @@ class CdsBlock:
 
     @property
     def user_size(self) -> int:
-        """Bytes that its owner sees; 0 for a name that has lost its bytes, because a new size had no room."""
+        """The bytes that its owner sees; 0 if the block has lost its bytes because there was no room for a new size."""
         return max(0, self.size - BLOCK_HEADER.size)
 
 
 def pack(block: CdsBlock) -> bytes:
-    """The record of a block."""
+    """Return the record of a block."""
     name = to_bytes(block.name)[: FULL_NAME_SIZE - 1]
     record = RECORD.pack(block.handle, 0, block.offset, block.size, name, block.is_table)
     return _with_check(record, crc16(record))
 
 
 def is_sound(record: bytes) -> bool:
-    """Whether a record is as it was written."""
+    """Return whether a record is intact."""
     found = int.from_bytes(record[_CHECK_AT : _CHECK_AT + 4], "little")
     return found == crc16(_with_check(record, 0))
 
 
 def unpack(record: bytes) -> CdsBlock:
-    """The block that a record tells of."""
+    """Return the CDS block that a registry record describes."""
     handle, _, offset, size, name, is_table = RECORD.unpack(record)
     return CdsBlock(handle, offset, size, from_bytes(name), is_table)
 
@@ -98,7 +99,7 @@ def _with_check(record: bytes, check: int) -> bytes:
 
 
 class DamagedData(CfeError):
-    """The data of a block are damaged; `data` are they, which NASA's code leaves in the caller's memory."""
+    """Exception for damaged data of a block; `data` has the data, which NASA's code leaves in the caller's memory."""
 
     def __init__(self, text: str, data: bytes) -> None:
         super().__init__(CFE_ES_CDS_BLOCK_CRC_ERR, text)
@@ -109,12 +110,12 @@ class CriticalDataStore:
     """The CDS of one processor.
 
     Args:
-        psp: has the memory.
-        capacity: of the registry.
+        psp: provides the memory.
+        capacity: number of records in the registry.
         log: the system log.
 
     Attributes:
-        is_available: whether it can be used; False before `early_init`, and on a board with too little memory for it.
+        is_available: whether the store can be used; False before `early_init`, and on a board with too little memory.
     """
 
     def __init__(self, psp: Psp, capacity: int, log: Callable[[str], object]) -> None:
@@ -128,22 +129,22 @@ class CriticalDataStore:
         self._last_handle = make(ES_CDSBLOCKID_BASE, 0)
 
     def __iter__(self) -> Iterator[CdsBlock]:
-        """The blocks in the order of the registry."""
+        """Iterate over the blocks in the order of the registry."""
         return iter([block for block in self._blocks if block is not None])
 
     @property
     def overhead(self) -> int:
-        """Bytes that no block can have: those of the signatures and of the registry."""
+        """The bytes not available for blocks: the signatures and the registry."""
         return self._pool_at + _SIGNATURE_BYTES
 
     def room_of(self, block: CdsBlock) -> int:
-        """Bytes of the CDS that a block takes, with its descriptor."""
+        """Return the bytes of the CDS that a block takes, with its descriptor."""
         return self._pool.room_of(block.size) if block.size else 0
 
     # -- after a reset ---------------------------------------------------------------------------------------------
 
     def early_init(self) -> None:
-        """Take over what the memory holds, or begin anew (CFE_ES_CDS_EarlyInit)."""
+        """Take over the content of the memory, or start with an empty store (CFE_ES_CDS_EarlyInit)."""
         reserved = self._pool_at + _SIGNATURE_BYTES
         required = reserved + min_size(BUCKETS, self._capacity)
         if self._size < required:
@@ -165,7 +166,9 @@ class CriticalDataStore:
         self.is_available = True
 
     def _is_valid(self) -> bool:
-        """Whether there is a CDS of our kind (CFE_ES_ValidateCDS and the first check of CFE_ES_RebuildCDS)."""
+        """Return whether the memory has a CDS of the same size (CFE_ES_ValidateCDS and the first check of
+        CFE_ES_RebuildCDS).
+        """
         read = self._psp.read_from_cds
         after_reset = self._psp.get_restart_type().reset_type == RST_TYPE_PROCESSOR
         begin, end = read(0, _SIGNATURE_BYTES), read(self._size - _SIGNATURE_BYTES, _SIGNATURE_BYTES)
@@ -179,7 +182,7 @@ class CriticalDataStore:
         return count == self._capacity
 
     def _begin_anew(self) -> None:
-        """Wipe the CDS and make an empty one (CFE_ES_ClearCDS, _InitCDSSignatures, _InitCDSRegistry)."""
+        """Clear the CDS and create an empty one (CFE_ES_ClearCDS, _InitCDSSignatures, _InitCDSRegistry)."""
         write = self._psp.write_to_cds
         write(bytes(self._size), 0)
         write(SIGNATURE_BEGIN, 0)
@@ -187,7 +190,7 @@ class CriticalDataStore:
         write(SIGNATURE_END, self._size - _SIGNATURE_BYTES)
 
     def _rebuild(self) -> None:
-        """Take over the registry, as far as each record and the pool bear each other out (CFE_ES_RebuildCDS)."""
+        """Take over the records of the registry that are consistent with the pool (CFE_ES_RebuildCDS)."""
         unclaimed = self._pool.rebuild()
         for slot in range(self._capacity):
             record = self._psp.read_from_cds(_REGISTRY_AT + slot * RECORD.size, RECORD.size)
@@ -204,7 +207,7 @@ class CriticalDataStore:
             self._free(offset)
 
     def _is_whole(self, slot: int, block: CdsBlock, unclaimed: Container[int]) -> bool:
-        """Whether a record belongs into its slot, and the pool has a block like that, which is still unclaimed."""
+        """Return whether a record belongs into its slot, and the pool has a matching block that is still unclaimed."""
         try:
             found = self._pool.size_of(block.offset)
             return found == block.size and block.offset in unclaimed and self._slot(block.handle) == slot
@@ -214,7 +217,7 @@ class CriticalDataStore:
     # -- blocks ----------------------------------------------------------------------------------------------------
 
     def register(self, user_size: int, name: str, is_table: bool) -> tuple[int, int]:
-        """Reserve a block, or find it from before (CFE_ES_RegisterCDSEx).
+        """Reserve a block, or find an existing one (CFE_ES_RegisterCDSEx).
 
         Args:
             user_size: bytes of data.
@@ -226,7 +229,7 @@ class CriticalDataStore:
 
         Raises:
             CfeError: CFE_ES_CDS_INVALID_SIZE, CFE_ES_NO_RESOURCE_IDS_AVAILABLE, CFE_ES_ERR_MEM_BLOCK_SIZE. After the
-                last one a block from before has lost its bytes; it keeps its name and its handle until a reset.
+                last one, an existing block has lost its bytes but keeps its name and handle until a reset.
         """
         if not 0 < user_size <= MAX_BLOCK_SIZE:
             raise CfeError(CFE_ES_CDS_INVALID_SIZE, f"a CDS block of {user_size} bytes")
@@ -249,7 +252,7 @@ class CriticalDataStore:
         """Replace a block's data (CFE_ES_CDSBlockWrite).
 
         Raises:
-            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_BAD_ARGUMENT (not as many bytes as the block has),
+            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_BAD_ARGUMENT (wrong number of bytes),
                 CFE_ES_BUFFER_NOT_IN_POOL (it has lost its bytes), CFE_ES_POOL_BLOCK_INVALID (its descriptor is
                 damaged).
         """
@@ -265,12 +268,12 @@ class CriticalDataStore:
         self._psp.write_to_cds(data, block.offset + BLOCK_HEADER.size)
 
     def read(self, handle: int) -> bytes:
-        """A block's data (CFE_ES_CDSBlockRead).
+        """Return a block's data (CFE_ES_CDSBlockRead).
 
         Raises:
             CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_POOL_BLOCK_INVALID or CFE_ES_CDS_INVALID_SIZE (the block's
                 descriptor is damaged).
-            DamagedData: its data are (CFE_ES_CDS_BLOCK_CRC_ERR).
+            DamagedData: if its data are damaged (CFE_ES_CDS_BLOCK_CRC_ERR).
         """
         block = self.get(handle)
         self._check(block)
@@ -281,7 +284,7 @@ class CriticalDataStore:
         return data
 
     def delete(self, name: str) -> None:
-        """Give a block back (the end of CFE_ES_DeleteCDS).
+        """Free a block (the end of CFE_ES_DeleteCDS).
 
         Raises:
             CfeError: CFE_ES_ERR_NAME_NOT_FOUND.
@@ -289,18 +292,18 @@ class CriticalDataStore:
         self._remove(self.named(name))
 
     def find(self, name: str) -> CdsBlock | None:
-        """The block of a full name, or None."""
+        """Return the block of a full name, or None."""
         return next((block for block in self if block.name == name), None)
 
     def named(self, name: str) -> CdsBlock:
-        """The block of a full name, or CFE_ES_ERR_NAME_NOT_FOUND."""
+        """Return the block of a full name; raises CFE_ES_ERR_NAME_NOT_FOUND."""
         block = self.find(name)
         if block is None:
             raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"no CDS block is called {name!r}")
         return block
 
     def get(self, handle: int) -> CdsBlock:
-        """The block of a handle, or CFE_ES_ERR_RESOURCEID_NOT_VALID."""
+        """Return the block of a handle; raises CFE_ES_ERR_RESOURCEID_NOT_VALID."""
         block = self._blocks[self._slot(handle)]
         if block is None or block.handle != handle:
             raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"no CDS block has the handle 0x{handle:x}")
@@ -325,7 +328,7 @@ class CriticalDataStore:
         self._blocks[self._slot(block.handle)] = None
 
     def _empty(self, block: CdsBlock) -> None:
-        """Free the bytes of a block; its record stays, but in the registry of this run alone."""
+        """Free the bytes of a block; its record stays, but only in the registry of this run."""
         self._save(self._slot(block.handle), None)
         if block.offset:
             self._free(block.offset)
@@ -344,17 +347,17 @@ class CriticalDataStore:
 
 
 class CdsHandle(int):
-    """A CDS handle; an int with what CFE_ES_RegisterCDS had to say.
+    """A CDS handle: an int with the status of CFE_ES_RegisterCDS.
 
     Attributes:
-        status: CFE_SUCCESS for a new block, CFE_ES_CDS_ALREADY_EXISTS for one that may hold data from before.
+        status: CFE_SUCCESS for a new block, CFE_ES_CDS_ALREADY_EXISTS for a block that may hold earlier data.
     """
 
     status: int = CFE_SUCCESS
 
     @classmethod
     def with_status(cls, handle: int, status: int) -> CdsHandle:
-        """A handle and its status in one."""
+        """Return a handle with its status."""
         made = cls(handle)
         made.status = status
         return made
@@ -366,29 +369,29 @@ class CdsApi(EsCore):
     cds: CriticalDataStore | None = None
 
     def cds_early_init(self) -> None:
-        """Find or make the CDS, before any task runs (CFE_ES_CDS_EarlyInit).
+        """Find or create the CDS, before any task runs (CFE_ES_CDS_EarlyInit).
 
         Raises:
-            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL: the board has not as much RAM.
+            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL if the board has too little RAM.
         """
         self.ports.memory.claim("CFE_ES", "CDS", self.psp.get_cds_size())
         self.cds = CriticalDataStore(self.psp, self.config.es_cds_max_num_entries, self.write_to_sys_log)
         self.cds.early_init()
 
     def register_cds(self, block_size: int, name: str) -> CdsHandle:
-        """Reserve a block for the calling application, or find it as it was before a reset (CFE_ES_RegisterCDS).
+        """Reserve a block for the calling application, or find its block from before a reset (CFE_ES_RegisterCDS).
 
         Args:
-            block_size: bytes. Another size than before makes a new block.
+            block_size: size in bytes; a size other than before creates a new block.
             name: at most 16 characters; the full name is "APP.name".
 
         Returns:
             The handle; `handle.status` is CFE_SUCCESS or CFE_ES_CDS_ALREADY_EXISTS.
 
         Raises:
-            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID (the caller is no application), CFE_ES_NOT_IMPLEMENTED (there is
-                no CDS), CFE_ES_CDS_INVALID_NAME, CFE_ES_CDS_INVALID_SIZE, CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
-                CFE_ES_ERR_MEM_BLOCK_SIZE; an event tells the ground too.
+            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID (the caller is not an application), CFE_ES_NOT_IMPLEMENTED (there
+                is no CDS), CFE_ES_CDS_INVALID_NAME, CFE_ES_CDS_INVALID_SIZE, CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
+                CFE_ES_ERR_MEM_BLOCK_SIZE; an event also reports the error to the ground.
         """
         app = self.app_of_caller()
         if app is None:
@@ -398,7 +401,7 @@ class CdsApi(EsCore):
             return self._register(block_size, name, app.name)
         except CfeError as error:
             text = f"{app.name} Failed to Register CDS '{name}', Status={error.hex}"
-            with suppress(CfeError):  # an application may register a block before its events
+            with suppress(CfeError):  # an application may register a block before it registers for events
                 self.ports.evs.send_event_with_app_id(ev.CDS_REGISTER_ERR_EID, ev.ERROR, app.app_id, text)
             raise
 
@@ -429,7 +432,7 @@ class CdsApi(EsCore):
             The handle, and CFE_SUCCESS or CFE_ES_CDS_ALREADY_EXISTS.
 
         Raises:
-            CfeError: as `register_cds`.
+            CfeError: see `register_cds`.
         """
         return self._store().register(block_size, full_name, critical_table)
 
@@ -437,38 +440,40 @@ class CdsApi(EsCore):
         """Save a block's data (CFE_ES_CopyToCDS).
 
         Args:
-            handle: of the block.
-            data: as many bytes as the block has.
+            handle: handle of the block.
+            data: data of exactly the block's size.
 
         Raises:
-            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_BAD_ARGUMENT (another number of bytes),
+            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_BAD_ARGUMENT (wrong number of bytes),
                 CFE_ES_POOL_BLOCK_INVALID, CFE_ES_CDS_INVALID_SIZE (the block is damaged).
         """
         self._store().write(handle, data)
 
     def restore_from_cds(self, handle: int) -> bytes:
-        """A block's data as they were saved (CFE_ES_RestoreFromCDS).
+        """Return a block's saved data (CFE_ES_RestoreFromCDS).
 
         Raises:
             CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_CDS_BLOCK_CRC_ERR (the data are damaged),
-                CFE_ES_POOL_BLOCK_INVALID, CFE_ES_CDS_INVALID_SIZE (the block is).
+                CFE_ES_POOL_BLOCK_INVALID, CFE_ES_CDS_INVALID_SIZE (the block is damaged).
         """
         return self._store().read(handle)
 
     def get_cds_block_id_by_name(self, full_name: str) -> int:
-        """Handle of a block, by its full name, or CFE_ES_ERR_NAME_NOT_FOUND (CFE_ES_GetCDSBlockIDByName)."""
+        """Return the handle of a block by its full name; raises CFE_ES_ERR_NAME_NOT_FOUND
+        (CFE_ES_GetCDSBlockIDByName).
+        """
         return self._store().named(full_name).handle
 
     def get_cds_block_name(self, handle: int) -> str:
-        """Full name of a block, or CFE_ES_ERR_RESOURCEID_NOT_VALID (CFE_ES_GetCDSBlockName)."""
+        """Return the full name of a block; raises CFE_ES_ERR_RESOURCEID_NOT_VALID (CFE_ES_GetCDSBlockName)."""
         return self._store().get(handle).name
 
     def delete_cds(self, full_name: str, called_by_tbl_services: bool = False) -> None:
-        """Delete a block whose owner is gone (CFE_ES_DeleteCDS).
+        """Delete a block whose owner has ended (CFE_ES_DeleteCDS).
 
         Args:
             full_name: "APP.Name".
-            called_by_tbl_services: whether TBL deletes; it owns critical tables and nothing else.
+            called_by_tbl_services: whether TBL calls; TBL may delete only blocks of critical tables.
 
         Raises:
             CfeError: CFE_ES_ERR_NAME_NOT_FOUND, CFE_ES_CDS_WRONG_TYPE_ERR, CFE_ES_CDS_OWNER_ACTIVE_ERR.
@@ -483,7 +488,7 @@ class CdsApi(EsCore):
         store.delete(full_name)
 
     def cds_blocks(self) -> list[CdsBlock]:
-        """What is in the CDS, in the order of its registry; nothing when there is no CDS."""
+        """Return the blocks in the CDS, in the order of its registry; an empty list without a CDS."""
         return [] if self.cds is None else list(self.cds)
 
     def _store(self) -> CriticalDataStore:

@@ -1,6 +1,6 @@
-"""The commands of Executive Services (cfe_es_task.c): a group of handlers for each thing that they are about.
+"""The commands of Executive Services (cfe_es_task.c), with the handlers in groups by subject.
 
-The groups are resets, applications, questions, the two logs, the performance log and the Critical Data Store. Commands
+The groups are resets, applications, queries, the two logs, the performance log and the Critical Data Store. Commands
 about the task itself (no-op, counters, housekeeping) are in `cfepy.es.task`.
 """
 
@@ -43,7 +43,7 @@ Handlers = tuple[tuple[Command, Handler], ...]
 ER_LOG_FILE = "/ram/cfe_erlog.log"
 ER_LOG_DESCRIPTION = "ES ERlog data file"
 PERF_FILE = "/ram/cfe_es_perf.dat"
-# Why a block cannot be deleted, to the event that says so.
+# The event for each reason why a block cannot be deleted.
 _CDS_REFUSALS = {
     CFE_ES_CDS_WRONG_TYPE_ERR: (
         ev.CDS_DELETE_TBL_ERR_EID,
@@ -59,11 +59,11 @@ _OTHER_CDS_REFUSAL = (ev.CDS_DELETE_ERR_EID, "Error while deleting '{name}' from
 
 
 class CommandGroup(ABC):
-    """The base of all groups.
+    """The base class of the groups.
 
     Args:
         es: the service.
-        replies: how handlers answer.
+        replies: the replies to commands.
     """
 
     def __init__(self, es: ExecutiveServices, replies: Replies) -> None:
@@ -72,11 +72,11 @@ class CommandGroup(ABC):
 
     @abstractmethod
     def handlers(self) -> Handlers:
-        """Which handler belongs to which command."""
+        """Return the handler of each command."""
 
 
 class ResetCommands(CommandGroup):
-    """Resetting the processor."""
+    """Resets of the processor."""
 
     def handlers(self) -> Handlers:
         return (
@@ -103,7 +103,7 @@ class ResetCommands(CommandGroup):
 
 
 class AppControlCommands(CommandGroup):
-    """Starting, ending and restarting applications."""
+    """The start, end and restart of applications."""
 
     def handlers(self) -> Handlers:
         return (
@@ -152,7 +152,7 @@ class AppControlCommands(CommandGroup):
     def _control(
         self, name: str, action: str, call: Callable[[int], None], begun: int, failed: int, unknown: int
     ) -> None:
-        """Ask for something to be done to a running application; the background task does it."""
+        """Request an action on a running application, which the background task carries out."""
         try:
             app_id = self._es.get_app_id_by_name(name)
         except CfeError as missing:
@@ -168,7 +168,7 @@ class AppControlCommands(CommandGroup):
 
 
 def _why_not_start(fields: dict[str, Any]) -> tuple[int, str] | None:
-    """Event id and text of what is wrong with a START_APP command, or None."""
+    """Return the event id and text for an invalid START_APP command, or None."""
     command = "CFE_ES_StartAppCmd: "
     try:
         parse_input_file_name(fields["AppFileName"], FileCategory.DYNAMIC_MODULE)
@@ -188,7 +188,7 @@ def _why_not_start(fields: dict[str, Any]) -> tuple[int, str] | None:
 
 
 class QueryCommands(CommandGroup):
-    """Telling about applications, libraries, tasks and memory pools."""
+    """Information about applications, libraries, tasks and memory pools."""
 
     def handlers(self) -> Handlers:
         return (
@@ -215,7 +215,7 @@ class QueryCommands(CommandGroup):
         self._replies.accept(ev.ONE_APP_EID, f"Sent {name} application data", ev.DEBUG)
 
     def _find_module(self, name: str) -> int:
-        """Id of an application, or else a library, of that name."""
+        """Return the id of the application with a name, or otherwise of the library."""
         try:
             return self._es.get_app_id_by_name(name)
         except CfeError as error:
@@ -244,7 +244,7 @@ class QueryCommands(CommandGroup):
 
 
 def app_info_record(info: AppInfo) -> bytes:
-    """An application or a library as in packets and files; memory addresses are 0."""
+    """Return an application or library as a record of packets and files; memory addresses are 0."""
     return pk.APP_INFO.pack(
         ResourceId=info.resource_id,
         Type=info.type,
@@ -262,7 +262,7 @@ def app_info_record(info: AppInfo) -> bytes:
 
 
 def task_info_record(info: TaskInfo) -> bytes:
-    """A task as in the file about tasks."""
+    """Return a task as a record of the task info file."""
     return pk.TASK_INFO.pack(
         TaskId=info.task_id,
         ExecutionCounter=info.execution_counter,
@@ -306,7 +306,7 @@ class LogCommands(CommandGroup):
     def _set_sys_log_mode(self, packet: bytes) -> None:
         mode = pk.OVER_WRITE_SYS_LOG.read(packet)["Mode"]
         try:
-            self._es.syslog.set_mode(mode & 0xFF)  # CFE_ES_LogMode_Enum_t has 8 bits, the field 32
+            self._es.syslog.set_mode(mode & 0xFF)  # CFE_ES_LogMode_Enum_t has 8 bits, the field has 32
         except CfeError:
             text = f"Set OverWriteSysLog Command: Invalid Mode setting = {to_signed(mode)}"
             self._replies.reject(ev.ERR_SYSLOGMODE_EID, text)
@@ -321,7 +321,7 @@ class LogCommands(CommandGroup):
         self._replies.accept(ev.ERLOG1_INF_EID, "Cleared ES Exception and Reset Log data")
 
     def _write_er_log(self, packet: bytes) -> None:
-        """Have it written by the background task; its event comes when that is done."""
+        """Request that the background task writes the file; an event follows when it is written."""
         file = self._er_log_file
         try:
             if file.is_pending:
@@ -356,7 +356,7 @@ class PerfCommands(CommandGroup):
 
     Args:
         es: the service.
-        replies: how they answer.
+        replies: the replies to commands.
         dump: writes the log's file.
     """
 

@@ -1,4 +1,4 @@
-"""The files that Executive Services write at once: their headers, default names, and the events of what goes wrong."""
+"""The files that Executive Services write at once: their headers, default names, and error events."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from cfepy.status import CfeError
 class FileEvent(NamedTuple):
     """An event about a file.
 
-    Its text may name `path`, `size` and `entries` (of the whole file, or of the block that failed), `status`, and
-    `code`, which is the status as a C unsigned int.
+    Its text may have the fields `path`, `size` and `entries` (of the whole file, or of the block that failed),
+    `status`, and `code`, the status as a C unsigned int.
     """
 
     event_id: int
@@ -26,7 +26,7 @@ class FileEvent(NamedTuple):
 
 
 class EsFile(NamedTuple):
-    """A kind of file, and what is said when it is written, or cannot be: name, file, header or a record."""
+    """A kind of file, with the events for success and for errors in the name, the file, the header or a record."""
 
     description: str
     subtype: int
@@ -85,14 +85,14 @@ CDS_REGISTRY_FILE = EsFile(
 
 
 def write_dump(es: EsCore, replies: Replies, kind: EsFile, name: str, records: Iterable[bytes]) -> None:
-    """Write a file for a command, and answer the command.
+    """Write a file for a command, and reply to the command.
 
     Args:
-        es: whose services are used.
-        replies: how to answer.
-        kind: what file.
-        name: as the command gives it; empty for the default.
-        records: what follows the header.
+        es: the services to use.
+        replies: the replies to commands.
+        kind: the kind of file.
+        name: the name in the command; empty for the default.
+        records: the records after the header.
     """
     dump = _Dump(es, kind)
     try:
@@ -107,7 +107,7 @@ def write_dump(es: EsCore, replies: Replies, kind: EsFile, name: str, records: I
 
 
 class _Dump:
-    """The writing of one file; `trouble` is what a failure at this moment would be."""
+    """The writing of a file; `trouble` is the event of a failure at the current step."""
 
     def __init__(self, es: EsCore, kind: EsFile) -> None:
         self._es = es

@@ -1,4 +1,4 @@
-"""The exception and reset log (cfe_es_erlog.c): why the processor or an application was started anew, and when."""
+"""The exception and reset log (cfe_es_erlog.c): why and when the processor or an application was restarted."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class ExceptionResetLog:
     """Entries in a ring of fixed size.
 
     Args:
-        ports: for the time.
-        reset: where it is kept, with the reset variables that an entry notes down.
-        copy_context: at most 256 bytes of a processor context by its id; none for an id it does not know.
+        ports: provides the time.
+        reset: holds the entries, and the reset variables that an entry records.
+        copy_context: returns at most 256 bytes of a processor context by its id; empty for an unknown id.
     """
 
     def __init__(self, ports: Ports, reset: ResetData, copy_context: Callable[[int], bytes]) -> None:
@@ -48,8 +48,8 @@ class ExceptionResetLog:
             reset_type: RST_TYPE_*, or APP_RESTART.
             reset_subtype: RST_SUBTYPE_*.
             description: at most 79 characters are kept.
-            app_id: the application that it was about.
-            context_id: of the processor context, as the PSP counts them.
+            app_id: the application concerned.
+            context_id: id of the processor context in the PSP.
         """
         log, variables = self.reset.er_log, self.reset.variables
         log.slots[log.index] = ErLogEntry(
@@ -68,13 +68,13 @@ class ExceptionResetLog:
         log.entries += 1
 
     def clear(self) -> None:
-        """Forget all entries."""
+        """Remove all entries."""
         log = self.reset.er_log
         log.slots[:] = [None] * len(log.slots)
         log.index = log.entries = 0
 
     def file_record(self, number: int) -> bytes:
-        """A slot as it stands in the log's file; an empty one is all zeros."""
+        """Return a slot as a record of the log's file; an empty slot is all zeros."""
         entry = self.reset.er_log.slots[number]
         if entry is None:
             return bytes(ER_LOG_FILE_ENTRY.size)

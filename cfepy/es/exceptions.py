@@ -1,6 +1,6 @@
-"""Exceptions that end tasks: stored at once, answered by the background task.
+"""Exceptions that end tasks: stored at once, handled by the background task.
 
-`TaskExceptionApi` hands an exception to the board's storage when it happens (CFE_ES_ProcessAsyncEvent);
+`TaskExceptionApi` passes an exception to the board's storage when it occurs (CFE_ES_ProcessAsyncEvent).
 `ExceptionScan`, a background job, restarts the application or the processor (CFE_ES_RunExceptionScan).
 """
 
@@ -23,18 +23,18 @@ from cfepy.status import CfeError
 
 
 class TaskExceptionApi(EsCore):
-    """What becomes of an exception at the moment it happens."""
+    """The handling of an exception when it occurs."""
 
     def take_fault(self, task: Task, error: BaseException, reason: str) -> bool:
-        """An exception came out of a task: store it, and let the background task deal with it.
+        """Store an exception that ended a task, and wake the background task to handle it.
 
         Args:
-            task: that died.
+            task: the ended task.
             error: the exception.
-            reason: the same in words.
+            reason: a description of it.
 
         Returns:
-            False: the task is none of the simulated computer's: host code that plays a task.
+            False if the task does not belong to the simulated computer, but to host code that acts as a task.
         """
         app = self._note_death(task.owner, error) if isinstance(task.owner, AppRecord) else None
         if app is None and not isinstance(task.owner, Nobody):
@@ -53,12 +53,12 @@ class TaskExceptionApi(EsCore):
         return app
 
     def process_async_event(self) -> None:
-        """Something happened that the background task has to see at once (CFE_ES_ProcessAsyncEvent)."""
+        """Wake the background task after an asynchronous event (CFE_ES_ProcessAsyncEvent)."""
         self.background_wakeup()
 
 
 def _places(error: BaseException) -> bytes:
-    """Files and lines that an exception went through, innermost first: "arm.py:13 main.py:7"."""
+    """Return the files and lines that an exception passed through, the innermost first: "arm.py:13 main.py:7"."""
     places: list[str] = []
     trace = error.__traceback__
     while trace is not None:
@@ -68,7 +68,7 @@ def _places(error: BaseException) -> bytes:
 
 
 class ExceptionScan:
-    """Deals with one exception at a time.
+    """Handles one exception at a time.
 
     Args:
         es: the applications.
@@ -78,7 +78,7 @@ class ExceptionScan:
         self._es = es
 
     def run(self, elapsed_ms: int) -> bool:
-        """One call of the background task; whether there was an exception."""
+        """Run one call of the background task; return whether there was an exception."""
         es = self._es
         if es.psp.exception_get_count() == 0:
             return False
@@ -92,12 +92,14 @@ class ExceptionScan:
             app = failed.app
             if app is None:
                 self._reset_processor(f"task {failed.name}", UNDEFINED, fault.reason, fault)
-            elif es.apps.find(app.app_id) is app:  # else it failed while it was being ended anyway
+            elif es.apps.find(app.app_id) is app:  # otherwise it failed while it was being ended anyway
                 self._answer(app, fault)
         return True
 
     def _answer(self, app: AppRecord, fault: ExceptionSummary) -> None:
-        """Restart the application, as its line in the startup script says; else, or if that fails, the processor."""
+        """Restart the application if its line in the startup script requests it; otherwise, or if that fails, reset the
+        processor.
+        """
         reason = fault.reason
         if app.params.exception_action == EXCEPTION_RESTART_APP:
             self._log(erlog.APPLICATION, APP_RESTART, reason, app.app_id, fault)
@@ -112,9 +114,9 @@ class ExceptionScan:
         """Reset the processor for an exception.
 
         Args:
-            who: failed, in the words of reports.
-            app_id: of the application; UNDEFINED for a task without one.
-            logged: what the exception and reset log says.
+            who: the failed application or task, for reports.
+            app_id: id of the application; UNDEFINED for a task without one.
+            logged: text for the exception and reset log.
             fault: the exception.
         """
         reset_type = self._count_reset()
@@ -125,7 +127,7 @@ class ExceptionScan:
         self._es.er_log.write(entry_type, reset_type, RST_SUBTYPE_EXCEPTION, reason, app_id, fault.context_id)
 
     def _count_reset(self) -> int:
-        """The type of the reset: a power-on reset when there were too many processor resets."""
+        """Count the reset and return its type: a power-on reset after too many processor resets."""
         variables = self._es.reset.variables
         count, limit = variables.processor_reset_count, variables.max_processor_reset_count
         log = "CFE_ES_RunExceptionScan: "

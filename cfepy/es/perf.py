@@ -1,10 +1,11 @@
-"""The performance log (cfe_es_perf.c): when which piece of code ran, and how that is written to a file.
+"""The performance log (cfe_es_perf.c): the times at which code sections ran, and the file of the log.
 
-Code marks where it begins and ends with a number below 128 (CFE_ES_PerfLogAdd). While the log waits for a trigger or
-was triggered, marked places that pass the filter are recorded with the time, until enough came after the trigger.
+Code marks the entry and exit of a section with a number below 128 (CFE_ES_PerfLogAdd). While the log waits for a
+trigger or is triggered, it records the markers that pass the filter with the time, until enough entries follow the
+trigger.
 
-The file is written some entries at a time (CFE_ES_RunPerfLogDump): the background task calls `PerfDump.run`; every step
-takes one credit, of which some come back with the time that passed.
+The file is written a few entries at a time (CFE_ES_RunPerfLogDump): the background task calls `PerfDump.run`. Every
+step costs one credit, and elapsed time earns credits.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ IDLE, WAITING_FOR_TRIGGER, TRIGGERED = 0, 1, 2
 """States of the log (CFE_ES_PERF_*)."""
 
 TRIGGER_START, TRIGGER_CENTER, TRIGGER_END = 0, 1, 2
-"""What part of the log comes after the trigger: all, half, nothing (CFE_ES_PerfTrigger_*)."""
+"""The part of the log that follows the trigger: all, half, nothing (CFE_ES_PerfTrigger_*)."""
 
 MAX_IDS = 128
 EXIT_BIT = 31
@@ -37,9 +38,9 @@ class PerformanceLog:
     """A ring of entries.
 
     Args:
-        data: where it is kept.
-        size: entries it holds.
-        now: upper and lower part of the time.
+        data: the stored data.
+        size: number of entries.
+        now: returns the upper and lower part of the time.
         log: writes to the system log.
     """
 
@@ -52,14 +53,14 @@ class PerformanceLog:
         self._log = log
 
     def add(self, marker: int, entry_exit: int) -> None:
-        """Record that a place was reached (CFE_ES_PerfLogAdd); see `PerfApi.perf_log_add`."""
+        """Record a marker (CFE_ES_PerfLogAdd); see `PerfApi.perf_log_add`."""
         data = self.data
         if data.state == IDLE:
             return
         if not 0 <= marker < MAX_IDS:
             self._refuse(marker)
         elif _in_mask(data.filter_mask, marker):
-            self._store((marker | (entry_exit & 1) << EXIT_BIT, *self._now()))  # in C the rest is shifted out
+            self._store((marker | (entry_exit & 1) << EXIT_BIT, *self._now()))  # in C the other bits are shifted out
             if data.state == WAITING_FOR_TRIGGER and _in_mask(data.trigger_mask, marker):
                 data.state = TRIGGERED
             if data.state == TRIGGERED:
@@ -96,11 +97,11 @@ class PerformanceLog:
         data.state = WAITING_FOR_TRIGGER
 
     def stop(self) -> None:
-        """Record nothing more."""
+        """Stop recording."""
         self.data.state = IDLE
 
     def metadata_record(self) -> bytes:
-        """What stands in front of the entries in the log's file."""
+        """Return the record in front of the entries in the log's file."""
         data = self.data
         return PERF_METADATA.pack(
             Version=MARKER_VERSION,
@@ -119,7 +120,7 @@ class PerformanceLog:
         )
 
     def entry_record(self, number: int) -> bytes:
-        """An entry as it stands in the log's file, by its age: 0 is the oldest."""
+        """Return an entry as a record of the log's file, by its age: 0 is the oldest."""
         data = self.data
         marker, upper, lower = data.entries[(data.start + number) % self.size]
         return PERF_ENTRY.pack(Data=marker, TimerUpper32=upper, TimerLower32=lower)
@@ -130,15 +131,15 @@ def _in_mask(mask: list[int], marker: int) -> bool:
 
 
 class PerfDump:
-    """The dump; one at a time.
+    """The dump of the log to a file; only one at a time.
 
     Args:
-        log: what is written.
-        osal: writes it.
-        ports: for the header and events.
+        log: the log to write.
+        osal: writes the file.
+        ports: provides the header and the events.
 
     Attributes:
-        remaining: entries that are still to be written, for housekeeping.
+        remaining: number of entries still to write, for housekeeping.
     """
 
     def __init__(self, log: PerformanceLog, osal: Osal, ports: Ports) -> None:
@@ -151,16 +152,16 @@ class PerfDump:
 
     @property
     def is_busy(self) -> bool:
-        """Whether a dump has begun and not ended."""
+        """Whether a dump is in progress."""
         return self._steps is not None
 
     def start(self, path: str) -> None:
-        """Begin to write the log to a file; the background task does it."""
+        """Start to write the log to a file in the background task."""
         self._steps = self._write(path)
         self.remaining = self._log.data.count
 
     def run(self, elapsed_ms: int) -> bool:
-        """Take as many steps as the time allows; whether the dump goes on."""
+        """Take as many steps as the elapsed time allows; return whether the dump continues."""
         earned = elapsed_ms * ENTRIES_BETWEEN_DELAYS // DELAY_MS
         self._credit = min(ENTRIES_BETWEEN_DELAYS, self._credit + earned)
         while self._credit > 0 and self._steps is not None:
@@ -170,7 +171,7 @@ class PerfDump:
         return self.is_busy
 
     def _write(self, path: str) -> Iterator[None]:
-        """The steps of a dump; each `yield` is the end of one."""
+        """Yield at the end of each step of a dump."""
         yield
         try:
             filedes = self._osal.open_create(path, OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY)
@@ -178,7 +179,7 @@ class PerfDump:
             self._send(ev.PERF_LOG_ERR_EID, f"Error creating file {path}, RC = {error.status}", ev.ERROR)
             self.remaining = 0
             return
-        self._credit = 0  # NASA's state machine waits here, whatever credit is left
+        self._credit = 0  # NASA's state machine waits here, whatever its credit is
         yield
         yield from self._write_records(filedes, path)
         self.remaining = 0

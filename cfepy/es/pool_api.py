@@ -1,6 +1,6 @@
-"""Memory pools as applications use them (cfe_es_mempool.c, CFE_ES_Pool*).
+"""Memory pools for applications (cfe_es_mempool.c, CFE_ES_Pool*).
 
-A pool makes its bytes, which are booked on the board; or they are those of a buffer that the caller brings, as in C.
+A pool allocates its bytes, which count in the board's memory, or uses a buffer of the caller, as in C.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from cfepy.status import (
 
 _ULONG_MAX = (1 << 64) - 1
 NO_CLAIM = 0
-"""The token of nothing: the board's books give none of this number."""
+"""The token for no claim; the memory budget never returns this number."""
 
 _Result = TypeVar("_Result")
 
@@ -40,7 +40,7 @@ class PoolApi(EsCore):
     """The CFE_ES_Pool* part of Executive Services.
 
     Attributes:
-        core_memory: makes the bytes of a pool of the core's; with compiled applications, where these can reach them.
+        core_memory: allocates the bytes of pools of the core; with compiled applications, where these can reach them.
     """
 
     core_memory: Callable[[int], memoryview] = staticmethod(fresh_memory)
@@ -50,19 +50,19 @@ class PoolApi(EsCore):
 
         Args:
             size: bytes.
-            owner: for the board's books, when no application calls.
+            owner: owner in the memory accounting, if no application calls.
             memory: as in `pool_create_ex_with_alignment`.
 
         Returns:
             The pool's handle.
 
         Raises:
-            CfeError: as `pool_create_ex_with_alignment`.
+            CfeError: see `pool_create_ex_with_alignment`.
         """
         return self.pool_create_ex_with_alignment(size, owner=owner, memory=memory)
 
     def pool_create_no_sem(self, size: int, memory: PoolMemory | None = None) -> int:
-        """As `pool_create` without the mutex (CFE_ES_PoolCreateNoSem)."""
+        """Make a memory pool without a mutex; see `pool_create` (CFE_ES_PoolCreateNoSem)."""
         return self.pool_create_ex_with_alignment(size, use_mutex=False, memory=memory)
 
     def pool_create_ex(
@@ -72,7 +72,7 @@ class PoolApi(EsCore):
         use_mutex: bool = True,
         memory: PoolMemory | None = None,
     ) -> int:
-        """Make a memory pool of given block sizes (CFE_ES_PoolCreateEx); see `pool_create_ex_with_alignment`."""
+        """Make a memory pool with given block sizes (CFE_ES_PoolCreateEx); see `pool_create_ex_with_alignment`."""
         return self.pool_create_ex_with_alignment(size, block_sizes, use_mutex, memory=memory)
 
     def pool_create_ex_with_alignment(
@@ -88,12 +88,12 @@ class PoolApi(EsCore):
 
         Args:
             size: bytes.
-            block_sizes: of its blocks, 1 to 17; None for cFE's own.
-            use_mutex: whether a mutex keeps its users apart.
-            alignment: of blocks in bytes, a power of 2; 4 at least.
-            owner: for the board's books, when no application calls.
-            memory: the bytes of the pool, as C's callers bring them: the first `size` bytes of something writable. They
-                are not booked on the board, since their owner has them already. None makes new ones, and books them.
+            block_sizes: 1 to 17 block sizes in bytes; None for cFE's own.
+            use_mutex: whether a mutex protects the pool.
+            alignment: alignment of blocks in bytes, a power of 2 and at least 4.
+            owner: owner in the memory accounting, if no application calls.
+            memory: a writable buffer of the caller, as in C, whose first `size` bytes become the pool. It is not
+                accounted for again, because its owner already is. None allocates new bytes and accounts for them.
 
         Returns:
             The pool's handle.
@@ -127,7 +127,7 @@ class PoolApi(EsCore):
         try:
             return MemPool(name, size, sizes, alignment, self.write_to_sys_log, memory)
         except CfeError:
-            self.pools.skip()  # NASA's code has taken the id by then
+            self.pools.skip()  # NASA's code has used the id by then
             raise
 
     def _check_sizes(self, size: int, sizes: Sequence[int]) -> None:
@@ -152,7 +152,7 @@ class PoolApi(EsCore):
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
 
     def pool_delete(self, pool_id: int) -> None:
-        """Delete a pool, also while blocks of it are in use (CFE_ES_PoolDelete).
+        """Delete a pool, even if its blocks are in use (CFE_ES_PoolDelete).
 
         Raises:
             CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID.
@@ -167,7 +167,7 @@ class PoolApi(EsCore):
                 self.write_to_sys_log(f"CFE_ES_PoolDelete: Error {error.status} deleting mutex")
 
     def get_pool_buf(self, pool_id: int, size: int) -> PoolBlock:
-        """Take a block of a pool (CFE_ES_GetPoolBuf).
+        """Take a block from a pool (CFE_ES_GetPoolBuf).
 
         Args:
             pool_id: the pool's handle.
@@ -180,7 +180,7 @@ class PoolApi(EsCore):
         return self._alone(pool, lambda: pool.get(size))
 
     def get_pool_buf_info(self, pool_id: int, block: PoolBlock) -> int:
-        """Size in bytes of a block as it was asked for (CFE_ES_GetPoolBufInfo).
+        """Return the requested size of a block in bytes (CFE_ES_GetPoolBufInfo).
 
         Raises:
             CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID, CFE_ES_BUFFER_NOT_IN_POOL, CFE_ES_POOL_BLOCK_INVALID.
@@ -189,7 +189,7 @@ class PoolApi(EsCore):
         return self._alone(pool, lambda: pool.size_of(block))
 
     def put_pool_buf(self, pool_id: int, block: PoolBlock) -> int:
-        """Give a block back (CFE_ES_PutPoolBuf).
+        """Return a block to its pool (CFE_ES_PutPoolBuf).
 
         Returns:
             The block's size in bytes.
@@ -212,7 +212,7 @@ class PoolApi(EsCore):
             raise
 
     def get_mem_pool_stats(self, pool_id: int) -> dict[str, object]:
-        """Fields of CFE_ES_MemPoolStats_t (CFE_ES_GetMemPoolStats).
+        """Return the fields of CFE_ES_MemPoolStats_t (CFE_ES_GetMemPoolStats).
 
         Raises:
             CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID.
@@ -230,7 +230,7 @@ class PoolApi(EsCore):
         return pool
 
     def _alone(self, pool: MemPool, call: Callable[[], _Result]) -> _Result:
-        """Make a call while no one else uses the pool."""
+        """Make a call while holding the mutex of the pool, if it has one."""
         if not pool.mutex_id:
             return call()
         self.osal.mut_sem_take(pool.mutex_id)

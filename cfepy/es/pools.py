@@ -1,7 +1,7 @@
-"""Pools (cfe_es_generic_pool.c): blocks of a few sizes out of one stretch of memory, for memory pools and for the CDS.
+"""Pools (cfe_es_generic_pool.c): blocks of a few sizes from one block of memory, for memory pools and for the CDS.
 
-In front of each block stands a descriptor of 24 bytes, with C's layout, in the same memory: a block that was written
-past is found when the next one is given back. Blocks given back are kept for reuse, never split or joined.
+A descriptor of 24 bytes with C's layout precedes each block in the same memory. A write past the end of a block is
+detected when the next block is returned. Returned blocks are kept for reuse. They are never split or joined.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from cfepy.status import (
 )
 
 BUCKETS = (8, 16, 32, 48, 64, 96, 128, 160, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768, 80000)
-"""CFE_PLATFORM_ES_MEM_BLOCK_SIZE_01 to _17; those of the CDS are the same."""
+"""CFE_PLATFORM_ES_MEM_BLOCK_SIZE_01 to _17, which are the same for the CDS."""
 
 MAX_BUCKETS = 17
-ALIGNMENT = 16  # of CFE_ES_PoolAlign_t, which has a long double in it
+ALIGNMENT = 16  # of CFE_ES_PoolAlign_t, which contains a long double
 MIN_ALIGNMENT = 4
 DESCRIPTOR = struct.Struct("<HH4xQQ")
-"""CFE_ES_GenPoolBD_t: check pattern, state and bucket, size that was asked for, next free block."""
+"""CFE_ES_GenPoolBD_t: check pattern, state and bucket, requested size, next free block."""
 
 _CHECK = 0x5A5A
 _IN_USE = 0xAAAA
@@ -40,12 +40,12 @@ Log = Callable[[str], object]
 
 @dataclass(frozen=True, slots=True)
 class ForeignMemory:
-    """Memory of compiled code: it may go while there is a pool in it, so it is reached by functions that fail then.
+    """Memory of compiled code. It may disappear while a pool is in it, so functions access it, and they fail then.
 
     Attributes:
-        address: where it is.
-        view: its bytes, which are not looked at.
-        read, write: as those of a pool, with offsets.
+        address: its address.
+        view: its bytes, which are not read.
+        read, write: the functions of a pool, with offsets.
     """
 
     address: int
@@ -55,13 +55,13 @@ class ForeignMemory:
 
 
 PoolMemory = bytearray | memoryview | mmap | ForeignMemory
-"""What a caller may bring as the bytes of a pool: anything writable."""
+"""A writable buffer that a caller may pass as the bytes of a pool."""
 
 
 class Bucket:
-    """The blocks of one size: how many were made, given back and taken again.
+    """The blocks of one size, with the numbers of created, released and recycled blocks.
 
-    `first` is the free one on top; descriptors know the bucket by its `number`, 1 for the largest blocks.
+    `first` is the first free block. Descriptors store the bucket's `number`, which is 1 for the largest blocks.
     """
 
     __slots__ = ("created", "first", "number", "recycled", "released", "size")
@@ -76,13 +76,13 @@ class GenericPool:
     """The arithmetic of a pool; offsets count from the start of the memory.
 
     Args:
-        read: bytes of the memory: (offset, size).
-        write: the reverse: (offset, bytes).
+        read: returns bytes of the memory: (offset, size).
+        write: writes bytes to the memory: (offset, bytes).
         log: the system log.
-        start: where the pool begins.
-        size: its bytes.
-        alignment: of blocks, a power of 2.
-        sizes: of blocks, in any order.
+        start: offset of the pool.
+        size: its size in bytes.
+        alignment: alignment of blocks, a power of 2.
+        sizes: block sizes, in any order.
 
     Raises:
         CfeError: CFE_ES_BAD_ARGUMENT (no sizes, alignment), CFE_ES_ERR_MEM_BLOCK_SIZE (a size of 0).
@@ -110,21 +110,21 @@ class GenericPool:
 
     @property
     def alignment(self) -> int:
-        """Of blocks, in bytes."""
+        """The alignment of blocks, in bytes."""
         return self._mask + 1
 
     @property
     def free_bytes(self) -> int:
-        """Bytes that were never part of a block."""
+        """The bytes that were never part of a block."""
         return self.end - self.tail
 
     def get(self, size: int) -> int:
-        """Take a block; the offset of its first byte (CFE_ES_GenPoolGetBlock).
+        """Take a block; return the offset of its first byte (CFE_ES_GenPoolGetBlock).
 
-        Of size 0 it is one of the smallest, and as in NASA's code it can never be given back.
+        Size 0 gives one of the smallest blocks, which cannot be returned, as in NASA's code.
 
         Raises:
-            CfeError: CFE_ES_ERR_MEM_BLOCK_SIZE: larger than the largest block, or no room left.
+            CfeError: CFE_ES_ERR_MEM_BLOCK_SIZE if the size exceeds the largest block or no room is left.
         """
         bucket = self._bucket_for(size)
         if bucket is None:
@@ -134,16 +134,18 @@ class GenericPool:
         return self._recycle(bucket, size) or self._create(bucket, size)
 
     def room_of(self, size: int) -> int:
-        """Bytes of the memory that a block of `size` bytes takes: the next size that there is, its descriptor, and what
-        the alignment takes; 0 if there is no such block."""
+        """Return the bytes of memory for a block of `size` bytes, or 0 if there is no such block.
+
+        These are the next larger block size, its descriptor and the alignment.
+        """
         bucket = self._bucket_for(size)
         return 0 if bucket is None else bucket.size + DESCRIPTOR.size + self._mask & ~self._mask
 
     def put(self, offset: int) -> int:
-        """Give a block back; the size that was asked for (CFE_ES_GenPoolPutBlock).
+        """Return a block to the pool; return its requested size (CFE_ES_GenPoolPutBlock).
 
         Raises:
-            CfeError: CFE_ES_BUFFER_NOT_IN_POOL, CFE_ES_POOL_BLOCK_INVALID (given back already, or overwritten).
+            CfeError: CFE_ES_BUFFER_NOT_IN_POOL, CFE_ES_POOL_BLOCK_INVALID (already returned, or overwritten).
         """
         try:
             size = self.size_of(offset)
@@ -154,7 +156,7 @@ class GenericPool:
         return size
 
     def size_of(self, offset: int) -> int:
-        """The size that was asked for when a block was taken (CFE_ES_GenPoolGetBlockSize).
+        """Return the requested size of a block (CFE_ES_GenPoolGetBlockSize).
 
         Raises:
             CfeError: CFE_ES_BUFFER_NOT_IN_POOL, CFE_ES_POOL_BLOCK_INVALID.
@@ -169,10 +171,10 @@ class GenericPool:
         return size
 
     def rebuild(self) -> dict[int, int]:
-        """Find the blocks that the memory holds from before a reset (CFE_ES_GenPoolRebuild).
+        """Find the blocks in the memory from before a reset (CFE_ES_GenPoolRebuild).
 
         Returns:
-            Offset to size of those in use. The search ends at the first bytes that are no descriptor.
+            The sizes of the blocks in use, by offset. The search ends at the first bytes that are not a descriptor.
         """
         found: dict[int, int] = {}
         while (offset := self._next_block()) <= self.end:
@@ -188,7 +190,7 @@ class GenericPool:
         return found
 
     def block_stats(self) -> list[dict[str, int]]:
-        """The fields of CFE_ES_BlockStats_t, smallest blocks first, zeros where there are fewer than 17 sizes."""
+        """Return the fields of CFE_ES_BlockStats_t, the smallest blocks first, with zeros up to 17 sizes."""
         rows = [
             {"BlockSize": each.size, "NumCreated": each.created, "NumFree": each.released - each.recycled}
             for each in self.buckets
@@ -213,7 +215,7 @@ class GenericPool:
         self.created += 1
 
     def _recycle(self, bucket: Bucket, size: int) -> int:
-        """The block on top of those given back; 0 when there is none, or its descriptor was overwritten."""
+        """Return the first free block; 0 if there is none, or its descriptor was overwritten."""
         offset = bucket.first
         if offset == 0:
             return 0
@@ -236,26 +238,26 @@ class GenericPool:
 
     def _release(self, offset: int, size: int) -> None:
         bucket = self._bucket_for(size)
-        assert bucket is not None  # every caller took the size from a descriptor that was found good
+        assert bucket is not None  # every caller took the size from a valid descriptor
         self._mark(offset, _FREE, bucket, size, bucket.first)
         bucket.first = offset
         bucket.released += 1
 
 
 def min_size(sizes: Sequence[int], blocks: int) -> int:
-    """The least bytes that a number of the smallest blocks take (CFE_ES_GenPoolCalcMinSize)."""
+    """Return the minimum bytes for a number of the smallest blocks (CFE_ES_GenPoolCalcMinSize)."""
     return blocks * (min(sizes, default=0) + DESCRIPTOR.size)
 
 
 def fresh_memory(size: int) -> memoryview:
-    """Zeros that take no room in the computer's memory before they are written: a pool may be 256 MiB."""
+    """Return zeroed memory that takes no room in the computer before it is written; a pool may have 256 MiB."""
     return memoryview(mmap(-1, size, access=ACCESS_COPY))
 
 
 def _writable(memory: bytearray | memoryview | mmap, size: int) -> memoryview:
     try:
         view = memoryview(memory).cast("B")
-    except TypeError as error:  # no buffer, or one with gaps
+    except TypeError as error:  # not a buffer, or one with gaps
         raise CfeError(CFE_ES_BAD_ARGUMENT, f"the memory of a pool: {error}") from error
     if view.readonly or len(view) < size:
         text = f"a pool of {size} bytes cannot be in {len(view)} {'read-only ' if view.readonly else ''}bytes"
@@ -265,7 +267,7 @@ def _writable(memory: bytearray | memoryview | mmap, size: int) -> memoryview:
 
 @dataclass(slots=True, eq=False)
 class PoolBlock:
-    """A block of a memory pool: `memory` is its bytes, as many as were asked for; `offset` is where they are."""
+    """A block of a memory pool. `memory` has its bytes in the requested size, and `offset` is their place."""
 
     pool: MemPool
     memory: memoryview
@@ -273,7 +275,7 @@ class PoolBlock:
 
     @property
     def address(self) -> int:
-        """Where it is for a person: an address of C's, or else the offset."""
+        """The address to show: an address of C, or otherwise the offset."""
         return self.pool.address + self.offset & _ULONG_MAX
 
 
@@ -281,20 +283,20 @@ class MemPool:
     """A memory pool of an application.
 
     Args:
-        name: for error texts.
+        name: name for error texts.
         size: bytes.
-        sizes: of blocks.
-        alignment: of blocks, in bytes.
+        sizes: block sizes in bytes.
+        alignment: alignment of blocks in bytes.
         log: the system log.
-        memory: the bytes of the pool, which the caller keeps and may look at, as in C; the first `size` of them are
-            used, as they are. None makes new ones, of zeros.
+        memory: a buffer of the caller for the pool, as in C; its first `size` bytes are used unchanged. None allocates
+            zeroed bytes.
 
     Attributes:
         memory: the bytes of the pool.
-        address: where C has them; 0 for memory of Python.
+        address: their address in C; 0 for memory of Python.
 
     Raises:
-        CfeError: as `GenericPool`; CFE_ES_BAD_ARGUMENT for memory that cannot be written or is too small.
+        CfeError: see `GenericPool`; CFE_ES_BAD_ARGUMENT for memory that cannot be written or is too small.
     """
 
     def __init__(
@@ -326,22 +328,24 @@ class MemPool:
         self.memory[offset : offset + len(data)] = data
 
     def get(self, size: int) -> PoolBlock:
-        """Take a block; its bytes are zero, but as they were before in memory of C. Errors as `GenericPool.get`."""
+        """Take a block. Its bytes are zero in Python's memory and unchanged in memory of C. See `GenericPool.get` for
+        the errors.
+        """
         offset = self.blocks.get(size)
         if not self.address:
             self._write(offset, bytes(size))
         return PoolBlock(self, self.memory[offset : offset + size], offset)
 
     def block_at(self, offset: int) -> PoolBlock:
-        """What somebody says is a block, to be given back or looked at: C knows blocks by their addresses."""
+        """Return a block at an offset given by the caller, because C identifies blocks by their addresses."""
         return PoolBlock(self, self.memory[:0], offset)
 
     def put(self, block: PoolBlock) -> int:
-        """Give a block back; its size in bytes. Errors as `GenericPool.put`."""
+        """Return a block to the pool; return its size in bytes. See `GenericPool.put` for the errors."""
         return self.blocks.put(self._offset(block))
 
     def size_of(self, block: PoolBlock) -> int:
-        """Size in bytes of a block in use. Errors as `GenericPool.size_of`."""
+        """Return the size of a block in use, in bytes. See `GenericPool.size_of` for the errors."""
         return self.blocks.size_of(self._offset(block))
 
     def _offset(self, block: PoolBlock) -> int:
@@ -350,7 +354,7 @@ class MemPool:
         return block.offset
 
     def statistics(self) -> dict[str, object]:
-        """The fields of CFE_ES_MemPoolStats_t."""
+        """Return the fields of CFE_ES_MemPoolStats_t."""
         blocks = self.blocks
         return {
             "PoolSize": blocks.size,

@@ -1,4 +1,4 @@
-"""What Executive Services keeps about applications, libraries and tasks, and the states they go through."""
+"""The records of Executive Services about applications, libraries and tasks, and their states."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ CORE, EXTERNAL, LIBRARY = 1, 2, 3
 """Types of modules (CFE_ES_AppType_*)."""
 
 APP_RESTART = 3
-"""Beside RST_TYPE_*: only one application starts again (CFE_ES_APP_RESTART)."""
+"""In addition to RST_TYPE_*: only an application is restarted (CFE_ES_APP_RESTART)."""
 
 Entry = Callable[[], object]
 
 
 @dataclass(slots=True)
 class StartParams:
-    """How an application is started, and started again (CFE_ES_AppStartParams_t).
+    """The parameters of the start and restart of an application (CFE_ES_AppStartParams_t).
 
     `file` is cFE's name of the module, `stack_size` is in bytes, `priority` 0 to 255.
     """
@@ -68,7 +68,7 @@ class TaskRecord:
 
 
 class FailedTask(NamedTuple):
-    """A task that an exception ended: the TaskId that the board stored, its name and its application, if any."""
+    """A task that an exception ended: the TaskId stored by the board, its name and its application, if any."""
 
     task_id: int
     name: str
@@ -77,11 +77,11 @@ class FailedTask(NamedTuple):
 
 @dataclass(slots=True, eq=False)
 class AppRecord:
-    """An application; it is the owner of its tasks, so that a service finds the caller there."""
+    """An application. It is the owner of its tasks, so services find the caller there."""
 
     name: str
     params: StartParams
-    entry: Entry | None  # None until its module is loaded, and when no symbol names it
+    entry: Entry | None  # None until its module is loaded, and if no symbol names it
     is_core: bool = False
     app_id: int = 0
     state: int = EARLY_INIT
@@ -94,9 +94,9 @@ class AppRecord:
 
 @dataclass(slots=True)
 class AppHistory:
-    """What outlives an application that is restarted under the same name, for the end of a run.
+    """The data of an application name that outlive restarts, for the report of the run.
 
-    `failed_ns` is the virtual time at which it died, or ended itself because of an error, for the last time.
+    `failed_ns` is the virtual time of its last death or error exit, in ns.
     """
 
     name: str
@@ -127,7 +127,7 @@ class GenCounter:
 
 
 class AppInfo(NamedTuple):
-    """What is known of an application or a library (CFE_ES_AppInfo_t); `type` is CORE, EXTERNAL or LIBRARY."""
+    """The properties of an application or a library (CFE_ES_AppInfo_t); `type` is CORE, EXTERNAL or LIBRARY."""
 
     resource_id: int
     type: int
@@ -144,7 +144,7 @@ class AppInfo(NamedTuple):
 
 
 class TaskInfo(NamedTuple):
-    """What CFE_ES_GetTaskInfo tells about a task."""
+    """The result of CFE_ES_GetTaskInfo."""
 
     task_id: int
     task_name: str
@@ -156,20 +156,20 @@ class TaskInfo(NamedTuple):
 
 
 class Loader(Protocol):
-    """Finds the code that a startup script names.
+    """Finds the code named in a startup script.
 
-    `load` raises `OsalError` for a file that is not there (its status is the EC of NASA's text) and `SymbolError` for
-    an entry point that the file does not have.
+    `load` raises `OsalError` for a missing file (its status is the EC of NASA's text) and `SymbolError` for a missing
+    entry point.
     """
 
     def exists(self, file: str) -> bool:
-        """Whether there is such a module."""
+        """Return whether the module exists."""
 
     def load(self, file: str, symbol: str, app_name: str) -> Entry:
-        """The main function of an application."""
+        """Return the main function of an application."""
 
     def load_library(self, file: str, symbol: str) -> Callable[[int], object]:
-        """The init function of a library."""
+        """Return the init function of a library."""
 
     def unload(self, app_name: str) -> None:
-        """An application has ended: its code may go."""
+        """Allow the code of an ended application to be unloaded."""

@@ -1,6 +1,7 @@
-"""What of Executive Services outlives a processor reset: reset variables and the three logs (CFE_ES_ResetData_t).
+"""The data of Executive Services that outlive a processor reset: reset variables and the three logs
+(CFE_ES_ResetData_t).
 
-Plain data; the logs' own modules know what to do with them.
+These are plain data; the modules of the logs interpret them.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ ALL_IDS = 0xFFFFFFFF
 
 @dataclass(slots=True)
 class ResetVariables:
-    """How the processor was started, and how often (CFE_ES_ResetVariables_t)."""
+    """The cause and the number of the processor's starts (CFE_ES_ResetVariables_t)."""
 
     reset_type: int = 0
     reset_subtype: int = 0
@@ -31,7 +32,9 @@ class ResetVariables:
 
 @dataclass(slots=True)
 class SysLogData:
-    """The system log: its bytes, where the next line goes, where the text ends, lines since it was cleared."""
+    """The system log: its bytes, the position of the next line, the end of the text, and the lines since it was
+    cleared.
+    """
 
     memory: bytearray
     write_index: int = 0
@@ -57,7 +60,9 @@ class ErLogEntry(NamedTuple):
 
 @dataclass(slots=True)
 class ErLogData:
-    """The exception and reset log: entries in the order of their slots, the next slot, and how many were written."""
+    """The exception and reset log: entries in the order of their slots, the next slot, and the number of entries
+    written.
+    """
 
     slots: list[ErLogEntry | None]
     index: int = 0
@@ -83,11 +88,11 @@ class PerfData:
 
 
 class ResetData:
-    """All of it, as a power-on reset leaves it.
+    """All reset data, as after a power-on reset.
 
     Args:
         config: sizes of the logs.
-        ticks_per_second, low32_rollover: of the clock that stamps performance entries.
+        ticks_per_second, low32_rollover: properties of the clock for performance entries.
     """
 
     __slots__ = ("er_log", "perf", "syslog", "variables")

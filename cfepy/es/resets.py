@@ -1,4 +1,4 @@
-"""Resets: how the processor was started, how often, and starting it anew (CFE_ES_ResetCFE, CFE_ES_GetResetType)."""
+"""Resets: the cause and number of the processor's starts, and new resets (CFE_ES_ResetCFE, CFE_ES_GetResetType)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from cfepy.psp import (
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CfeError
 
 KEY = "ES"
-"""Under which Executive Services keep their reset data in the board's retained memory."""
+"""The key of Executive Services' reset data in the board's retained memory."""
 
 _POWER_ON_CAUSES = {
     RST_SUBTYPE_POWER_CYCLE: "Power Cycle (Power Cycle)",
@@ -26,14 +26,14 @@ _POWER_ON_CAUSES = {
 
 
 class ResetApi(EsCore):
-    """What applications and the boot ask about resets."""
+    """The functions on resets for applications and the boot."""
 
     def get_reset_type(self) -> RestartType:
-        """Type and subtype of the last reset (CFE_ES_GetResetType): RST_TYPE_*, RST_SUBTYPE_*."""
+        """Return the type and subtype of the last reset (CFE_ES_GetResetType): RST_TYPE_*, RST_SUBTYPE_*."""
         return RestartType(self.reset.variables.reset_type, self.reset.variables.reset_subtype)
 
     def reset_cfe(self, reset_type: int) -> None:
-        """Reset the processor (CFE_ES_ResetCFE). A task does not come back from it.
+        """Reset the processor (CFE_ES_ResetCFE). The call does not return to a task.
 
         Too many processor resets in a row become a power-on reset.
 
@@ -41,7 +41,7 @@ class ResetApi(EsCore):
             reset_type: RST_TYPE_PROCESSOR or RST_TYPE_POWERON.
 
         Raises:
-            CfeError: CFE_ES_BAD_ARGUMENT: another type.
+            CfeError: CFE_ES_BAD_ARGUMENT for another type.
         """
         variables = self.reset.variables
         if reset_type == RST_TYPE_POWERON:
@@ -62,12 +62,12 @@ class ResetApi(EsCore):
         self.psp.restart(reset_type, text)
 
     def setup_reset_variables(self, start_type: int, start_subtype: int, boot_source: int) -> None:
-        """Find out, at boot, why the processor was started (CFE_ES_SetupResetVariables).
+        """Determine, at boot, why the processor was started (CFE_ES_SetupResetVariables).
 
         Args:
-            start_type: RST_TYPE_*, as the board tells.
+            start_type: RST_TYPE_*, from the board.
             start_subtype: RST_SUBTYPE_*.
-            boot_source: from where it was booted.
+            boot_source: the source of the boot.
         """
         psp = self.psp
         if KEY not in psp.retained.kept:
@@ -95,7 +95,7 @@ class ResetApi(EsCore):
         variables.max_processor_reset_count = self.config.es_max_processor_resets
 
     def _reset_by_hardware(self, start_subtype: int) -> None:
-        """Note a processor reset that no software asked for: a watchdog's, or a special command's to the hardware."""
+        """Record a processor reset that software did not request: by the watchdog or by a special hardware command."""
         variables = self.reset.variables
         variables.reset_type = RST_TYPE_PROCESSOR
         variables.processor_reset_count += 1

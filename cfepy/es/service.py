@@ -1,7 +1,7 @@
-"""Executive Services: what an application asks of it (cfe_es_api.c); the parts are put together here.
+"""Executive Services as applications see them (cfe_es_api.c), combined from their parts.
 
-Child tasks (CFE_ES_*ChildTask) and generic counters (CFE_ES_*GenCount*: numbers of 32 bits that any application may
-make, find by name and count up) are in this module; the other parts have one each.
+Child tasks (CFE_ES_*ChildTask) and generic counters (CFE_ES_*GenCount*) are in this module. A generic counter is a
+32-bit number that any application can create, find by name and increment. The other parts have a module each.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _WORD = 0xFFFFFFFF
 
 
 class ChildTaskApi(InfoApi, AppEnd):
-    """The life of child tasks."""
+    """The lifecycle of child tasks."""
 
     def create_child_task(
         self, name: str, entry: Callable[[], object], stack_size: int, priority: int, flags: int = 0
@@ -65,8 +65,8 @@ class ChildTaskApi(InfoApi, AppEnd):
             The TaskId.
 
         Raises:
-            CfeError: CFE_ES_BAD_ARGUMENT (no name, no function), CFE_ES_ERR_RESOURCEID_NOT_VALID (the caller belongs
-                to no application), CFE_ES_ERR_CHILD_TASK_CREATE (called by a child task),
+            CfeError: CFE_ES_BAD_ARGUMENT (no name, no function), CFE_ES_ERR_RESOURCEID_NOT_VALID (the caller does not
+                belong to an application), CFE_ES_ERR_CHILD_TASK_CREATE (called by a child task),
                 CFE_STATUS_EXTERNAL_RESOURCE_FAIL (OSAL cannot create it).
         """
         self._check_child(name, entry)
@@ -113,7 +113,9 @@ class ChildTaskApi(InfoApi, AppEnd):
         log(f"CFE_ES_DeleteChildTask: Task {task_id} Deleted")
 
     def exit_child_task(self) -> None:
-        """End the calling child task; does not return (CFE_ES_ExitChildTask). A main task goes on, with a log entry."""
+        """End the calling child task; does not return (CFE_ES_ExitChildTask). A main task continues, with a
+        log entry.
+        """
         app = self.app_of_caller()
         task_id = self.osal.task_get_id()
         if app is None:
@@ -129,10 +131,10 @@ class ChildTaskApi(InfoApi, AppEnd):
 
 
 class CounterApi(EsCore):
-    """The generic counters of Executive Services; no application owns them, and they stay until they are deleted."""
+    """The generic counters of Executive Services. They belong to no application, and stay until they are deleted."""
 
     def register_gen_counter(self, name: str) -> int:
-        """Make a counter that stands at 0 (CFE_ES_RegisterGenCounter).
+        """Make a counter with the value 0 (CFE_ES_RegisterGenCounter).
 
         Args:
             name: unique, at most 19 characters.
@@ -155,40 +157,40 @@ class CounterApi(EsCore):
         return self.counters.create(GenCounter(name))
 
     def delete_gen_counter(self, counter_id: int) -> None:
-        """Delete a counter, or CFE_ES_BAD_ARGUMENT (CFE_ES_DeleteGenCounter)."""
+        """Delete a counter (CFE_ES_DeleteGenCounter); raises CFE_ES_BAD_ARGUMENT."""
         self._counter(counter_id)
         self.counters.delete(counter_id)
 
     def increment_gen_counter(self, counter_id: int) -> None:
-        """Count up by one, or CFE_ES_BAD_ARGUMENT (CFE_ES_IncrementGenCounter)."""
+        """Increment a counter (CFE_ES_IncrementGenCounter); raises CFE_ES_BAD_ARGUMENT."""
         counter = self._counter(counter_id)
         counter.count = counter.count + 1 & _WORD
 
     def set_gen_count(self, counter_id: int, count: int) -> None:
-        """Set a counter to a number of 32 bits, or CFE_ES_BAD_ARGUMENT (CFE_ES_SetGenCount)."""
+        """Set a counter to a number of 32 bits (CFE_ES_SetGenCount); raises CFE_ES_BAD_ARGUMENT."""
         self._counter(counter_id).count = count & _WORD
 
     def get_gen_count(self, counter_id: int) -> int:
-        """What a counter stands at, or CFE_ES_BAD_ARGUMENT (CFE_ES_GetGenCount)."""
+        """Return the value of a counter (CFE_ES_GetGenCount); raises CFE_ES_BAD_ARGUMENT."""
         return self._counter(counter_id).count
 
     def get_gen_counter_id_by_name(self, name: str) -> int:
-        """CounterId of a named counter, or CFE_ES_ERR_NAME_NOT_FOUND (CFE_ES_GetGenCounterIDByName)."""
+        """Return the CounterId of a named counter (CFE_ES_GetGenCounterIDByName); raises CFE_ES_ERR_NAME_NOT_FOUND."""
         for counter_id, counter in self.counters.items():
             if counter.name == name:
                 return counter_id
         raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"no counter is called {name!r}")
 
     def get_gen_counter_name(self, counter_id: int) -> str:
-        """Name of a counter, or CFE_ES_ERR_RESOURCEID_NOT_VALID (CFE_ES_GetGenCounterName)."""
+        """Return the name of a counter (CFE_ES_GetGenCounterName); raises CFE_ES_ERR_RESOURCEID_NOT_VALID."""
         return self.counters.get(counter_id).name
 
     def counter_id_to_index(self, counter_id: int) -> int:
-        """The slot of a CounterId, or CFE_ES_ERR_RESOURCEID_NOT_VALID (CFE_ES_CounterID_ToIndex)."""
+        """Return the slot of a CounterId (CFE_ES_CounterID_ToIndex); raises CFE_ES_ERR_RESOURCEID_NOT_VALID."""
         return to_index(counter_id, ES_COUNTID_BASE, self.counters.capacity)
 
     def _counter(self, counter_id: int) -> GenCounter:
-        """A counter; for an id that is none cFE has another status here than elsewhere."""
+        """Return a counter; an invalid id has another status here than elsewhere in cFE."""
         counter = self.counters.find(counter_id)
         if counter is None:
             raise CfeError(CFE_ES_BAD_ARGUMENT, f"no counter has the id 0x{counter_id:x}")
@@ -196,17 +198,17 @@ class CounterApi(EsCore):
 
 
 class ExecutiveServices(ChildTaskApi, TaskExceptionApi, CdsApi, CounterApi, PoolApi):
-    """One processor's ES; the arguments are those of `EsCore`."""
+    """The Executive Services of one processor; see `EsCore` for the arguments."""
 
     status_to_string = staticmethod(status_to_string)
 
     # -- the run loop ----------------------------------------------------------------------------------------------
 
     def run_loop(self, status: int = APP_RUN) -> bool:
-        """Whether the calling application shall go on; also tells ES that it runs (CFE_ES_RunLoop).
+        """Return whether the calling application should continue, and record that it runs (CFE_ES_RunLoop).
 
         Args:
-            status: APP_RUN to go on; anything else makes the answer False.
+            status: APP_RUN to continue; any other value returns False.
         """
         self.increment_task_counter()
         if status != APP_RUN:
@@ -219,15 +221,17 @@ class ExecutiveServices(ChildTaskApi, TaskExceptionApi, CdsApi, CounterApi, Pool
         return app.control_request == APP_RUN
 
     def control_request(self) -> int:
-        """What is asked of the calling application: APP_RUN, or why it shall end (C's *RunStatus after RunLoop)."""
+        """Return the request to the calling application: APP_RUN, or the reason to end (C's *RunStatus after
+        RunLoop).
+        """
         return self.calling_app().control_request
 
     def wait_for_system_state(self, state: int, timeout_ms: int) -> None:
-        """Wait until the mission reached a system state, looking every 50 ms (CFE_ES_WaitForSystemState).
+        """Wait until the mission reaches a system state, checking every 50 ms (CFE_ES_WaitForSystemState).
 
         Args:
-            state: SYSTEM_*. The call also says how far the calling application is: who waits for others has done its
-                own part.
+            state: SYSTEM_*. The call also marks the progress of the calling application: it waits for others, so it has
+                finished its own part.
             timeout_ms: the longest time.
 
         Raises:
@@ -253,36 +257,36 @@ class ExecutiveServices(ChildTaskApi, TaskExceptionApi, CdsApi, CounterApi, Pool
                 raise
 
     def apps_below(self, state: int) -> list[AppRecord]:
-        """External applications that have not reached a state yet and have not ended either."""
+        """Return the external applications that have neither reached a state nor ended."""
         return [app for app in self.apps if not app.is_core and app.state < state]
 
     def reached(self, state: int) -> bool:
-        """Whether all external applications reached a state."""
+        """Return whether all external applications have reached a state."""
         return not self.apps_below(state)
 
     # -- the performance log ---------------------------------------------------------------------------------------
 
     def perf_log_add(self, marker: int, entry_exit: int) -> None:
-        """Record that a marked place in the code was reached, if data are collected (CFE_ES_PerfLogAdd).
+        """Record a marker in the code, if data are being collected (CFE_ES_PerfLogAdd).
 
         Args:
-            marker: number of the place, 0 to 127.
-            entry_exit: 0 where the code begins, 1 where it ends; of any other number the last bit counts.
+            marker: number of the marker, 0 to 127.
+            entry_exit: 0 at the entry of the code, 1 at its exit; only the last bit counts.
         """
         self.perf_log.add(marker, entry_exit)
 
     def perf_log_entry(self, marker: int) -> None:
-        """As `perf_log_add`, where the code begins (CFE_ES_PerfLogEntry)."""
+        """Record the entry of marked code; see `perf_log_add` (CFE_ES_PerfLogEntry)."""
         self.perf_log.add(marker, 0)
 
     def perf_log_exit(self, marker: int) -> None:
-        """As `perf_log_add`, where the code ends (CFE_ES_PerfLogExit)."""
+        """Record the exit of marked code; see `perf_log_add` (CFE_ES_PerfLogExit)."""
         self.perf_log.add(marker, 1)
 
     # -- the rest --------------------------------------------------------------------------------------------------
 
     def calculate_crc(self, data: bytes, crc: int = 0, kind: int = CRC_16) -> int:
-        """Check value of some bytes (CFE_ES_CalculateCRC); see `cfepy.fs.calculate_crc`."""
+        """Return the check value of some bytes (CFE_ES_CalculateCRC); see `cfepy.fs.calculate_crc`."""
         return calculate_crc(data, crc, kind)
 
 

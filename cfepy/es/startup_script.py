@@ -1,9 +1,9 @@
-"""The startup script, cfe_es_startup.scr: which libraries and apps a mission starts, read byte for byte as cFE does.
+"""The startup script, cfe_es_startup.scr: the libraries and apps that a mission starts, read byte for byte as cFE does.
 
-Stands for the reading half of CFE_ES_StartApplications and CFE_ES_ParseFileEntry. To cFE the file is a stream: blanks
-and newlines vanish, "," ends a field, ";" an entry, the first "!" the file, and there is no comment before that. So an
-entry that says something else than its author meant is the rule; every one carries the line of text it began on and an
-explanation, in addition to the words of cFE's own system log.
+It replaces the reading half of CFE_ES_StartApplications and CFE_ES_ParseFileEntry. To cFE the file is a stream: blanks
+and newlines are dropped, "," ends a field, ";" ends an entry, and the first "!" ends the file. There are no comments
+before that. So entries often mean something else than their author intended. Every entry carries its first line number
+and an explanation, in addition to the text of cFE's own system log.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ MAX_TASK_PRIORITY = 255
 
 _ULONG_MAX = (1 << 64) - 1
 _DROPPED = bytes([*range(0x21), *range(0x80, 0x100)])
-"""Not above " " as a signed char: blanks and control characters, and on x86 everything beyond ASCII."""
+"""Bytes that are not above " " as a signed char: blanks and control characters, and on x86 all bytes beyond ASCII."""
 
 _NUMBER = re.compile(r"([+-]?)(0[xX][0-9a-fA-F]+|[0-9]+)")
 _PLAIN_NUMBER = re.compile(r"0[xX][0-9a-fA-F]+|0|[1-9][0-9]*")
@@ -47,13 +47,13 @@ class StartupEntry:
         file: the file as written.
         path: the file with default directory and extension, as cFE names it: "/cf/hk.so".
         symbol: the entry function.
-        name: cFE's name of it.
+        name: its name in cFE.
         priority: 0 (most urgent) to 255.
         stack_size: bytes.
         exception_action: EXCEPTION_RESTART_APP or EXCEPTION_PROC_RESTART.
-        number: which entry of the script it is, from 1; cFE calls it the file's line.
-        line: the line of text it begins on, from 1.
-        log_text: what cFE's system log says before it starts it.
+        number: number of the entry in the script, from 1; cFE calls it the file's line.
+        line: the line of text where it begins, from 1.
+        log_text: the line of cFE's system log before the start.
     """
 
     kind: str
@@ -71,14 +71,14 @@ class StartupEntry:
 
 @dataclass(frozen=True, slots=True)
 class BadLine:
-    """An entry that starts nothing.
+    """An invalid entry, which starts nothing.
 
     Attributes:
-        number: which entry of the script it is, from 1.
-        line: the line of text it begins on, from 1.
-        log_texts: what cFE's system log says.
-        explanation: what is wrong and what to do.
-        status: what CFE_ES_ParseFileEntry returns.
+        number: number of the entry in the script, from 1.
+        line: the line of text where it begins, from 1.
+        log_texts: the lines of cFE's system log.
+        explanation: the mistake and the remedy.
+        status: the result of CFE_ES_ParseFileEntry.
         source: the entry without blanks.
     """
 
@@ -92,12 +92,12 @@ class BadLine:
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """Something in a script that is hardly meant so.
+    """A probable mistake in a script.
 
     Attributes:
         line: the line of text, from 1.
-        explanation: what it is and what to do.
-        is_warning: the entry starts something all the same.
+        explanation: the mistake and the remedy.
+        is_warning: whether the entry starts an app or library nevertheless.
     """
 
     line: int
@@ -114,11 +114,11 @@ class _Raw(NamedTuple):
 
 
 def parse(data: bytes, longest: int = LONGEST) -> Iterator[StartupEntry | BadLine]:
-    """The entries of a startup script in order, one result for each ";"; no bytes make it fail.
+    """Yield the entries of a startup script in order, one result for each ";". It never fails.
 
     Args:
         data: the file.
-        longest: characters of an entry that the release of cFE reads.
+        longest: maximum number of characters in an entry for this release of cFE.
     """
     for raw in _split(data):
         if raw.ended:
@@ -126,21 +126,21 @@ def parse(data: bytes, longest: int = LONGEST) -> Iterator[StartupEntry | BadLin
 
 
 def entries(data: bytes, longest: int = LONGEST) -> list[StartupEntry]:
-    """The entries of a startup script that start something, in order.
+    """Return the entries of a startup script that are valid, in order.
 
     Args:
         data: the file.
-        longest: characters of an entry that the release of cFE reads.
+        longest: maximum number of characters in an entry for this release of cFE.
     """
     return [entry for entry in parse(data, longest) if isinstance(entry, StartupEntry)]
 
 
 def check(data: bytes, longest: int = LONGEST) -> list[Note]:
-    """Everything in a script that its author should look at, also what cFE takes without a word.
+    """Return all probable mistakes in a script, including those that cFE accepts silently.
 
     Args:
         data: the file.
-        longest: characters of an entry that the release of cFE reads.
+        longest: maximum number of characters in an entry for this release of cFE.
     """
     found: list[Note] = []
     for raw in _split(data):
@@ -151,7 +151,9 @@ def check(data: bytes, longest: int = LONGEST) -> list[Note]:
 
 
 def strtoul(text: str) -> int:
-    """C's strtoul with base 0 and 64 bits: "0x1F" is 31, "017" is 15, garbage is 0, too much is the largest number."""
+    """Convert like C's strtoul with base 0 and 64 bits: "0x1F" is 31, "017" is 15, garbage is 0, overflow is the
+    largest number.
+    """
     match = _NUMBER.match(text)
     if match is None:
         return 0
@@ -169,7 +171,7 @@ def _magnitude(digits: str) -> int:
 
 
 def _split(data: bytes) -> Iterator[_Raw]:
-    """The script cut into entries; the last one, if any, has no ";" (`ended` is False)."""
+    """Yield the entries of the script; a last one without ";" has `ended` False."""
     chunks = data.partition(b"!")[0].split(b";")
     line = 1
     for number, chunk in enumerate(chunks, 1):
@@ -226,7 +228,9 @@ def _bad(raw: _Raw, explanation: str, log_text: str, status: int = CFE_ES_BAD_AR
 
 
 def _malformed(raw: _Raw, tokens: int, longest: int) -> BadLine:
-    """More fields, or more characters, than cFE's buffers take; its log counts the commas as "tokens"."""
+    """Return the error of an entry with too many fields or characters for cFE's buffers; cFE's log counts the commas as
+    "tokens".
+    """
     size = len(raw.text)
     text = f"{_START}**WARNING** File Line {raw.number} is malformed: {size} bytes, {tokens - 1} tokens."
     if tokens > MAX_TOKENS:
@@ -243,7 +247,7 @@ def _too_few(raw: _Raw, tokens: int) -> BadLine:
 
 
 def _error_in(raw: _Raw, longest: int) -> str | None:
-    """Why an entry starts nothing; None when it does."""
+    """Return why an entry is invalid, or None."""
     if not raw.ended:
         return f"the last entry has no ';' and is lost: {raw.text}"
     entry = _parse_entry(raw, longest)
@@ -251,7 +255,7 @@ def _error_in(raw: _Raw, longest: int) -> str | None:
 
 
 def _remarks(raw: _Raw, longest: int) -> Iterator[str]:
-    """What cFE takes otherwise than it is written."""
+    """Yield remarks on parts of an entry that cFE interprets differently than they are written."""
     if raw.dropped:
         yield "bytes that are not ASCII are left out of the entry"
     entry = _parse_entry(raw, longest) if raw.ended else None

@@ -22,8 +22,8 @@ class SystemLog:
     """Lines with a time stamp in a buffer of fixed size, also shown on the console.
 
     Args:
-        ports: for the time.
-        console: where lines are shown.
+        ports: provides the time.
+        console: prints the lines.
         config: sizes.
     """
 
@@ -41,11 +41,12 @@ class SystemLog:
     def write_to_sys_log(self, text: str) -> int:
         """Add a line (CFE_ES_WriteToSysLog).
 
-        When it does not fit, OVERWRITE goes on at the top of the buffer, where the oldest lines are; DISCARD cuts it,
-        and takes none at all once there is no room for a time stamp. 146 bytes of a line are kept, stamp included.
+        If the line does not fit, OVERWRITE continues at the start of the buffer, over the oldest lines. DISCARD
+        truncates the line, and refuses lines once there is no room for a time stamp. At most 146 bytes of a line are
+        kept, including the stamp.
 
         Returns:
-            CFE_SUCCESS, or why not all of it is there: CFE_ES_ERR_SYS_LOG_TRUNCATED, CFE_ES_ERR_SYS_LOG_FULL.
+            CFE_SUCCESS, or CFE_ES_ERR_SYS_LOG_TRUNCATED or CFE_ES_ERR_SYS_LOG_FULL if the line is not complete.
         """
         line = to_bytes(f"{self._ports.time.text()} {without_addresses(text)}")[: self._max_line].rstrip()
         status = self._append(line + b"\n")
@@ -71,17 +72,17 @@ class SystemLog:
         return status
 
     def set_mode(self, mode: int) -> None:
-        """OVERWRITE or DISCARD; CFE_ES_BAD_ARGUMENT for anything else (CFE_ES_SysLogSetMode)."""
+        """Set the mode, OVERWRITE or DISCARD (CFE_ES_SysLogSetMode); raises CFE_ES_BAD_ARGUMENT for any other."""
         if mode not in (OVERWRITE, DISCARD):
             raise CfeError(CFE_ES_BAD_ARGUMENT, f"system log mode {mode}")
         self.data.mode = mode
 
     def clear(self) -> None:
-        """Forget all lines (CFE_ES_SysLogClear)."""
+        """Remove all lines (CFE_ES_SysLogClear)."""
         self.data.write_index = self.data.end_index = self.data.entries = 0
 
     def read(self) -> bytes:
-        """The text, oldest line first; what is left of a line that was written over in part does not count."""
+        """Return the text, the oldest line first, without a line that was partly overwritten."""
         log = self.data
         rest = bytes(log.memory[log.write_index : log.end_index])
         whole = rest.partition(b"\n")[2]

@@ -1,4 +1,4 @@
-"""The tables of Executive Services and what every part of it needs to look things up (cfe_es_resource.c)."""
+"""The tables of Executive Services and the lookups for all its parts (cfe_es_resource.c)."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ class EsCore:
     """State of Executive Services; the base of its parts.
 
     Args:
-        kernel: the processor.
+        kernel: the kernel of the processor.
         ports: the other services.
         config: limits.
-        osal: where tasks are made.
-        psp: the board: how it was started, what it retained, and where resets begin.
-        console: where the system log shows.
+        osal: creates tasks.
+        psp: the board: the cause of its start, its retained memory, and resets.
+        console: prints the system log.
         loader: finds the code of applications.
     """
 
@@ -58,7 +58,7 @@ class EsCore:
         self.psp = psp
         self.console = console
         self.loader = loader
-        self.failed_tasks: list[FailedTask] = []  # until the exception scan has dealt with them
+        self.failed_tasks: list[FailedTask] = []  # until the exception scan has handled them
         self.reset = ResetData(config, psp.get_timer_ticks_per_second(), psp.get_timer_low32_rollover())
         self.syslog = SystemLog(ports, console, config)
         self.er_log = ExceptionResetLog(ports, self.reset, self._context_of)
@@ -75,13 +75,13 @@ class EsCore:
         self._background = Semaphore(kernel, 0, 1, "ES_BG_SEM")
 
     def keep_in(self, reset: ResetData) -> None:
-        """Go on with the logs and counters that the memory of the board retained."""
+        """Use the logs and counters in the retained memory of the board."""
         self.reset = self.er_log.reset = reset
         self.syslog.data = reset.syslog
         self.perf_log.data = reset.perf
 
     def _context_of(self, context_id: int) -> bytes:
-        """The processor context of an exception; empty when the board does not know it (any more)."""
+        """Return the processor context of an exception; empty if the board does not have it (any more)."""
         try:
             return self.psp.exception_copy_context(context_id, MAX_CONTEXT)
         except OsalError:
@@ -92,23 +92,23 @@ class EsCore:
         return self.syslog.write_to_sys_log(text)
 
     def background_wakeup(self) -> None:
-        """Let the background task run at once (CFE_ES_BackgroundWakeup)."""
+        """Wake the background task (CFE_ES_BackgroundWakeup)."""
         self._background.give()
 
     def background_wait(self, timeout_ms: int) -> None:
-        """Wait for `background_wakeup`, or for some time."""
+        """Wait for `background_wakeup`, or for at most `timeout_ms`."""
         self._background.take(timeout_ms * NS_PER_MS)
 
     def app_of_caller(self) -> AppRecord | None:
-        """The application of the running task, or None."""
+        """Return the application of the running task, or None."""
         owner = self.kernel.current.owner
         return owner if isinstance(owner, AppRecord) else None
 
     def calling_app(self) -> AppRecord:
-        """The application of the running task.
+        """Return the application of the running task.
 
         Raises:
-            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID: the task belongs to none.
+            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID if the task belongs to none.
         """
         app = self.app_of_caller()
         if app is None:
@@ -116,7 +116,7 @@ class EsCore:
         return app
 
     def app(self, app_id: int) -> AppRecord:
-        """An application by its id.
+        """Return an application by its id.
 
         Raises:
             CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID.
@@ -124,11 +124,11 @@ class EsCore:
         return self.apps.get(app_id)
 
     def app_named(self, name: str) -> AppRecord | None:
-        """An application by its name, or None."""
+        """Return an application by its name, or None."""
         return next((app for app in self.apps if app.name == name), None)
 
     def require_app_named(self, name: str) -> AppRecord:
-        """An application by its name.
+        """Return an application by its name.
 
         Raises:
             CfeError: CFE_ES_ERR_NAME_NOT_FOUND.
@@ -139,7 +139,7 @@ class EsCore:
         return app
 
     def find_task(self, task_id: int) -> tuple[AppRecord, TaskRecord]:
-        """A task by its id, with its application.
+        """Return a task by its id, with its application.
 
         Raises:
             CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID.
@@ -151,5 +151,5 @@ class EsCore:
         raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"no task has the id 0x{task_id:x}")
 
     def history_of(self, name: str) -> AppHistory:
-        """The history of an application name."""
+        """Return the history of an application name."""
         return self.history.setdefault(name, AppHistory(name))

@@ -22,13 +22,13 @@ MAIN_PERF_ID = 1
 
 
 def housekeeping(es: ExecutiveServices, replies: Replies, dump: PerfDump, checksum: int) -> dict[str, object]:
-    """The fields of the packet.
+    """Return the fields of the housekeeping packet.
 
     Args:
         es: the service.
         replies: the command counters.
-        dump: for how much of the performance log is still to be written.
-        checksum: of the executive's code, 16 bits.
+        dump: the number of performance log entries still to write.
+        checksum: checksum of the executive's code, 16 bits.
     """
     return {
         "CommandCounter": replies.command_counter & 0xFF,
@@ -91,7 +91,7 @@ def _performance(es: ExecutiveServices, dump: PerfDump) -> dict[str, object]:
 
 
 def _heap(es: ExecutiveServices) -> dict[str, int]:
-    """What is left of the board's memory; zeros where that is not known."""
+    """Return the free memory of the board as fields; empty if it is unknown."""
     try:
         heap = es.osal.heap_get_info()
     except CfeError:
@@ -108,9 +108,9 @@ class EsTask:
 
     Args:
         es: the service.
-        mission_name: for the version events.
-        build: what the build event says: "Build ... by ...".
-        checksum: of the executive's code, 16 bits.
+        mission_name: name for the version events.
+        build: text of the build event: "Build ... by ...".
+        checksum: checksum of the executive's code, 16 bits.
     """
 
     def __init__(self, es: ExecutiveServices, mission_name: str, build: str, checksum: int) -> None:
@@ -143,21 +143,21 @@ class EsTask:
             Job(self.perf_dump.run, DELAY_MS, DELAY_MS * 1000),
             Job(ExceptionScan(es).run, rate, rate),
             Job(es.ports.fs.run_background_file_dump, rate, rate),
-            Job(lambda elapsed_ms: True, rate - 1, rate),  # NASA's table has it, so the task wakes a ms earlier
+            Job(lambda elapsed_ms: True, rate - 1, rate),  # as in NASA's table, so the task wakes a ms earlier
         )
 
     def task_main(self) -> None:
-        """The main task of CFE_ES (CFE_ES_TaskMain)."""
+        """Run the main task of CFE_ES (CFE_ES_TaskMain)."""
         self.es.perf_log_entry(MAIN_PERF_ID)
         pipe = self._init()
         serve(self.ports, self.es.config, pipe, MAIN_PERF_ID, self._process_and_wake)
 
     def _process_and_wake(self, packet: bytes) -> None:
         self.process(packet)
-        self.es.background_wakeup()  # a command may have asked for something that a job does
+        self.es.background_wakeup()  # a command may have requested work of a background job
 
     def _init(self) -> int:
-        """Everything before the loop (CFE_ES_TaskInit); the command pipe."""
+        """Initialize the task before its loop (CFE_ES_TaskInit); return the command pipe."""
         es, sb = self.es, self.ports.sb
         powered_on = es.get_reset_type().reset_type == RST_TYPE_POWERON
         config = es.config
@@ -181,7 +181,7 @@ class EsTask:
         send(ev.BUILD_INF_EID, self.build)
 
     def process(self, packet: bytes) -> None:
-        """Handle one packet of the command pipe (CFE_ES_TaskPipe)."""
+        """Handle a packet from the command pipe (CFE_ES_TaskPipe)."""
         done = self.commands.dispatch(packet)
         if done.outcome == DONE:
             return

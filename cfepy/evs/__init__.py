@@ -1,8 +1,8 @@
-"""Event Services: what applications report, filtered, logged and sent on (cFE EVS).
+"""Event Services: the events of applications, filtered, logged and sent (cFE EVS).
 
-What belongs here filters, logs or sends events, or changes how that is done. The ids and texts of particular events do
-not: each service and application has its own. The five services do not import each other; what EVS needs of the others
-it finds in its `Ports`. The central file is `cfepy/evs/service.py`.
+Code that filters, logs or sends events, or configures this, belongs here. The ids and texts of particular events do
+not: each service and application has its own. The five services are independent of one another; EVS reaches the others
+through its `Ports`. The central file is `cfepy/evs/service.py`.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ __all__ = [
     "SentError",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

@@ -1,6 +1,6 @@
-"""What Event Services keeps of one application: its filters, enabled event types, counters and flood brake.
+"""The event data of an application: its filters, enabled event types, counters and flood limit.
 
-Stands for EVS_AppData_t, EVS_IsFiltered and EVS_CheckAndIncrementSquelchTokens. Sends nothing itself.
+It replaces EVS_AppData_t, EVS_IsFiltered and EVS_CheckAndIncrementSquelchTokens. It sends no events itself.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ EVENT_COST = 1000
 
 @dataclass(slots=True)
 class BinFilter:
-    """Lets an event pass when its count and the mask have no bit in common (EVS_BinFilter_t)."""
+    """A filter that passes an event if its count and the mask have no bit in common (EVS_BinFilter_t)."""
 
     event_id: int = FREE_SLOT
     mask: int = 0
@@ -34,8 +34,8 @@ class Filters:
     """The filter slots of an application.
 
     Args:
-        size: how many there are.
-        wanted: (event id, mask) pairs; what does not fit is left out.
+        size: number of slots.
+        wanted: (event id, mask) pairs; pairs that do not fit are dropped.
     """
 
     __slots__ = ("_by_id", "slots")
@@ -50,11 +50,13 @@ class Filters:
         self._by_id = {slot.event_id: slot for slot in reversed(self.slots)}
 
     def find(self, event_id: int) -> BinFilter | None:
-        """The filter of an event, the first one if there are two; FREE_SLOT finds a free slot (EVS_FindEventID)."""
+        """Return the filter of an event, the first one if there are two; FREE_SLOT finds a free slot
+        (EVS_FindEventID).
+        """
         return self._by_id.get(event_id)
 
     def add(self, event_id: int, mask: int) -> bool:
-        """Use a free slot; False when there is none."""
+        """Use a free slot; return False if there is none."""
         slot = self._by_id.get(FREE_SLOT)
         if slot is None:
             return False
@@ -68,21 +70,21 @@ class Filters:
         self._index()
 
     def reset(self) -> None:
-        """Count from 0 again, all of them."""
+        """Set all counts to 0."""
         for slot in self.slots:
             slot.count = 0
 
 
 @dataclass(slots=True)
 class Squelch:
-    """The flood brake: a bucket of tokens that events empty and time fills.
+    """The flood limit: a bucket of tokens that events empty and time refills.
 
-    A token is worth a thousandth of an event, so that integers do. The bucket can go below zero as far as it can be
-    full, so that a flood has to pause before events come through again.
+    A token is a thousandth of an event, so integers suffice. The bucket can be as far below zero as it can be above. So
+    after a flood, there is a pause before events pass again.
 
     Args:
-        burst: events that a full bucket lets through; 0 switches the brake off.
-        per_second: events that a second brings back.
+        burst: number of events that a full bucket passes; 0 switches the limit off.
+        per_second: number of events that a second refills.
     """
 
     burst: int
@@ -99,7 +101,7 @@ class Squelch:
         self.tokens = self.burst * EVENT_COST
 
     def admit(self, now: int) -> tuple[bool, bool]:
-        """Whether an event may go out at a time in ns, and whether to announce that events are dropped now."""
+        """Return whether an event may pass at a time in ns, and whether to announce that events are being dropped."""
         if not self.burst:
             return True, False
         full = self.burst * EVENT_COST
@@ -116,18 +118,18 @@ class Squelch:
 
 
 class AppEvents:
-    """One registered application.
+    """An application registered for events.
 
     Args:
         app_id: its AppId.
-        name: its name, as events show it.
+        name: its name in events.
         config: limits and defaults.
         wanted: its (event id, mask) filters.
 
     Attributes:
-        active: events are enabled at all.
+        active: whether its events are enabled at all.
         types: enabled event types, one bit each.
-        sent: events sent, up to 65535.
+        sent: number of events sent, at most 65535.
     """
 
     __slots__ = ("active", "app_id", "filters", "name", "sent", "squelch", "types")
@@ -142,17 +144,20 @@ class AppEvents:
         self.squelch = Squelch(config.evs_max_app_event_burst, config.evs_app_events_per_sec)
 
     def set_types(self, mask: int, enabled: bool) -> None:
-        """Switch event types on or off; the flood brake is as new then (CFE_EVS_SetTypeEnable)."""
+        """Switch event types on or off, and reset the flood limit (CFE_EVS_SetTypeEnable)."""
         self.types = self.types | mask if enabled else self.types & ~mask
         self.squelch.refill()
 
     def judge(self, event_id: int, event_type: int, types: int) -> tuple[bool, bool]:
-        """(whether an event is filtered out, whether its filter was locked by this very event).
+        """Apply the filters to an event.
 
         Args:
-            event_id: of the event.
-            event_type: of the event.
-            types: the types that are enabled, as the application whose task sends the event has them.
+            event_id: id of the event.
+            event_type: type of the event.
+            types: the event types enabled for the application whose task sends the event.
+
+        Returns:
+            Whether the event is filtered out, and whether this event locked its filter.
         """
         if not self.active or not 0 < event_type < 5 or not types >> event_type - 1 & 1:
             return True, False

@@ -1,8 +1,8 @@
-"""The ground commands of Event Services (cfe_evs_task.c): dispatch, handlers, their answers, housekeeping and files.
+"""The ground commands of Event Services (cfe_evs_task.c): dispatch, handlers, replies, housekeeping and files.
 
-A handler returns True when it did what the command says, False when it refused, None when the command is not counted.
-`EvsCommands` has the commands about all applications, `AppEventCommands` those about one: its event types, its counter,
-its filters. `EventFiles` writes the event log and the data of applications.
+A handler returns True if it carried out the command, False if it refused it, None if the command is not counted.
+`EvsCommands` has the commands about all applications. `AppEventCommands` has those about one application: its event
+types, its counter, its filters. `EventFiles` writes the event log and the data of applications.
 """
 
 from __future__ import annotations
@@ -28,51 +28,53 @@ _NOT_FOUND_PREFIX = {
     pk.DISABLE_APP_EVENTS_CC: "Disable App Events Command: ",
     pk.RESET_APP_COUNTER_CC: "Reset Event Counter Command: ",
 }
-"""What two commands say before "Unable to retrieve"."""
+"""The text of two commands before "Unable to retrieve"."""
 
 _NOT_REGISTERED_SUFFIX = {pk.DISABLE_APP_EVENT_TYPE_CC: ","}
 _NO_FILTER_SUFFIX = {pk.SET_FILTER_CC: " "}
-"""NASA's slips of the pen, which ground tools may look for."""
+"""Typing errors of NASA's texts, which ground tools may depend on."""
 
 DEFAULT_LOG_FILE = "/ram/cfe_evs.log"
 DEFAULT_APP_DATA_FILE = "/ram/cfe_evs_app.dat"
 
 
 class CommandReplies:
-    """Sends the events; the methods return what a command's handler returns then.
+    """Sends the reply events; each method returns the result for the command's handler.
 
     Args:
-        core: the way of an event.
+        core: sends the events.
     """
 
     def __init__(self, core: EventCore) -> None:
         self._core = core
 
     def done(self, event_id: int, text: str) -> bool:
-        """Confirm a command; True."""
+        """Confirm a command; return True."""
         self._core.send_own(event_id, ev.DEBUG, text)
         return True
 
     def refuse(self, event_id: int, text: str) -> bool:
-        """Say why a command is not done; False."""
+        """Report why a command is refused; return False."""
         self._core.send_own(event_id, ev.ERROR, text)
         return False
 
     def is_mask(self, mask: int, code: int) -> bool:
-        """Whether bits name event types or ports, of which there are four; an event when not (EVS_IsInvalidBitMask)."""
+        """Return whether a mask has only bits of the four event types or ports; send an event otherwise
+        (EVS_IsInvalidBitMask).
+        """
         if 0 < mask <= ALL_TYPES:
             return True
         return self.refuse(ev.ERR_INVALID_BITMASK_EID, f"Bit Mask = 0x{mask:08x} out of range: CC = {code}")
 
 
 def apps_by_slot(core: EventCore) -> list[AppEvents]:
-    """The registered applications in the order of their slots in ES's table."""
+    """Return the registered applications in the order of their slots in ES's table."""
     slots = core.config.es_max_applications
     return sorted(core.apps.values(), key=lambda app: to_index(app.app_id, ES_APPID_BASE, slots))
 
 
 def housekeeping(core: EventCore, commands: int, errors: int) -> Mapping[str, object]:
-    """Fields of the housekeeping packet; 8-bit counters wrap.
+    """Return the fields of the housekeeping packet; 8-bit counters wrap.
 
     Args:
         core: the state.
@@ -111,8 +113,8 @@ class EvsCommands:
         files: the commands that write files.
 
     Attributes:
-        count: commands that were done.
-        errors: commands that were refused.
+        count: number of accepted commands.
+        errors: number of refused commands.
     """
 
     def __init__(self, core: EventCore, files: EventFiles) -> None:
@@ -133,11 +135,11 @@ class EvsCommands:
             (pk.WRITE_APP_DATA_FILE, files.write_app_data),
             (pk.WRITE_LOG_DATA_FILE, files.write_log),
         )
-        self._table.handle(pk.SEND_HK, self._send_housekeeping, any_length=True)  # NASA's does not look
+        self._table.handle(pk.SEND_HK, self._send_housekeeping, any_length=True)  # NASA's code does not check it
         AppEventCommands(core, self._replies).add_to(self._table)
 
     def process(self, packet: bytes) -> None:
-        """Handle one packet of the pipe (CFE_EVS_ProcessCommandPacket)."""
+        """Handle a packet of the pipe (CFE_EVS_ProcessCommandPacket)."""
         done = self._table.dispatch(packet)
         if done.outcome != DONE:
             self._reject(done)
@@ -222,11 +224,11 @@ class EvsCommands:
 
 
 class AppEventCommands:
-    """Handles the commands.
+    """Handles the commands about one application.
 
     Args:
         core: the state that commands change.
-        replies: sends the answers.
+        replies: sends the replies.
     """
 
     def __init__(self, core: EventCore, replies: CommandReplies) -> None:
@@ -234,7 +236,7 @@ class AppEventCommands:
         self._replies = replies
 
     def add_to(self, table: CommandTable) -> None:
-        """Have a table call the handlers."""
+        """Add the handlers to a command table."""
         for command, handler in (
             (pk.ENABLE_APP_EVENT_TYPE, self._enable_types),
             (pk.DISABLE_APP_EVENT_TYPE, self._disable_types),
@@ -250,7 +252,7 @@ class AppEventCommands:
             table.handle(command, self._for_app(command, handler))
 
     def _for_app(self, command: Command, handler: Handler) -> Callable[[bytes], bool]:
-        """A handler that looks the named application up first (EVS_GetApplicationInfo)."""
+        """Return a handler that first looks up the named application (EVS_GetApplicationInfo)."""
         code = command.code or 0
 
         def find_and_handle(packet: bytes) -> bool:
@@ -358,11 +360,11 @@ class AppEventCommands:
 
 
 class EventFiles:
-    """Handlers of the two commands.
+    """Handles the two commands that write files.
 
     Args:
-        core: what is written.
-        osal: its files.
+        core: the state to write.
+        osal: writes the files.
     """
 
     def __init__(self, core: EventCore, osal: Osal) -> None:
@@ -371,7 +373,7 @@ class EventFiles:
         self._replies = CommandReplies(core)
 
     def write_log(self, packet: bytes) -> bool:
-        """Write the event log: the cFE header and the long event packets, oldest first."""
+        """Write the event log: the cFE header and the long event packets, the oldest first."""
         name = pk.WRITE_LOG_DATA_FILE.read(packet)["LogFilename"]
         return self._in_file(name, DEFAULT_LOG_FILE, "Write Log File", ev.ERR_CRLOGFILE_EID, self._write_log)
 
@@ -390,14 +392,14 @@ class EventFiles:
         return self._replies.done(ev.WRLOG_EID, text)
 
     def write_app_data(self, packet: bytes) -> bool:
-        """Write what is known of applications: the cFE header and a record for each that is registered."""
+        """Write the data of applications: the cFE header and a record for each registered application."""
         name = pk.WRITE_APP_DATA_FILE.read(packet)["AppDataFilename"]
         return self._in_file(name, DEFAULT_APP_DATA_FILE, "Write App Data", ev.ERR_CRDATFILE_EID, self._write_app_data)
 
     def _write_app_data(self, path: str, descriptor: int) -> bool:
         written = self._write_header(descriptor, "EVS Application Data File", SUBTYPE_EVS_APPDATA)
         if written != HEADER_SIZE:
-            return False  # NASA's sends no event here
+            return False  # NASA's code sends no event here
         apps = apps_by_slot(self._core)
         for count, app in enumerate(apps):
             status = self._write(descriptor, _app_record(app))
@@ -408,7 +410,7 @@ class EventFiles:
         return self._replies.done(ev.WRDAT_EID, text)
 
     def _in_file(self, name: str, default: str, command: str, failed: int, write: Callable[[str, int], bool]) -> bool:
-        """Have a new file written: `write` gets its path and descriptor, and says how it went."""
+        """Create a file and call `write` with its path and descriptor; return its result, or False after an error."""
         opened = self._open(name, default, command, failed)
         if opened is None:
             return False
@@ -418,7 +420,7 @@ class EventFiles:
             self._osal.close(opened[1])
 
     def _open(self, name: str, default: str, command: str, failed: int) -> tuple[str, int] | None:
-        """Path and descriptor of a new file; None after an event."""
+        """Return the path and descriptor of a new file, or None after an error event."""
         try:
             path = dump_file_name(name, default)
         except CfeError as error:
@@ -433,14 +435,14 @@ class EventFiles:
             return None
 
     def _write_header(self, descriptor: int, description: str, subtype: int) -> int:
-        """How many bytes were written, or the status of a failure."""
+        """Write the file header; return the number of bytes written, or the status of a failure."""
         try:
             return self._core.ports.fs.write_header(descriptor, init_header(description, subtype))
         except CfeError as error:
             return error.status
 
     def _write(self, descriptor: int, data: bytes) -> int:
-        """How many bytes were written, or the status of a failure."""
+        """Write data; return the number of bytes written, or the status of a failure."""
         try:
             return self._osal.write(descriptor, data)
         except OsalError as error:

@@ -1,6 +1,6 @@
-"""The making of an event: filters, flood brake, packets, event log and output ports (cfe_evs_utils.c).
+"""The generation of events: filters, flood limit, packets, event log and output ports (cfe_evs_utils.c).
 
-`EventServices` adds the calls that applications make, `EvsCommands` those of the ground.
+`EventServices` adds the calls of applications, and `EvsCommands` the commands of the ground.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ PORTS = (1, 2, 3, 4)
 U16_MAX = 0xFFFF
 _SPARE = bytes(4)
 _MORE_THAN_A_MESSAGE = OS_MAX_API_NAME + 18
-"""How many bytes a line on a port may have beyond the size of a message (CFE_EVS_MAX_PORT_MSG_LENGTH)."""
+"""The bytes of a port line in addition to the size of a message (CFE_EVS_MAX_PORT_MSG_LENGTH)."""
 
 
 def _primary_header(msg_id: int, payload: Layout) -> bytes:
@@ -38,7 +38,7 @@ _SHORT_HEADER = _primary_header(pk.SHORT_EVENT_MSG_MID, pk.SHORT_EVENT)
 
 
 class SentError(NamedTuple):
-    """An ERROR or CRITICAL event: its type and text, when it was sent in virtual ns, and the task that sent it."""
+    """An ERROR or CRITICAL event: its type and text, its time in virtual ns, and the task that sent it."""
 
     event_type: int
     text: str
@@ -47,21 +47,21 @@ class SentError(NamedTuple):
 
 
 class EventCore:
-    """State of Event Services and the way of an event through it; the arguments are those of `EventServices`.
+    """State of Event Services, and the generation of events; see `EventServices` for the arguments.
 
     Attributes:
         apps: the registered applications by AppId.
-        unregistered: AppIds that tried to send without being registered, each reported once.
+        unregistered: AppIds of senders that are not registered, each reported once.
         own_app_id: AppId of CFE_EVS itself; 0 until its task runs.
         log: the event log.
-        ports_mask: the output ports that are enabled, one bit each.
-        format_mode: FORMAT_SHORT or FORMAT_LONG, of the packet on the bus.
-        sent: events sent since the counters were reset, up to 65535.
-        truncated: events whose text was cut, likewise.
-        unregistered_count: applications that were reported as unregistered, likewise.
-        counts: events sent in this run by event type, for reports.
+        ports_mask: the enabled output ports, one bit each.
+        format_mode: FORMAT_SHORT or FORMAT_LONG, for the packet on the bus.
+        sent: number of events sent since the counters were reset, at most 65535.
+        truncated: number of events with a truncated text, likewise.
+        unregistered_count: number of applications reported as unregistered, likewise.
+        counts: number of events sent in this run, by event type, for reports.
         errors_by_app: ERROR and CRITICAL events sent in this run by application name, for reports.
-        first_errors: the first of them by application name and event id.
+        first_errors: the first of these events, by application name and event id.
     """
 
     def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, console: Console) -> None:
@@ -83,17 +83,17 @@ class EventCore:
     def dispatch(
         self, app: AppEvents, event_id: int, event_type: int, text: str, time: tuple[int, int] | None = None
     ) -> int:
-        """Send an event of an application, unless its filters or its flood brake hold it back.
+        """Send an event of an application, unless its filters or its flood limit suppress it.
 
         Args:
-            app: whose event it is.
+            app: the application of the event.
             event_id: 0 to 65535.
             event_type: 1 to 4.
-            text: what happened.
-            time: spacecraft time that it shows; None for now.
+            text: the text.
+            time: spacecraft time of the event; None for now.
 
         Returns:
-            CFE_SUCCESS, also for an event that a filter held back; CFE_EVS_APP_SQUELCHED.
+            CFE_SUCCESS, even if a filter suppressed the event, or CFE_EVS_APP_SQUELCHED.
         """
         if self._is_filtered(app, event_id, event_type):
             return CFE_SUCCESS
@@ -106,23 +106,24 @@ class EventCore:
         return CFE_SUCCESS
 
     def send_own(self, event_id: int, event_type: int, text: str) -> None:
-        """Send an event of Event Services itself, which has no flood brake; nothing before its task runs."""
+        """Send an event of Event Services itself, without a flood limit; do nothing before its task runs."""
         app = self.apps.get(self.own_app_id)
         if app is not None and not self._is_filtered(app, event_id, event_type):
             self._generate(app, event_id, event_type, text, None)
 
     def report_unregistered(self, name: str) -> None:
-        """Count and tell that an application sends events without being registered."""
+        """Count and report an application that sends events without being registered."""
         self.unregistered_count += 1
         text = f"App {name} not registered with Event Services. Unable to send event."
         self.send_own(ERR_UNREGISTERED_EVS_APP, ERROR, text)
         self.ports.syslog.write_to_sys_log(f"EVS_NotRegistered: {text}")
 
     def _types_for(self, app: AppEvents) -> int:
-        """The event types that are enabled for an event of an application (CFE_EVS_GetTypeEnable).
+        """Return the event types that are enabled for an event of an application (CFE_EVS_GetTypeEnable).
 
-        They are those of the application whose task sends it, which may be another one: events of SB come from
-        everywhere. Of a sender that is not registered, they are those of the event's own application.
+        They are the types of the application whose task sends it. This may be another application, because SB sends
+        events from the tasks of all applications. If the sender is not registered, they are the types of the event's
+        own application.
         """
         owner = application_of(self.kernel.current.owner)
         sender = self.apps.get(owner.app_id) if owner is not None else None
@@ -140,7 +141,7 @@ class EventCore:
     def _generate(
         self, app: AppEvents, event_id: int, event_type: int, text: str, time: tuple[int, int] | None
     ) -> None:
-        """Make the packets and give them to log, ports and bus, in this order (EVS_GenerateEventTelemetry)."""
+        """Build the packets and pass them to log, ports and bus, in this order (EVS_GenerateEventTelemetry)."""
         message, is_cut = self._fit(text)
         clock = self.ports.time
         stamp = clock.stamp() if time is None else time[0] << 16 | time[1] >> 16
@@ -170,7 +171,7 @@ class EventCore:
             self.first_errors[app_name, event_id] = SentError(event_type, text, self.kernel.now, task)
 
     def _fit(self, text: str) -> tuple[bytes, bool]:
-        """The bytes of a text as a C string that fits the packet, and whether it had to be cut."""
+        """Return the bytes of a text as a C string that fits the packet, and whether it was truncated."""
         data = to_bytes(text).partition(b"\0")[0]
         room = self.config.evs_max_message_length - 1
         if len(data) <= room:

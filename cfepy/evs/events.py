@@ -60,4 +60,4 @@ FIRST_64_STOP = 0xFFC0
 EVERY_OTHER_ONE = 0x0001
 EVERY_OTHER_TWO = 0x0002
 EVERY_FOURTH_ONE = 0x0003
-"""Masks of filters that are often wanted."""
+"""Common filter masks."""

@@ -1,20 +1,20 @@
-"""The event log: the last events, or the first ones, kept until a command writes them to a file (EVS_Log_t)."""
+"""The event log: the last or the first events, kept until a command writes them to a file (EVS_Log_t)."""
 
 from __future__ import annotations
 
 OVERWRITE, DISCARD = 0, 1
-"""What happens to events when the log is full (CFE_EVS_LogMode_Enum_t)."""
+"""The treatment of events when the log is full (CFE_EVS_LogMode_Enum_t)."""
 
 
 class EventLog:
     """A ring of long event packets.
 
     Args:
-        size: how many it holds.
+        size: number of packets that it holds.
         mode: OVERWRITE or DISCARD.
 
     Attributes:
-        overflow: events that came when it was full; telemetry shows its lower 16 bits.
+        overflow: number of events that arrived when it was full; telemetry has its lower 16 bits.
     """
 
     __slots__ = ("_entries", "_next", "_size", "mode", "overflow")
@@ -28,11 +28,11 @@ class EventLog:
 
     @property
     def is_full(self) -> bool:
-        """Whether the next event overwrites one or is lost."""
+        """Whether the next event overwrites an event or is lost."""
         return len(self._entries) == self._size
 
     def add(self, packet: bytes) -> None:
-        """Keep an event, as the mode says (EVS_AddLog)."""
+        """Add an event according to the mode (EVS_AddLog)."""
         if not self.is_full:
             self._entries.append(packet)
         else:
@@ -43,16 +43,16 @@ class EventLog:
         self._next = (self._next + 1) % self._size
 
     def clear(self) -> None:
-        """Forget all but the mode (EVS_ClearLog)."""
+        """Remove all events; the mode stays (EVS_ClearLog)."""
         self._entries.clear()
         self._next = self.overflow = 0
 
     def entries(self) -> list[bytes]:
-        """What it holds, oldest first."""
+        """Return the packets, the oldest first."""
         if self.is_full:
             return self._entries[self._next :] + self._entries[: self._next]
         return self._entries[:]
 
     def summary(self) -> str:
-        """Next slot, count, full flag, mode and overflows, as the system log shows them."""
+        """Return next slot, count, full flag, mode and overflows as the system log shows them."""
         return f"n={self._next}, c={len(self._entries)}, f={int(self.is_full)}, m={self.mode}, o={self.overflow}"

@@ -1,6 +1,6 @@
 """Event Services as applications and the other services call them (cfe_evs.h), and the task CFE_EVS.
 
-How an event is made and where it goes is in `cfepy.evs.core`.
+The generation of events and their destinations are in `cfepy.evs.core`.
 """
 
 from __future__ import annotations
@@ -39,23 +39,23 @@ EVENT_FILTER_BINARY = 0
 """The only filter scheme (CFE_EVS_EventFilter_BINARY)."""
 
 KEPT = "EVS"
-"""Name of the event log among the objects that outlive a processor reset."""
+"""The key of the event log among the objects that outlive a processor reset."""
 
 _U32_MAX = 0xFFFFFFFF
 
 
 class EventServices(EventCore):
-    """Events of one processor.
+    """The events of one processor.
 
-    A call that sends an event returns CFE_SUCCESS, also when a filter held it back, or CFE_EVS_APP_SQUELCHED when the
-    flood brake did, which is no error that an application has to handle.
+    A call that sends an event returns CFE_SUCCESS, even if a filter suppressed the event. It returns
+    CFE_EVS_APP_SQUELCHED if the flood limit suppressed it; an application need not handle that as an error.
 
     Args:
-        kernel: the processor; its virtual time refills the flood brakes.
+        kernel: the kernel of the processor; its virtual time refills the flood limits.
         ports: the other services.
         config: limits and defaults.
-        console: where the output ports write.
-        osal: writes the files that commands ask for.
+        console: the output of the output ports.
+        osal: writes the files that commands request.
     """
 
     def __init__(
@@ -72,10 +72,11 @@ class EventServices(EventCore):
     # -- life ------------------------------------------------------------------------------------------------------
 
     def early_init(self, kept: dict[str, Any]) -> None:
-        """Get the event log ready, before any task exists (CFE_EVS_EarlyInit).
+        """Prepare the event log, before any task exists (CFE_EVS_EarlyInit).
 
         Args:
-            kept: objects that outlive a processor reset; "EVS" is the event log of before. It is put there anew.
+            kept: objects that outlive a processor reset; "EVS" is the earlier event log. The call stores the log there
+                again.
         """
         log: EventLog | None = kept.get(KEPT)
         if log is None:
@@ -89,7 +90,7 @@ class EventServices(EventCore):
         self.ports.syslog.write_to_sys_log(f"CFE_EVS_EarlyInit: {text}")
 
     def task_main(self) -> None:
-        """The task CFE_EVS (CFE_EVS_TaskMain)."""
+        """Run the task CFE_EVS (CFE_EVS_TaskMain)."""
         ports = self.ports
         ports.es.perf_log_entry(MAIN_PERF_ID)
         self.register()
@@ -101,28 +102,29 @@ class EventServices(EventCore):
         serve(ports, self.config, pipe, MAIN_PERF_ID, self.commands.process)
 
     def cleanup_app(self, app_id: int) -> None:
-        """Forget an application that ended (CFE_EVS_CleanUpApp)."""
+        """Remove an ended application (CFE_EVS_CleanUpApp)."""
         self.apps.pop(app_id, None)
         self.unregistered.discard(app_id)
 
     # -- registration and filters ----------------------------------------------------------------------------------
 
     def register(self, filters: Iterable[tuple[int, int]] = (), filter_scheme: int = EVENT_FILTER_BINARY) -> None:
-        """Register the calling application; again, with all counters at 0, if it was (CFE_EVS_Register).
+        """Register the calling application, or register it again with all counters at 0 (CFE_EVS_Register).
 
         Args:
-            filters: (event id, mask) pairs. An event passes when its count, from 0, and the mask have no bit in
-                common: mask 0xFFFC lets the first four pass, 0x0001 every other one. Of more than
-                `evs_max_event_filters` only the first are used.
-            filter_scheme: EVENT_FILTER_BINARY; there is no other.
+            filters: (event id, mask) pairs. An event passes if its count, from 0, and the mask have no bit in common.
+                Mask 0xFFFC passes the first four events, 0x0001 every other one. Only the first `evs_max_event_filters`
+                pairs are used.
+            filter_scheme: must be EVENT_FILTER_BINARY, the only scheme.
 
         Raises:
             CfeError: CFE_EVS_APP_ILLEGAL_APP_ID outside of an application, CFE_EVS_UNKNOWN_FILTER, CFE_ES_BAD_ARGUMENT
-                for a filter that is not two 16-bit numbers. An application that was registered is no more then.
+                for a filter that is not two 16-bit numbers. After an error, the application is no longer registered.
         """
         caller = self._caller()
         self.apps.pop(caller.app_id, None)
-        self.unregistered.discard(caller.app_id)  # as NASA's, which wipes the record first: it will be told anew
+        # as NASA's code, which clears the record first: the application is reported again
+        self.unregistered.discard(caller.app_id)
         if filter_scheme != EVENT_FILTER_BINARY:
             raise CfeError(CFE_EVS_UNKNOWN_FILTER, f"filter scheme {filter_scheme!r}, there is only 0, the binary one")
         wanted = list(filters)
@@ -134,7 +136,7 @@ class EventServices(EventCore):
         self.apps[caller.app_id] = AppEvents(caller.app_id, caller.name, self.config, wanted)
 
     def reset_filter(self, event_id: int) -> None:
-        """Let the filter of an event count from 0 again (CFE_EVS_ResetFilter).
+        """Set the count of an event's filter to 0 (CFE_EVS_ResetFilter).
 
         Raises:
             CfeError: CFE_EVS_APP_ILLEGAL_APP_ID, CFE_EVS_APP_NOT_REGISTERED, CFE_EVS_EVT_NOT_REGISTERED.
@@ -145,7 +147,7 @@ class EventServices(EventCore):
         slot.count = 0
 
     def reset_all_filters(self) -> None:
-        """Let all filters of the calling application count from 0 again (CFE_EVS_ResetAllFilters).
+        """Set the counts of all filters of the calling application to 0 (CFE_EVS_ResetAllFilters).
 
         Raises:
             CfeError: CFE_EVS_APP_ILLEGAL_APP_ID, CFE_EVS_APP_NOT_REGISTERED.
@@ -159,16 +161,16 @@ class EventServices(EventCore):
 
         Args:
             event_id: 0 to 65535.
-            event_type: DEBUG 1, INFORMATION 2, ERROR 3 or CRITICAL 4; any other is never sent.
-            text: what happened; only 121 bytes of it fit, the last one then is "$".
-            values: put into the text as by printf; without any, "%" stands for itself.
+            event_type: DEBUG 1, INFORMATION 2, ERROR 3 or CRITICAL 4; other types are never sent.
+            text: the text; at most 121 bytes fit, and a truncated text ends with "$".
+            values: values formatted into the text as by printf; without values, "%" is literal.
 
         Returns:
             CFE_SUCCESS or CFE_EVS_APP_SQUELCHED.
 
         Raises:
             CfeError: CFE_EVS_APP_ILLEGAL_APP_ID outside of an application, CFE_EVS_APP_NOT_REGISTERED,
-                CFE_EVS_INVALID_PARAMETER for a text or an id that is none, or values that do not fit the text.
+                CFE_EVS_INVALID_PARAMETER for an invalid text or id, or values that do not fit the text.
         """
         caller = application_of(self.kernel.current.owner)
         app = self.apps.get(caller.app_id) if caller is not None else None
@@ -182,18 +184,18 @@ class EventServices(EventCore):
         """Send an event in the name of an application (CFE_EVS_SendEventWithAppID).
 
         Args:
-            event_id: as for `send_event`.
-            event_type: as for `send_event`.
-            app_id: the application whose event it is, with its filters; which types are enabled is asked of the
-                application that calls.
-            text: as for `send_event`.
-            values: as for `send_event`.
+            event_id: see `send_event`.
+            event_type: see `send_event`.
+            app_id: the application of the event, whose filters apply; the enabled types are those of the calling
+                application.
+            text: see `send_event`.
+            values: see `send_event`.
 
         Returns:
             CFE_SUCCESS or CFE_EVS_APP_SQUELCHED.
 
         Raises:
-            CfeError: CFE_EVS_APP_ILLEGAL_APP_ID for an id of something else, CFE_EVS_APP_NOT_REGISTERED,
+            CfeError: CFE_EVS_APP_ILLEGAL_APP_ID for an id that is not an AppId, CFE_EVS_APP_NOT_REGISTERED,
                 CFE_EVS_INVALID_PARAMETER.
         """
         app = self.apps.get(app_id)
@@ -208,20 +210,20 @@ class EventServices(EventCore):
     ) -> int:
         """Send an event with another time than now (CFE_EVS_SendTimedEvent).
 
-        The time shows in the log and on the console; the bus stamps its copy anew.
+        The log and the console show this time; the bus stamps its copy again.
 
         Args:
             time: (seconds, subseconds of 2**-32 s) of spacecraft time.
-            event_id: as for `send_event`.
-            event_type: as for `send_event`.
-            text: as for `send_event`.
-            values: as for `send_event`.
+            event_id: see `send_event`.
+            event_type: see `send_event`.
+            text: see `send_event`.
+            values: see `send_event`.
 
         Returns:
             CFE_SUCCESS or CFE_EVS_APP_SQUELCHED.
 
         Raises:
-            CfeError: as `send_event`.
+            CfeError: see `send_event`.
         """
         app = self._registered_caller(report=True)
         text = _checked(event_id, text, values)
@@ -230,22 +232,22 @@ class EventServices(EventCore):
         return self.dispatch(app, event_id, event_type, text, time)
 
     def send_dbg(self, event_id: int, text: str, *values: object) -> int:
-        """Send a DEBUG event (CFE_EVS_SendDbg); otherwise as `send_event`."""
+        """Send a DEBUG event (CFE_EVS_SendDbg); see `send_event`."""
         return self.send_event(event_id, DEBUG, text, *values)
 
     def send_info(self, event_id: int, text: str, *values: object) -> int:
-        """Send an INFORMATION event (CFE_EVS_SendInfo); otherwise as `send_event`."""
+        """Send an INFORMATION event (CFE_EVS_SendInfo); see `send_event`."""
         return self.send_event(event_id, INFORMATION, text, *values)
 
     def send_err(self, event_id: int, text: str, *values: object) -> int:
-        """Send an ERROR event (CFE_EVS_SendErr); otherwise as `send_event`."""
+        """Send an ERROR event (CFE_EVS_SendErr); see `send_event`."""
         return self.send_event(event_id, ERROR, text, *values)
 
     def send_crit(self, event_id: int, text: str, *values: object) -> int:
-        """Send a CRITICAL event (CFE_EVS_SendCrit); otherwise as `send_event`."""
+        """Send a CRITICAL event (CFE_EVS_SendCrit); see `send_event`."""
         return self.send_event(event_id, CRITICAL, text, *values)
 
-    # -- who calls -------------------------------------------------------------------------------------------------
+    # -- the caller ----------------------------------------------------------------------------------------------------
 
     def _caller(self) -> Caller:
         caller = application_of(self.kernel.current.owner)
@@ -263,7 +265,9 @@ class EventServices(EventCore):
         raise CfeError(CFE_EVS_APP_NOT_REGISTERED, f"{caller.name} has to call evs.register first")
 
     def _not_registered(self, app_id: int) -> CfeError:
-        """The error for an application that did not register; the first time it is an event too (EVS_NotRegistered)."""
+        """Return the error for an application that is not registered, and report it the first time
+        (EVS_NotRegistered).
+        """
         name = self._name_of(app_id)
         if app_id not in self.unregistered:
             self.unregistered.add(app_id)
@@ -279,7 +283,7 @@ class EventServices(EventCore):
 
 
 def _checked(event_id: int, text: str, values: tuple[object, ...]) -> str:
-    """The text of an event with its values put in."""
+    """Return the text of an event with its values inserted."""
     if not isinstance(text, str):
         raise CfeError(CFE_EVS_INVALID_PARAMETER, f"the text of event {event_id!r} is {text!r}, not a text")
     if not isinstance(event_id, int) or not 0 <= event_id <= U16_MAX:

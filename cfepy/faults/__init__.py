@@ -1,7 +1,7 @@
-"""Faults: what goes wrong in a run, from a plan or from a seed, at the same instants every time.
+"""Faults: errors injected into a run, from a plan or from a seed, at the same times in every run.
 
-What belongs here says what a plan may hold, reads and checks it, and lets its faults happen: a `FaultInjector` is an
-attachment, so the mission and its parts know nothing of it. What judges a run, with faults or without, belongs to
+Code that defines the contents of a plan, reads and checks it, or injects its faults belongs here: a `FaultInjector` is
+an attachment, so the mission and its parts do not know it. Checking a run, with or without faults, belongs to
 `cfepy.monitors`. The central file is `cfepy/faults/injector.py`.
 """
 

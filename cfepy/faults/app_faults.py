@@ -1,7 +1,7 @@
 """Faults on applications: crash, hang, slow, compute, stop, restart.
 
-Applications are those of Executive Services, found by name when the fault happens. For those that hang, are slow
-or compute for longer, the calls of the kernel are wrapped; only a run whose plan asks for it has them wrapped.
+Applications are found in Executive Services by name when the fault happens. For applications that hang, are slow or
+compute longer, the calls of the kernel are wrapped, but only in runs whose plan contains such faults.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ WAITS = ("wait_on", "delay")
 COMPUTES = ("compute",)
 
 IsCalled = Callable[[bytes | bytearray, str], bool]
-"""Whether a packet is one of the messages that a plan means."""
+"""Returns whether a packet is one of the messages named in a plan."""
 
 
 class AppFault(ABC):
     """A fault on one application.
 
     Args:
-        fault: what the plan says.
+        fault: the fault in the plan.
         app_name: the application.
-        report: takes what happens.
+        report: receives a text for each occurrence.
     """
 
     def __init__(self, fault: Fault, app_name: str, report: FaultReport) -> None:
@@ -42,7 +42,7 @@ class AppFault(ABC):
         self.report = report
 
     def strike(self, processor: Processor) -> None:
-        """Do it now, from the task of the faults."""
+        """Execute it now, from the task of the faults."""
         es = processor.cfe.es
         app = next((each for each in es.apps if each.name == self.app_name), None)
         if app is None:
@@ -57,14 +57,14 @@ class AppFault(ABC):
 
     @abstractmethod
     def _do(self, processor: Processor, app: Any) -> None:
-        """Do it to an application of the processor."""
+        """Apply it to an application of the processor."""
 
     def _happened(self, text: str) -> None:
         self.report.happened(self.fault, text)
 
 
 class Crash(AppFault):
-    """An exception comes out of the call that its main task waits in, or out of its next one."""
+    """Raises an exception in the call in which the application's main task waits, or in its next one."""
 
     def _do(self, processor: Processor, app: Any) -> None:
         record = app.tasks.get(app.main_task_id)
@@ -77,12 +77,12 @@ class Crash(AppFault):
 
 
 class Hang(AppFault):
-    """None of its tasks comes back from its next call.
+    """Stops each of its tasks in its next call.
 
     Args:
-        fault: what the plan says.
+        fault: the fault in the plan.
         app_name: the application.
-        report: takes what happens.
+        report: receives a text for each occurrence.
         strain: holds its tasks.
     """
 
@@ -97,7 +97,7 @@ class Hang(AppFault):
 
 
 class Stop(AppFault):
-    """Executive Services end it, as a command would."""
+    """Executive Services end the application, as with a command."""
 
     def _do(self, processor: Processor, app: Any) -> None:
         processor.cfe.es.delete_app(app.app_id)
@@ -105,7 +105,7 @@ class Stop(AppFault):
 
 
 class Restart(AppFault):
-    """Executive Services end it and start it anew, as a command would."""
+    """Executive Services restart the application, as with a command."""
 
     def _do(self, processor: Processor, app: Any) -> None:
         processor.cfe.es.restart_app(app.app_id)
@@ -113,12 +113,12 @@ class Restart(AppFault):
 
 
 class Slow:
-    """Its calls take more CPU time. What it costs is asked by `Strain` at each call.
+    """Its calls use more CPU time; `Strain` asks for the cost at each call.
 
     Args:
-        fault: what the plan says.
+        fault: the fault in the plan.
         gate: its window.
-        report: is told at the first call of each application, once.
+        report: called once for each application, at its first call.
         kernel: for the time.
     """
 
@@ -132,7 +132,7 @@ class Slow:
         self._extra_ns = fault.options.get("extra", 0)
 
     def burden(self, app_name: str, charged_ns: int) -> int:
-        """More CPU time in ns for a call of an application that takes `charged_ns` by itself."""
+        """Return the additional CPU time in ns for a call of an application that costs `charged_ns`."""
         if app_name not in self._fault.target:
             return 0
         self._gate.seen += 1
@@ -149,28 +149,27 @@ APP_FAULTS: dict[str, type[AppFault]] = {"crash": Crash, "stop": Stop, "restart"
 
 
 class Strain:
-    """What the kernel's calls do to some applications."""
+    """Effects of faults on applications in the kernel's calls."""
 
     def __init__(self) -> None:
         self._wait_on: Callable[..., Any] = Kernel.wait_on
         self._charge: Callable[[Kernel, int], None] = Kernel.charge
-        self._hanging: dict[int, tuple[Any, int | None]] = {}  # by identity: the application, and when it goes on
+        self._hanging: dict[int, tuple[Any, int | None]] = {}  # by identity: the application, and when it continues
         self.burdens: list[Callable[[str, int], int]] = []
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """See `Attachment.kernel`."""
         self._wait_on, self._charge = base.wait_on, base.charge
         return wrapping(base, {**dict.fromkeys(CALLS, self._wrapped), "charge": self._charging})
 
     def hang(self, app: Any, until_ns: int | None) -> None:
-        """No task of an application comes back from its next call before a time; None is never."""
+        """Let no task of an application return from its next call before a time; None for never."""
         self._hanging[id(app)] = app, until_ns
 
     def _charging(self, original: Callable[..., Any]) -> Callable[..., Any]:
         return self._wrapped(original, is_charge=True)
 
     def _wrapped(self, original: Callable[..., Any], is_charge: bool = False) -> Callable[..., Any]:
-        """One of the kernel's methods, with what it costs before and whether it returns after."""
+        """Return one of the kernel's methods, with an additional cost before it and a check of hanging after it."""
 
         def call(kernel: Kernel, *args: Any) -> Any:
             task = kernel.current
@@ -200,15 +199,15 @@ class Strain:
 
 
 class Work:
-    """Applications whose work takes longer, where it begins or where it is said how long it takes.
+    """Makes applications' work take longer, at its start or where its duration is given.
 
     A task's work begins where a wait ends, but for one for a mutex: as a `response` among the deadlines of a mission
-    file does. What a task says to take is a call of `Kernel.compute`, which stands below `cfe.psp.compute`,
+    file does. Computing time given by a task is a call of `Kernel.compute`, which is below `cfe.psp.compute`,
     `cfepy.compute` and `compute:` of a node.
 
     Args:
-        fault: what the plan says: with `for` a task computes for so long more, when it took the `message`, or when a
-            wait is over; with `times` what it computes takes so many times as long.
+        fault: the fault in the plan: with `for` a task computes for that additional time after it took the `message`,
+            or after a wait; with `times` its computations take that many times as long.
     """
 
     def __init__(self, fault: Fault) -> None:
@@ -222,7 +221,6 @@ class Work:
         self._compute: Callable[[Kernel, int], None] = Kernel.compute
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """See `Attachment.kernel`."""
         self._compute = base.compute
         if "message" in self._fault.options:
             return base
@@ -230,23 +228,23 @@ class Work:
         return wrapping(base, dict.fromkeys(names, wrapped))
 
     def begin(self, fault: Fault, gate: Gate, report: FaultReport, kernel: Kernel) -> None:
-        """The mission was made.
+        """The mission was created.
 
         Args:
-            fault: what the plan says, with applications by their cFE names.
+            fault: the fault in the plan, with applications by their cFE names.
             gate: at which of its occasions it happens.
-            report: is told each time.
-            kernel: of the class that was derived.
+            report: called each time.
+            kernel: kernel of the derived class.
         """
         self._fault, self._gate, self._report, self._kernel = fault, gate, report, kernel
 
     def on_take(self, packet: bytes | bytearray, pipe: Pipe, is_called: IsCalled) -> None:
-        """An application took a message out of its pipe: what it does with it takes longer.
+        """An application took a message out of its pipe: its work on it takes longer.
 
         Args:
             packet: the message.
-            pipe: where it waited.
-            is_called: whether it is the one that the plan means.
+            pipe: its pipe.
+            is_called: returns whether it is the one named in the plan.
         """
         task = self._kernel.current
         if self._means(task) and is_called(packet, self._fault.options["message"]):
@@ -263,11 +261,11 @@ class Work:
             self._compute(self._kernel, self._more_ns)
 
     def _waiting(self, original: Callable[..., Any]) -> Callable[..., Any]:
-        """One of the kernel's waits, behind which work begins."""
+        """One of the kernel's waits, after which work starts."""
 
         def wait(kernel: Kernel, *args: Any) -> Any:
             task = kernel.current
-            is_work = task.mutex is not None  # to wait for one is a part of it
+            is_work = task.mutex is not None  # waiting for a mutex is part of the work
             result = original(kernel, *args)
             if not is_work and not task.dying and self._means(task):
                 self._works(task)
@@ -276,7 +274,7 @@ class Work:
         return wait
 
     def _stretching(self, original: Callable[[Kernel, int], None]) -> Callable[[Kernel, int], None]:
-        """The kernel's `compute`, in which work takes so many times as long."""
+        """Return the kernel's `compute`, in which work takes several times as long."""
 
         def compute(kernel: Kernel, duration_ns: int) -> None:
             if duration_ns and self._means(kernel.current) and self._gate.opens(kernel.now):

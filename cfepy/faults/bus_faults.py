@@ -1,8 +1,8 @@
-"""A Software Bus whose messages meet faults: on their way to all receivers, or where one of them takes them.
+"""A Software Bus with faults on messages, either for all receivers or for one of them.
 
-A message for all is struck when it is sent, after it got its sequence count, so that receivers notice the gap. One for
-a single application or pipe is struck when that takes it out; the others never know. The `MessageSwitchboard` knows
-which faults a message meets: found once for each kind of message, and kept.
+A fault for all receivers happens when the message is sent, after it got its sequence count, so that receivers notice
+the gap. A fault for one application or pipe happens when it takes the message out; the others are not affected. The
+`MessageSwitchboard` finds and caches the faults for each kind of message.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SMALLEST = 7
 
 
 class MessageSwitchboard:
-    """The faults on messages of a run; none before `begin`.
+    """Faults on messages of a run; none before `begin`.
 
     Attributes:
         on_take: called for each message that an application takes out of its pipe.
@@ -44,11 +44,11 @@ class MessageSwitchboard:
         self._asks_sender = False
 
     def begin(self, faults: Sequence[MessageFault], names: MissionNames) -> None:
-        """Take the faults of a run.
+        """Set the faults of a run.
 
         Args:
-            faults: those that are about messages on the bus.
-            names: what messages are called.
+            faults: faults on messages on the bus.
+            names: names of messages.
         """
         self._names = names
         self._known = None
@@ -59,12 +59,12 @@ class MessageSwitchboard:
         self._asks_sender = any(fault.sender is not None for fault in self._for_one)
 
     def on_send(self, packet: bytes | bytearray, sender: str) -> Sequence[MessageFault]:
-        """The faults that are about a message for all of its receivers."""
+        """Return the faults on a message for all of its receivers."""
         found = self._about(packet)[0]
         return [fault for fault in found if fault.sender in (None, sender)] if found else found
 
     def on_receive(self, packet: bytes, pipe: Pipe) -> Sequence[MessageFault]:
-        """The faults that are about a message for the owner of a pipe."""
+        """Return the faults on a message for the owner of a pipe."""
         found = [fault for fault in self._about(packet)[1] if fault.receiver in (pipe.app_name, pipe.name)]
         if not found or not self._asks_sender:
             return found
@@ -72,25 +72,25 @@ class MessageSwitchboard:
         return [fault for fault in found if fault.sender in (None, sender)]
 
     def sent(self, packet: bytes | bytearray, sequence: int, sender: str) -> None:
-        """Remember the sender of a message, for faults that ask for both sender and receiver."""
+        """Remember the sender of a message, for faults with both sender and receiver."""
         if self._asks_sender and self._about(packet)[1]:
             self._senders[packet[0] << 8 | packet[1], sequence % SEQUENCES] = sender
 
     def took(self, packet: bytes, pipe: Pipe) -> None:
-        """An application takes a message out of its pipe; it may never come back from that."""
+        """An application takes a message out of its pipe; the call may never return."""
         for take in self.on_take:
             take(packet, pipe)
 
     def shown(self, packet: bytes | bytearray) -> str:
-        """A message in words."""
+        """Return a description of a message."""
         return f"{self._names.of(packet)[0]} #{get_sequence_count(packet)}"
 
     def is_called(self, packet: bytes | bytearray, target: str) -> bool:
-        """Whether a target of a plan means a packet."""
+        """Return whether a target of a plan matches a packet."""
         return matches(self._names.of(packet), (number_as_name(target),))
 
     def _about(self, packet: bytes | bytearray) -> tuple[list[MessageFault], list[MessageFault]]:
-        """Faults on a message for all receivers, and for one of them."""
+        """Return faults on a message for all receivers, and for one of them."""
         version = self._names.version()
         if version != self._known:
             self._known = version
@@ -116,28 +116,28 @@ def _stamp(packet: bytes) -> tuple[int, int]:
 
 
 class Passed(bytes):
-    """A message in a pipe that has met its faults already."""
+    """A message in a pipe that already had its faults."""
 
     __slots__ = ()
 
 
 def faulty(base: type[SoftwareBus], switchboard: MessageSwitchboard) -> type[SoftwareBus]:
-    """A class of Software Bus with faults.
+    """Return a class of Software Bus with faults.
 
     Args:
         base: the class to start from.
-        switchboard: says which faults a message meets.
+        switchboard: gives the faults of a message.
     """
 
     class FaultyBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
-        """A Software Bus on which messages are struck."""
+        """A Software Bus with faults on messages."""
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
             size = len(packet)
             if not SMALLEST <= size <= self.config.sb_max_msg_size or not (
                 is_origination or msg.get_size(packet) == size
             ):
-                super().transmit_msg(packet, is_origination)  # which has something to say about it
+                super().transmit_msg(packet, is_origination)  # it reports the error
                 return
             owner = self.kernel.current.owner
             sender: str = HOST if owner is None else owner.name
@@ -168,12 +168,12 @@ def faulty(base: type[SoftwareBus], switchboard: MessageSwitchboard) -> type[Sof
                 except CfeError:
                     if data == packet:
                         raise
-                    # Else it was changed on its way, so its sender does not learn that the bus refuses it.
+                    # Otherwise it was changed, so its sender does not learn that the bus refuses it.
 
             pass_through(faults, packet, packet[2] & 0xC0, sender, where, send)
 
         def _send(self, packet: bytes, owner: Any, forward: Callable[[bytes, bool], None]) -> None:
-            """Send what has been counted already, in the name of its sender."""
+            """Send a message that was already counted, in the name of its sender."""
             task = self.kernel.current
             before, task.owner = task.owner, owner
             route = self.routes.get(packet[0] << 8 | packet[1])
@@ -204,7 +204,7 @@ def faulty(base: type[SoftwareBus], switchboard: MessageSwitchboard) -> type[Sof
                     timeout_ms = max(0, -((self.kernel.now - end_ns) // NS_PER_MS))
 
         def _taken(self, packet: bytes, pipe: Pipe) -> bytes | None:
-            """What the receiver gets of a message that was taken out of its pipe; None when nothing of it now."""
+            """Return the bytes for the receiver of a message; None if there are none now."""
             if type(packet) is Passed:
                 return bytes(packet)
             faults = switchboard.on_receive(packet, pipe)
@@ -238,7 +238,7 @@ def faulty(base: type[SoftwareBus], switchboard: MessageSwitchboard) -> type[Sof
             return next((each for each in (*route.destinations, *route.gone) if each.pipe is pipe), None)
 
         def _put_back(self, pipe: Pipe, destination: Destination | None, data: bytes) -> None:
-            """A message that was kept goes into the pipe; it had its place there."""
+            """Put a delayed message into the pipe, in which it had its place."""
             if pipe.is_closed():
                 return
             if pipe.waits:
@@ -258,7 +258,7 @@ def faulty(base: type[SoftwareBus], switchboard: MessageSwitchboard) -> type[Sof
 
 
 def _originated(packet: bytes | bytearray, sequence: int, stamp: int) -> bytes:
-    """A packet with what the bus fills in."""
+    """Return a packet with the fields that the bus fills in."""
     copy = bytearray(packet)
     msg.set_size(copy, len(copy))
     msg.set_sequence_count(copy, sequence & msg.MAX_SEQUENCE_COUNT)
@@ -267,7 +267,7 @@ def _originated(packet: bytes | bytearray, sequence: int, stamp: int) -> bytes:
 
 
 def _count(destination: Destination | None, puts: int = 0, gets: int = 0) -> None:
-    """Correct the books of a destination, if there still is one."""
+    """Correct the counts of a destination, if it still exists."""
     if destination is not None:
         destination.puts += puts
         destination.gets += gets

@@ -1,4 +1,4 @@
-"""The calls of cFE, OSAL and PSP that a fault plan can let fail: their names, and what each usually fails with."""
+"""The calls of cFE, OSAL and PSP that a fault plan can make fail, with their names and usual errors."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ USUAL = {
     "tbl.register": codes.CFE_TBL_ERR_REGISTRY_FULL,
     "os.queue_put": codes.OS_QUEUE_FULL,
 }
-"""What a call fails with when the plan does not say."""
+"""Default error of each call."""
 QUEUE_PUT, QUEUE_GET = "os.queue_put", "os.queue_get"
 
 
 def call_name(target: str) -> str:
-    """A call as applications write it, "os.queue_put", from that or from NASA's name, OS_QueuePut.
+    """Return the name of a call in applications, "os.queue_put", from that name or NASA's, OS_QueuePut.
 
     Raises:
-        UsageError: no service has such a name.
+        UsageError: if no service has such a name.
     """
     found = _call_name(target)
     service, _, method = found.partition(".")
@@ -77,14 +77,14 @@ def _call_name(target: str) -> str:
 
 
 def status_of(call: str, name: str | None) -> int:
-    """The status that a call fails with.
+    """Return the status with which a call fails.
 
     Args:
         call: see `call_name`.
-        name: NASA's name of it; None takes the usual one.
+        name: NASA's name of the status; None for the usual one.
 
     Raises:
-        UsageError: no status has that name.
+        UsageError: if no status has that name.
     """
     if name is None:
         usual = codes.OS_ERR_NO_FREE_IDS if call.endswith("_create") else codes.OS_ERROR

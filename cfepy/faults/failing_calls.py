@@ -1,9 +1,9 @@
-"""What fails though nothing is wrong: calls of cFE, OSAL or PSP, the bus's puts into pipes, and pipes that are full.
+"""Simulated failures: calls of cFE, OSAL or PSP, the bus's puts into pipes, and full pipes.
 
 The method of one processor's service is wrapped, under the name that applications call it by. The Software Bus puts
-messages into pipes as NASA's does by OS_QueuePut: whether such a put fails is decided in the very instant in which the
-bus makes it, where it asks a destination for its message limit. So the bus itself need not know of faults, and other
-tasks, which may run while a message goes to its receivers, are not concerned.
+messages into pipes as NASA's does by OS_QueuePut: whether such a put fails is decided exactly when the bus does it,
+where it asks a destination for its message limit. So the bus does not need to know faults, and other tasks that run
+while a message is delivered are not affected.
 """
 
 from __future__ import annotations
@@ -26,24 +26,24 @@ from cfepy.status import OS_QUEUE_FULL, CfeError, OsalError
 
 
 def why_not_called(fault: Fault) -> str:
-    """Why a fault of a function that was never called did not happen."""
+    """Return why a fault of a function that was never called did not happen."""
     call = call_name(fault.target[0])
     hint = "; pipes are not read by it here: let CFE_SB_ReceiveBuffer fail" if call == QUEUE_GET else ""
     return f"nobody that it is about called {call}{hint}"
 
 
 def caller_of(task: Task) -> str:
-    """The application that a task belongs to, in words."""
+    """Return the description of a task's application."""
     return "the system" if task.owner is None else str(task.owner.name)
 
 
 class CallFault:
-    """Lets calls of one function fail.
+    """Makes calls of one function fail.
 
     Args:
-        fault: what the plan says.
-        gate: which calls.
-        report: takes what happens.
+        fault: the fault in the plan.
+        gate: selects the calls.
+        report: receives a text for each occurrence.
         kernel: gives the caller and the time.
     """
 
@@ -59,13 +59,13 @@ class CallFault:
         self._processor: Processor | None = None
 
     def power_up(self, processor: Processor) -> None:
-        """Stand before the function of a new processor; before one of the Software Bus its class stands (`failing`)."""
+        """Wrap the function of a new processor; for one of the Software Bus its class does so (`failing`)."""
         self._processor = processor
         service_name, _, method = self._call.partition(".")
         service = getattr(processor.cfe, service_name)
         if service is not processor.cfe.sb:
             call = self._wrapped(getattr(service, method))
-            setattr(service, method, MethodType(call, service))  # others get in before methods, as before all others
+            setattr(service, method, MethodType(call, service))  # other attachments wrap methods too
 
     def _wrapped(self, original: Callable[..., Any]) -> Callable[..., Any]:
         def call(_: object, *args: Any, **named: Any) -> Any:
@@ -78,7 +78,7 @@ class CallFault:
         """The function is called with these arguments.
 
         Raises:
-            CfeError: it fails.
+            CfeError: if it fails.
         """
         caller = caller_of(self._kernel.current)
         if self._is_meant(caller, args) and self._gate.opens(self._kernel.now):
@@ -87,11 +87,11 @@ class CallFault:
             raise error
 
     def put_status(self, caller: str, pipe: str) -> int | None:
-        """What the Software Bus's put into a pipe fails with, as one of these calls; None when it does not.
+        """Return the error of the Software Bus's put into a pipe, as one of these calls; None if it does not fail.
 
         Args:
-            caller: the sender of the message.
-            pipe: its name.
+            caller: sender of the message.
+            pipe: name of the pipe.
         """
         if self._app not in (None, caller) or self._object not in (None, pipe):
             return None
@@ -112,7 +112,7 @@ class CallFault:
 
 
 def _names(args: tuple[Any, ...], processor: Processor) -> list[str]:
-    """What the arguments of a call name: texts, and the objects whose ids they are."""
+    """Return the names in the arguments of a call: texts, and names of objects given by id."""
     found = []
     for each in args:
         if isinstance(each, str):
@@ -123,7 +123,7 @@ def _names(args: tuple[Any, ...], processor: Processor) -> list[str]:
 
 
 def _name_of(number: int, processor: Processor) -> list[str]:
-    """Names of the object that an id is: of a pipe, of an OSAL object, the path of an open file."""
+    """Return the names of the object with an id: a pipe, an OSAL object, or the path of an open file."""
     pipe = processor.cfe.sb.find_pipe(number)
     if pipe is not None:
         return [pipe.name]
@@ -136,12 +136,12 @@ def _name_of(number: int, processor: Processor) -> list[str]:
 
 
 def failing(base: type[SoftwareBus], method: str, strike: Callable[[tuple[Any, ...]], None]) -> type[SoftwareBus]:
-    """A class of Software Bus with a function that fails.
+    """Return a class of Software Bus with a function that fails.
 
     Args:
         base: the class to start from.
         method: the function.
-        strike: gets the arguments of each call, before it, and may raise what it fails with.
+        strike: receives the arguments before each call, and may raise the error.
     """
     original: Callable[..., Any] = getattr(base, method)
 
@@ -153,11 +153,11 @@ def failing(base: type[SoftwareBus], method: str, strike: Callable[[tuple[Any, .
 
 
 class Puts:
-    """The puts into pipes of a run, and which of them fail; none before `begin`."""
+    """Puts into pipes of a run, and which of them fail; none before `begin`."""
 
     def __init__(self) -> None:
         self._faults: Sequence[CallFault] = ()
-        self._refused: dict[Task, dict[Pipe, int]] = {}  # of the transmission that a task is in, with the status
+        self._refused: dict[Task, dict[Pipe, int]] = {}  # for the transmission of a task, with the status
 
     def begin(self, faults: Sequence[CallFault]) -> None:
         """Take the faults of a run."""
@@ -166,7 +166,7 @@ class Puts:
 
     @contextmanager
     def transmitting(self, task: Task) -> Iterator[None]:
-        """Around a transmission; within one of them a task may begin another, of an event about it."""
+        """Context of a transmission; a task may start another inside it, for an event about it."""
         before = self._refused.get(task)
         self._refused[task] = {}
         try:
@@ -177,7 +177,7 @@ class Puts:
                 self._refused[task] = before
 
     def refuses(self, task: Task, pipe: Pipe) -> bool:
-        """Whether a task puts a message into a pipe now, and that fails."""
+        """Return whether a task is putting a message into a pipe and the put fails."""
         refused = self._refused.get(task)
         if refused is None:
             return False
@@ -188,12 +188,12 @@ class Puts:
         return bool(failed)
 
     def status(self, task: Task, pipe: Pipe) -> int | None:
-        """What the put into a pipe failed with; None when no fault let it fail."""
+        """Return the error of the put into a pipe; None if no fault made it fail."""
         return self._refused.get(task, {}).get(pipe)
 
 
 class _Refusing(PutHook):
-    """Lets the message limit be as if it were reached where a put fails."""
+    """Acts as if the message limit were reached where a put fails."""
 
     def __init__(self, kernel: Kernel, puts: Puts, inner: PutHook | None) -> None:
         super().__init__(inner)
@@ -208,11 +208,11 @@ class _Refusing(PutHook):
 
 
 def refusing(base: type[SoftwareBus], puts: Puts) -> type[SoftwareBus]:
-    """A class of Software Bus with puts that fail.
+    """Return a class of Software Bus with puts that fail.
 
     Args:
         base: the class to start from.
-        puts: says which.
+        puts: which puts fail.
     """
 
     class RefusingBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
@@ -232,7 +232,7 @@ def refusing(base: type[SoftwareBus], puts: Puts) -> type[SoftwareBus]:
             super()._report_failures(msg_id, [self._as_it_is(*failure) for failure in failures])
 
         def _as_it_is(self, event_id: int, destination: Destination) -> tuple[int, Destination]:
-            """A failure as it is to be told: a put that failed is no message limit."""
+            """Return a failure as reported: a failed put is not a message limit."""
             status = puts.status(self.kernel.current, destination.pipe)
             if status is None:
                 return event_id, destination
@@ -254,9 +254,9 @@ class Fill:
     """Fills one pipe.
 
     Args:
-        fault: what the plan says; its target is the pipe's name.
+        fault: the fault in the plan; its target is the pipe's name.
         agenda: ends it.
-        report: takes what happens.
+        report: receives a text for each occurrence.
     """
 
     def __init__(self, fault: Fault, agenda: Agenda, report: FaultReport) -> None:
@@ -265,7 +265,7 @@ class Fill:
         self._report = report
 
     def strike(self, processor: Processor) -> None:
-        """Do it now."""
+        """Fill the pipe now."""
         name, now = self._fault.target[0], processor.machine.kernel.now
         pipe = next((each for each in processor.cfe.sb.pipes if each.name == name), None)
         if pipe is None or pipe.is_filled:
@@ -282,7 +282,7 @@ class Fill:
 
 
 def _empty(processor: Processor, pipe: Pipe, depth: int, keeps_newest: bool) -> None:
-    """The pipe takes messages again, unless it was deleted meanwhile."""
+    """Make the pipe take messages again, unless it was deleted meanwhile."""
     pipe.heed(NOBODY_HEARD)
     if processor.cfe.sb.find_pipe(pipe.pipe_id) is pipe:
         pipe.depth, pipe.keeps_newest = depth, keeps_newest

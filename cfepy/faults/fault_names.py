@@ -1,7 +1,7 @@
-"""The names by which a fault plan calls the messages and applications of a mission, and the fields of its messages.
+"""The names of messages, fields and applications of a mission in a fault plan.
 
-ROS topics go by their names, commands and telemetry by those of the dictionary, all of them by MsgId; an application
-with a node in it goes by its cFE name or by the node's name.
+ROS topics have their own names, commands and telemetry have the names of the dictionary, and all can be given by MsgId.
+An application with a node can be given by its cFE name or by the node's name.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ _STEP = re.compile(r"[^.\[\]]+")
 
 
 def matches(names: Sequence[str], targets: Sequence[str]) -> bool:
-    """Whether one of the names is one of the targets, which may be patterns such as "/arm/*"."""
+    """Return whether one of the names matches one of the targets, which may be patterns such as "/arm/*"."""
     return any(fnmatchcase(name, target) for target in targets for name in names)
 
 
 def number_as_name(target: str) -> str:
-    """A target as packets are called: "0x801" and "2049" are "0x0801"."""
+    """Return a target in the form of packet names: "0x801" and "2049" become "0x0801"."""
     try:
         return f"0x{int(target, 0):04X}"
     except ValueError:
@@ -37,13 +37,13 @@ def number_as_name(target: str) -> str:
 
 
 def apps_of_nodes(spec: MissionSpec) -> dict[str, str]:
-    """cFE names of applications by the names of the nodes in them, as far as the mission file gives these."""
+    """Return cFE names of applications by the names of their nodes, as far as the mission file gives these."""
     named = ((node.app, node.namespace, node.name) for node in spec.ros.nodes.values() if node.name is not None)
     return {f"{namespace.rstrip('/')}/{name}": app for app, namespace, name in named}
 
 
 class MissionNames:
-    """What one mission calls its messages; what it executes to find out is what `cfepy cmd` executes, too."""
+    """Names of one mission's messages; applications are executed for them as by `cfepy cmd`."""
 
     def __init__(self) -> None:
         self._mission: Mission | None = None
@@ -51,25 +51,25 @@ class MissionNames:
         self._constants: dict[int, str] = {}
 
     def begin(self, mission: Mission) -> None:
-        """The mission was made, and nothing of it has run."""
+        """The mission was created, and nothing of it has run."""
         self._mission = mission
         self._dictionary = dictionary_of(mission.spec)
         self._constants = names_of(mission.spec)
 
     def version(self) -> object:
-        """Something that changes when names come up that were not known before."""
+        """Value that changes when new names become known."""
         ros = None if self._mission is None else self._mission.ros
         return None if ros is None else (id(ros), len(ros.graph.topics))
 
     def of(self, packet: bytes | bytearray) -> Sequence[str]:
-        """All names of a packet, the one to show first; its MsgId as "0x0801" is one."""
+        """Return all names of a packet, the preferred one first; its MsgId as "0x0801" is one."""
         msg_id = packet[0] << 8 | packet[1]
         topic, entry = self._topic(msg_id), self._entry(packet)
         names = [each.name for each in (topic, entry) if each is not None]
         return (*names, *filter(None, [self._constants.get(msg_id)]), f"0x{msg_id:04X}")
 
     def known(self) -> list[str]:
-        """All names that there are at this time, sent or not."""
+        """Return all names that exist at this time, sent or not."""
         topics = topics_of(self._mission) if self._mission is not None else []
         numbers = [f"0x{msg_id:04X}" for msg_id in self._constants]
         declared = (*self._dictionary.telemetry, *self._dictionary.commands, *self._constants.values())
@@ -81,7 +81,7 @@ class MissionNames:
         return next((topic for topic in topics if topic.msg_id == msg_id), None)
 
     def _entry(self, packet: bytes | bytearray) -> Command | Telemetry | Topic | None:
-        """The declaration of a packet that an application has."""
+        """Return the declaration of a packet that an application has."""
         msg_id = packet[0] << 8 | packet[1]
         if not msg_id & 0x1000:
             return next((each for each in self._dictionary.telemetry.values() if each.msg_id == msg_id), None)
@@ -90,14 +90,16 @@ class MissionNames:
         return next((each for each in commands if (each.code or 0) == code), None)
 
     def app(self, name: str) -> str:
-        """The cFE name of a node's application, by the node's name, such as "/arm_control"; any other name as it is."""
+        """Return the cFE name of a node's application, from the node's name, such as "/arm_control"; other names
+        unchanged.
+        """
         return name if self._mission is None else apps_of_nodes(self._mission.spec).get(name, name)
 
     def edit(self, packet: bytes, values: Mapping[str, Any]) -> bytes:
-        """A packet with some fields set.
+        """Return a packet with some fields set.
 
         Raises:
-            UsageError: it has no such fields, or they cannot have such values.
+            UsageError: if it has no such fields, or the values do not fit.
         """
         topic = self._topic(packet[0] << 8 | packet[1])
         if topic is not None and not topic.raw:
@@ -126,7 +128,7 @@ class MissionNames:
             payload = message._pack()
         except UsageError:
             raise
-        except Exception as error:  # whatever the generated code raises for values that do not fit
+        except Exception as error:  # any exception of the generated code for values that do not fit
             raise UsageError(f"{name}: {error}") from None
         changed = bytearray(packet[: msg.TLM_HEADER_SIZE] + payload)
         msg.set_size(changed, len(changed))
@@ -137,7 +139,7 @@ def _set(whole: Any, path: str, value: Any, owner: str) -> None:
     """Set a field by its path, such as "pose.position.x" or "ranges[3]".
 
     Raises:
-        UsageError: there is no such field.
+        UsageError: if there is no such field.
     """
     try:
         _changed(whole, _STEP.findall(path), value)
@@ -146,7 +148,7 @@ def _set(whole: Any, path: str, value: Any, owner: str) -> None:
 
 
 def _changed(whole: Any, steps: Sequence[str], value: Any) -> Any:
-    """A value in which the part that the steps lead to is another; what cannot be changed in place is made anew."""
+    """Return a value with the part at the path replaced; immutable parts are created again."""
     if not steps:
         return value
     step = steps[0]

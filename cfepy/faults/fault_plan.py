@@ -1,10 +1,10 @@
-"""`FaultPlan`: the faults of a run, as a plain value: from a file, from a dictionary, or made by a program.
+"""`FaultPlan`: the faults of a run as a plain value, from a file, a dictionary, or a program.
 
     plan = read_plan("faults.yaml")
     plan = FaultPlan.from_dict({"faults": [{"drop": "/odom", "probability": 0.1}]})
 
-A plan is read with errors that say where, and written again; each option has one reader and one writer, whatever kind
-of fault has it. docs/faults.md describes the kinds of faults and the form of the file.
+Errors in a plan are reported with their place. A plan can be written again. Each option has one reader and one writer
+for all kinds of faults. See docs/faults.md for the kinds of faults and the form of the file.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ ALWAYS = When()
 LONGEST_S = 1e9
 DATAGRAMS = "udp:"
 WHEN = {"at": "at_ns", "after": "after_ns", "until": "until_ns"}
-"""The options of `When` whose names in a plan are others; those are in s, these in ns."""
+"""Options of `When` with other names in a plan, where they are in s; these are in ns."""
 ALTERNATIVES = (
     ("bits", "bytes", "fields"),
     ("for", "times"),
@@ -46,11 +46,11 @@ class Fault:
 
     Attributes:
         kind: a key of `cfepy.faults.kinds.KINDS`.
-        target: what it strikes, as the plan writes it; several messages or applications are several targets.
-        name: what reports call it, unique in its plan; its random numbers follow from it and the run's seed.
-        when: at which occasions.
-        options: the rest, by the names of the plan; times in ns.
-        line: in the file, 0 when there is none.
+        target: its target, as written in the plan; several messages or applications are several targets.
+        name: its name in reports, unique in its plan; its random numbers are derived from it and the run's seed.
+        when: at which occasions it happens.
+        options: the other options, by their names in the plan; times in ns.
+        line: line in the file, 0 if there is none.
     """
 
     kind: str
@@ -62,17 +62,17 @@ class Fault:
 
     @property
     def text(self) -> str:
-        """What it does, in the words of the plan: "drop /odom"."""
+        """Description in the words of the plan: "drop /odom"."""
         return f"{self.kind} {', '.join(self.target)}"
 
 
 @dataclass(frozen=True, slots=True)
 class FaultPlan:
-    """Faults, in the order in which they look at a message.
+    """Faults, in the order in which they apply to a message.
 
     Attributes:
         faults: the faults; each has a name.
-        file: where they came from, for errors; empty when from nowhere.
+        file: their file, for errors; empty if there is none.
     """
 
     faults: tuple[Fault, ...] = ()
@@ -80,19 +80,19 @@ class FaultPlan:
 
     @classmethod
     def from_dict(cls, plain: Mapping[str, Any]) -> FaultPlan:
-        """The plan of a dictionary of the form of the file.
+        """Return the plan of a dictionary in the form of the file.
 
         Raises:
-            UsageError: it is no such plan.
+            UsageError: if it is not such a plan.
         """
         return read_marked(_marked(plain, ""))
 
     def to_dict(self) -> dict[str, Any]:
-        """Itself as plain values, which `from_dict` takes."""
+        """Return it as plain values, which `from_dict` takes."""
         return {"faults": [plain_fault(fault) for fault in self.faults]}
 
     def to_yaml(self) -> str:
-        """The text of a file with this plan."""
+        """Return the text of a file with this plan."""
         import yaml
 
         return str(yaml.safe_dump(self.to_dict(), sort_keys=False, default_flow_style=None, width=100))
@@ -102,13 +102,13 @@ def read_plan(path: str | Path) -> FaultPlan:
     """Read a plan from a file.
 
     Raises:
-        UsageError: it cannot be read, or something in it is wrong: with file, line and field.
+        UsageError: if it cannot be read, or has a mistake, with file, line and field.
     """
     return read_marked(load(Path(path), handed=True))
 
 
 def _marked(value: Any, place: str) -> Marked:
-    """A plain value as if it had been read from a file."""
+    """Return a plain value as if it had been read from a file."""
     inner = value
     if isinstance(value, Mapping):
         inner = {str(key): _marked(item, f"{place}.{key}".lstrip(".")) for key, item in value.items()}
@@ -118,10 +118,10 @@ def _marked(value: Any, place: str) -> Marked:
 
 
 def read_marked(root: Marked) -> FaultPlan:
-    """The plan in a tree of YAML: `faults:` with a list, or the list by itself.
+    """Return the plan in a tree of YAML: `faults:` with a list, or the list by itself.
 
     Raises:
-        UsageError: something in it is wrong.
+        UsageError: if there is a mistake in it.
     """
     section = root
     if not isinstance(root.value, list):
@@ -229,7 +229,7 @@ def _one_target(strikes: str, item: Marked) -> str:
 
 
 def _checked(item: Marked, check: Callable[[str], object]) -> str:
-    """A text that a function takes, whose error is told with the place."""
+    """Return a text converted by a function, whose error is reported with the place."""
     try:
         check(item.text())
     except UsageError as error:
@@ -268,7 +268,7 @@ def _numbers(item: Marked) -> tuple[int, ...]:
 
 
 def _range(item: Marked) -> tuple[int, int]:
-    """A time, or the least and the most of one."""
+    """Return a time, or a range of times."""
     if not isinstance(item.value, list):
         return _duration(item), _duration(item)
     if len(item.value) != 2 or _duration(item.value[0]) > _duration(item.value[1]):
@@ -281,7 +281,7 @@ def _probability(item: Marked) -> float:
 
 
 def _bytes(item: Marked) -> dict[int, int]:
-    """Positions and values, such as {16: 0xFF}; keys of YAML mappings are texts here."""
+    """Return positions and values, such as {16: 0xFF}; keys of YAML mappings are texts here."""
     if not isinstance(item.value, dict) or not item.value:
         raise item.fail('is no mapping of positions to bytes, such as {"16": 0xFF}')
     found = {}
@@ -346,7 +346,7 @@ READERS: dict[str, Callable[[Marked], Any]] = {
 
 
 def plain_fault(fault: Fault) -> dict[str, Any]:
-    """A fault as the plan writes it; what is the default is left out."""
+    """Return a fault as in a plan, without default values."""
     target: Any = fault.target[0] if len(fault.target) == 1 else list(fault.target)
     if KINDS[fault.kind].strikes in (kinds.SECONDS, kinds.PPM):
         target = _plain_number(float(fault.target[0]))

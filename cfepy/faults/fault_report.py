@@ -1,4 +1,4 @@
-"""The report on each fault of a plan: how often it happened and when, or why it never did."""
+"""The report on each fault of a plan: how often and when it happened, or why it never did."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 
 from cfepy.faults.fault_plan import Fault
 
-MOST_LINES = 5  # on the console, of one fault
-MOST_INSTANTS = 1000  # that are kept, of one fault
+MOST_LINES = 5  # maximum number of lines on the console for one fault
+MOST_INSTANTS = 1000  # maximum number of recorded times of one fault
 
 
 @dataclass(slots=True)
@@ -17,11 +17,11 @@ class FaultRecord:
     """One fault.
 
     Attributes:
-        fault: what the plan says.
+        fault: the fault in the plan.
         times: how often it happened.
-        last_ns: when it did the last time.
-        at_ns: when in virtual ns, of the first 1000 times.
-        texts: what happened, likewise.
+        last_ns: time of its last occurrence.
+        at_ns: virtual times in ns of its first 1000 occurrences.
+        texts: their descriptions.
         why_not: why it has not happened so far.
     """
 
@@ -34,13 +34,13 @@ class FaultRecord:
 
 
 class FaultReport:
-    """The faults of a run, through all resets of the processor.
+    """Faults of a run, across all resets of the processor.
 
     Args:
-        faults: of the plan.
+        faults: faults of the plan.
         now: the virtual time in ns.
-        console: takes a line for each of the first times that a fault happens.
-        note: takes a text for the trace, for all later ones.
+        console: receives a line for each of the first occurrences of a fault.
+        note: receives a text for the trace, for all later ones.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class FaultReport:
         self._note = note
 
     def happened(self, fault: Fault, text: str) -> None:
-        """A fault happens now; `text` says what is done to whom."""
+        """Record a fault that happens now; `text` describes it."""
         record = self.records[fault.name]
         record.times += 1
         record.last_ns = self._now()
@@ -71,14 +71,14 @@ class FaultReport:
             self._note(line)
 
     def missed(self, fault: Fault, why: str) -> None:
-        """A fault could not happen now."""
+        """Record why a fault could not happen now."""
         record = self.records[fault.name]
         if why != record.why_not:
             self._console(f"cfepy fault {fault.name}: did not happen: {why}")
         record.why_not = why
 
     def rows(self) -> list[dict[str, Any]]:
-        """A row for each fault, in the plan's order, as the results of a run have it; times in s."""
+        """Return a row for each fault, in the plan's order, as in the results of a run; times in s."""
         return [_row(record) for record in self.records.values()]
 
 

@@ -1,7 +1,7 @@
-"""`FaultInjector`: a plan at work on a mission. An attachment: the mission and its parts know nothing of it.
+"""`FaultInjector`: injects the faults of a plan into a mission, as an attachment unknown to the mission.
 
-A run without a plan has no injector and pays nothing. With one, only what its faults strike is wrapped: the bus for
-messages, the kernel's calls for applications that hang, one function for calls that fail.
+A run without a plan has no injector and no cost. With a plan, only the parts that its faults need are wrapped: the bus
+for messages, the kernel's calls for applications that hang, one function for calls that fail.
 """
 
 from __future__ import annotations
@@ -32,16 +32,13 @@ Strike = Callable[[Processor], object]
 
 
 class FaultInjector(Attachment):
-    """Lets the faults of a plan happen.
-
-    Give it to `Mission(attachments=[...])`, as the last one: scripts and bags before it then see what faults left of a
-    message for all.
+    """Injects the faults of a plan.
 
     Args:
         plan: the faults.
 
     Attributes:
-        report: the report on the faults; there is one when the mission has begun.
+        report: the report on the faults, once the mission has started.
     """
 
     def __init__(self, plan: FaultPlan) -> None:
@@ -56,7 +53,7 @@ class FaultInjector(Attachment):
         self._works: dict[str, Work] = {}
         self._failing: dict[str, CallFault] = {}
         self._gates: dict[str, Gate] = {}
-        self._faults: list[Fault] = []  # of the plan, with applications by their cFE names
+        self._faults: list[Fault] = []  # faults of the plan, with applications by their cFE names
         self._processor: Processor
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
@@ -71,11 +68,11 @@ class FaultInjector(Attachment):
         return base
 
     def _strike_call(self, name: str, args: tuple[Any, ...]) -> None:
-        """A function of the Software Bus is called that a fault may let fail."""
+        """Return a bus with functions that a fault may make fail."""
         self._failing[name].strike(args)
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """What comes later in the plan is wrapped around what comes earlier."""
+        """Later faults of the plan are wrapped around earlier ones."""
         self._strain, self._calls, self._works = Strain(), OpenCalls(), {}
         hooks: dict[Strain | OpenCalls | Work, None] = {}
         for fault in self.plan.faults:
@@ -128,13 +125,13 @@ class FaultInjector(Attachment):
         return classes[fault.kind](fault, self._gates[fault.name], setting)
 
     def _call(self, fault: Fault) -> CallFault:
-        """A call that fails, on each processor."""
+        """Make a call fail on each processor."""
         call = CallFault(fault, self._gates[fault.name], self.report, self._kernel)
         self._power_ups.append(call.power_up)
         return call
 
     def _prepare(self, fault: Fault) -> None:
-        """Have a fault that is none of a message happen at its times."""
+        """Schedule a fault that is not on messages."""
         gate, report, kernel = self._gates[fault.name], self.report, self._kernel
         if fault.kind == "lose_1hz":
             self._power_ups.append(LostSignal(fault, gate, report, kernel).power_up)
@@ -154,13 +151,13 @@ class FaultInjector(Attachment):
             self._at_times(fault, self._once(fault))
 
     def _once(self, fault: Fault) -> Strike:
-        """What happens at each of a fault's times."""
+        """Return the action for each of a fault's times."""
         if fault.kind == "fill":
             return Fill(fault, self._agenda, self.report).strike
         return (Jump if fault.kind == "jump_clock" else ProcessorFault)(fault, self.report).strike
 
     def _prepare_app(self, fault: Fault) -> None:
-        """At its times, or when the application has taken certain messages out of its pipes."""
+        """Schedule it at its times, or when the application has taken certain messages out of its pipes."""
         for name in fault.target:
             strike = self._app_fault(fault, name).strike
             if _is_at_calls(fault):
@@ -171,7 +168,7 @@ class FaultInjector(Attachment):
                 self._board.on_take.append(partial(self._on_take, fault, name, strike))
 
     def _prepare_work(self, fault: Fault) -> None:
-        """Where a wait ends, or a message is taken, or a task says how long it computes."""
+        """Schedule it where a wait ends, a message is taken, or a task gives its computing time."""
         work = self._works[fault.name]
         work.begin(fault, self._gates[fault.name], self.report, self._kernel)
         if "message" in fault.options:
@@ -183,7 +180,7 @@ class FaultInjector(Attachment):
         return APP_FAULTS[fault.kind](fault, name, self.report)
 
     def _on_take(self, fault: Fault, app_name: str, strike: Strike, packet: bytes, pipe: Pipe) -> None:
-        """An application takes a message: have the fault happen at this instant, if that is what it waits for."""
+        """An application takes a message: execute the fault now, if it waits for this message."""
         if pipe.app_name != app_name:
             return
         wanted = fault.options.get("message")
@@ -193,11 +190,11 @@ class FaultInjector(Attachment):
             self._strike_now(fault, strike)
 
     def _at_calls(self, fault: Fault, app_name: str | None, strike: Strike) -> None:
-        """Before whichever call of an application, or of any, the schedule chooses."""
+        """Schedule it before the call, of one application or any, that the schedule chooses."""
         self._calls.add(app_name, self._gates[fault.name], partial(self._strike_now, fault, strike))
 
     def _strike_now(self, fault: Fault, strike: Strike) -> None:
-        """Let a fault happen in this instant. In an application that crashes the calling task comes no further."""
+        """Execute a fault now. In an application that crashes the calling task ends here."""
         record = self.report.records[fault.name]
         before = record.times
         self._agenda.add(self._kernel.now, lambda: strike(self._processor))
@@ -205,7 +202,7 @@ class FaultInjector(Attachment):
             self._kernel.wait_on(WaitList("the end of its application, which has crashed"))
 
     def _at_times(self, fault: Fault, strike: Strike) -> None:
-        """At its instants; what has none happens before the boot, and so does a change of memory at 0."""
+        """Schedule it at its times; without times it happens before the boot, as does a change of memory at 0."""
         for when_ns in fault.when.at_ns or (0,):
             if when_ns == 0 and fault.kind in MEMORY_FAULTS:
                 self._first.append(strike)
@@ -218,7 +215,7 @@ class FaultInjector(Attachment):
     # -- the report ----------------------------------------------------------------------------------------------------
 
     def rows(self) -> list[dict[str, Any]]:
-        """What became of each fault; see `FaultReport.rows`."""
+        """Return the result of each fault; see `FaultReport.rows`."""
         for name, gate in self._gates.items():
             record = self.report.records[name]
             if not record.times and not gate.fired and not _is_timed(record.fault):
@@ -228,14 +225,14 @@ class FaultInjector(Attachment):
 
 
 def _without_occasion(fault: Fault, gate: Gate) -> str:
-    """Why a fault that waits for occasions had none."""
+    """Return why a fault that waits for occasions had none."""
     if _is_message(fault):
         return "no such message was sent to anybody"
     return why_not_called(fault) if fault.kind == "fail" else gate.why_not()
 
 
 def _by_app(fault: Fault, names: MissionNames) -> Fault:
-    """A fault that calls applications by their cFE names, where its plan has names of nodes."""
+    """Return a fault with cFE names of applications instead of names of nodes."""
     options = {key: names.app(value) if key in APP_OPTIONS else value for key, value in fault.options.items()}
     is_app = KINDS[fault.kind].strikes == APP
     return replace(fault, target=tuple(map(names.app, fault.target)) if is_app else fault.target, options=options)
@@ -250,18 +247,18 @@ def _is_message(fault: Fault) -> bool:
 
 
 def _is_put(fault: Fault) -> bool:
-    """Whether it also lets the Software Bus's puts into pipes fail."""
+    """Return whether it also makes the Software Bus's puts into pipes fail."""
     return fault.kind == "fail" and call_name(fault.target[0]) == QUEUE_PUT
 
 
 def _is_at_calls(fault: Fault) -> bool:
-    """Whether the schedule may choose any call for it."""
+    """Return whether the schedule may choose any call for it."""
     is_of_apps = fault.kind in ("crash", "hang", "stop", "restart") and "message" not in fault.options
     return bool(fault.when.explored) and (is_of_apps or fault.kind == "reset")
 
 
 def _counts_messages(fault: Fault) -> bool:
-    """Whether an application's fault waits for messages, and not for a time alone."""
+    """Return whether an application's fault waits for messages, and not only for a time."""
     return not _is_at_calls(fault) and (not fault.when.at_ns or "message" in fault.options)
 
 
@@ -272,7 +269,7 @@ def _needs_bus(fault: Fault) -> bool:
 
 
 def _is_timed(fault: Fault) -> bool:
-    """Whether it happens at a time, whatever goes on then."""
+    """Return whether it happens at a time, independent of other events."""
     if _is_at_calls(fault):
         return False
     if fault.kind in ("crash", "hang", "stop", "restart"):

@@ -1,4 +1,4 @@
-"""The kinds of faults: what each strikes, which options it takes, and which it needs."""
+"""The kinds of faults: their targets, their options, and the required options."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MESSAGE, APP, PIPE, SECONDS, PPM, SIGNAL, FILE, TABLE, MEMORY, CALL, RESET = (
     "call",
     "reset",
 )
-"""What a fault strikes."""
+"""Target of a fault."""
 
 SIGNALS = ("1hz", "tone")
 MEMORIES = ("cds", "eeprom", "reset_area", "user_reserved")
@@ -30,7 +30,7 @@ UNITS = ("message", "segment")
 CHECKSUMS = ("keep", "fix")
 
 APP_OPTIONS = ("from", "to", "app")
-"""Options that name an application; `to` may be a pipe, too."""
+"""Options that name an application; `to` may also be a pipe."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +38,10 @@ class FaultKind:
     """A kind of fault.
 
     Attributes:
-        strikes: what its target is.
-        options: the options it takes besides `name`.
-        needed: those of which it needs at least one.
-        text: what it does.
+        strikes: kind of its target.
+        options: options it takes in addition to `name`.
+        needed: options of which it needs at least one.
+        text: its description.
     """
 
     strikes: str

@@ -1,8 +1,8 @@
-"""What can happen to one message on its way: lost, doubled, late, out of order, changed.
+"""Faults on one message: lost, duplicated, delayed, reordered, changed.
 
-A fault gets the bytes and a function that sends them on, which it calls as often and as late as it likes. So faults of
-several kinds can strike the same message, and it does not matter whether it is on the bus or a datagram on the network.
-A long ROS message goes out in segments; a fault strikes all of them alike, unless its unit is the segment.
+A fault receives the bytes and a function that sends them, which it can call at any time and repeatedly. So faults of
+several kinds can apply to the same message, on the bus or as a datagram on the network. A long ROS message is sent in
+segments; a fault applies to all of them, unless its unit is the segment.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ DEFAULT_WITHIN_NS = NS_PER_S
 
 
 class Setting:
-    """What all faults on messages need of the run: time, agenda, report, names."""
+    """Objects of the run for all faults on messages: time, agenda, report, names."""
 
     def __init__(self, kernel: Kernel, agenda: Agenda, report: FaultReport, names: MissionNames) -> None:
         self.kernel = kernel
@@ -37,12 +37,12 @@ class Setting:
 
 
 class MessageFault(ABC):
-    """A fault on messages while it runs.
+    """A fault on messages during the run.
 
     Args:
-        fault: what the plan says.
+        fault: the fault in the plan.
         gate: when it happens.
-        setting: of the run.
+        setting: objects of the run.
     """
 
     def __init__(self, fault: Fault, gate: Gate, setting: Setting) -> None:
@@ -52,15 +52,15 @@ class MessageFault(ABC):
         self.sender: str | None = fault.options.get("from")
         self.receiver: str | None = fault.options.get("to")
         self._by_segment = fault.options.get("unit") == "segment"
-        self._struck: dict[object, bool] = {}  # by stream: whether the message that is under way in segments is struck
+        self._struck: dict[object, bool] = {}  # by stream: whether the current segmented message is affected
 
     def strikes(self, data: bytes, flags: int, stream: object) -> bool:
-        """Whether it happens to a message, or to the segment of one.
+        """Return whether it happens to a message or a segment.
 
         Args:
             data: the message.
-            flags: its sequence flags; `WHOLE` for what is no segment.
-            stream: tells senders apart whose segments may mingle.
+            flags: its sequence flags; `WHOLE` without segmentation.
+            stream: identifies senders whose segments may be interleaved.
         """
         if flags != WHOLE and flags != FIRST and not self._by_segment:
             return self._struck.get(stream, False)
@@ -70,40 +70,40 @@ class MessageFault(ABC):
         return struck
 
     def tell(self, flags: int, where: str) -> None:
-        """It happens: report it, of a long message once.
+        """Report an occurrence, once for a long message.
 
         Args:
             flags: the message's sequence flags.
-            where: the message in words.
+            where: description of the message.
         """
         if flags in (WHOLE, FIRST) or self._by_segment:
             self.setting.report.happened(self.fault, f"{self.words()} {where}")
 
     def is_possible(self, data: bytes) -> bool:
-        """Whether it can happen to this message; when not, it has told the report why."""
+        """Return whether it can happen to this message; if not, the reason is reported."""
         return True
 
     def words(self) -> str:
-        """What it does, for the report."""
+        """Return its description for the report."""
         return f"{self.fault.kind}s"
 
     @abstractmethod
     def act(self, data: bytes, flags: int, send: Send) -> None:
-        """Do it to a message that it strikes."""
+        """Apply it to a message."""
 
     def passed(self, flags: int) -> None:  # noqa: B027  # most kinds have nothing to do then
-        """A message that it is about went on, struck or not."""
+        """A message to which it could apply was sent, affected or not."""
 
 
 class DropMessage(MessageFault):
-    """It gets lost."""
+    """The message is lost."""
 
     def act(self, data: bytes, flags: int, send: Send) -> None:
-        """Nothing is sent."""
+        """Send nothing."""
 
 
 class DuplicateMessage(MessageFault):
-    """It comes more than once: of a long message, the whole of it again after its last segment."""
+    """The message is sent more than once; a long message again as a whole after its last segment."""
 
     def __init__(self, fault: Fault, gate: Gate, setting: Setting) -> None:
         super().__init__(fault, gate, setting)
@@ -111,7 +111,7 @@ class DuplicateMessage(MessageFault):
         self._parts: list[bytes] = []
 
     def act(self, data: bytes, flags: int, send: Send) -> None:
-        """Send it, and again."""
+        """Send it repeatedly."""
         send(data)
         if self._by_segment or flags == WHOLE:
             parts = [data]
@@ -124,7 +124,7 @@ class DuplicateMessage(MessageFault):
 
 
 class DelayMessage(MessageFault):
-    """It comes later; the segments of a message all by the same time."""
+    """The message is delayed; all segments of a message by the same time."""
 
     def __init__(self, fault: Fault, gate: Gate, setting: Setting) -> None:
         super().__init__(fault, gate, setting)
@@ -137,7 +137,7 @@ class DelayMessage(MessageFault):
         return super().strikes(data, flags, stream)
 
     def words(self) -> str:
-        """With the time."""
+        """Return the description with the time."""
         return f"delays by {self._by / 1e9:g} s"
 
     def act(self, data: bytes, flags: int, send: Send) -> None:
@@ -146,22 +146,22 @@ class DelayMessage(MessageFault):
 
 
 class ReorderMessage(MessageFault):
-    """It comes after later ones, or after a time when none come."""
+    """The message is sent after later ones, or after a time if there are none."""
 
     def __init__(self, fault: Fault, gate: Gate, setting: Setting) -> None:
         super().__init__(fault, gate, setting)
         self._past = fault.options.get("past", 1)
         self._within = fault.options.get("within", DEFAULT_WITHIN_NS)
-        self._held: list[list[Any]] = []  # messages to let pass, and what then sends it
+        self._held: list[list[Any]] = []  # number of messages to wait for, and a function that then sends it
 
     def act(self, data: bytes, flags: int, send: Send) -> None:
-        """Keep it."""
-        held = [self._past + 1, lambda: send(data)]  # one more, since this message counts as well
+        """Hold it back."""
+        held = [self._past + 1, lambda: send(data)]  # one more, since this message counts too
         self._held.append(held)
         self.setting.agenda.add(self.setting.kernel.now + self._within, lambda: self._let_go(held))
 
     def passed(self, flags: int) -> None:
-        """One more message has gone by."""
+        """Count another message."""
         if flags in (WHOLE, LAST) or self._by_segment:
             for held in self._held[:]:
                 held[0] -= 1
@@ -175,10 +175,10 @@ class ReorderMessage(MessageFault):
 
 
 class CorruptMessage(MessageFault):
-    """It comes changed: bits, bytes or fields of it; of a long message, its first segment."""
+    """The message is changed: bits, bytes or fields; for a long message, in its first segment."""
 
     def is_possible(self, data: bytes) -> bool:
-        """Whether it has the fields that are to be set."""
+        """Return whether it has the fields to set."""
         try:
             if "fields" in self.fault.options:
                 self.setting.names.edit(data, self.fault.options["fields"])
@@ -188,7 +188,7 @@ class CorruptMessage(MessageFault):
         return True
 
     def words(self) -> str:
-        """What it does."""
+        """Return the description of the change."""
         return "corrupts"
 
     def act(self, data: bytes, flags: int, send: Send) -> None:
@@ -208,13 +208,15 @@ class CorruptMessage(MessageFault):
         return data
 
     def _header(self, data: bytes) -> int:
-        """Bytes that random bits leave alone: the headers, of a packet without data only the primary one."""
+        """Return the number of bytes that random bits do not affect: the headers, or the primary one for a packet
+        without data.
+        """
         size = get_header_size(data)
         return size if size < len(data) else PRIMARY_HEADER_SIZE
 
 
 class CorruptDatagram(CorruptMessage):
-    """The same of a datagram, all of which is data."""
+    """The same for a datagram, which has only data."""
 
     def _header(self, data: bytes) -> int:
         return 0
@@ -224,13 +226,13 @@ class CorruptDatagram(CorruptMessage):
 
 
 def damaged(data: bytes, start: int, options: Any, random: Random) -> bytes:
-    """Bytes with some bits turned over, or some bytes set.
+    """Return the bytes with some bits inverted, or some bytes set.
 
     Args:
         data: the bytes.
-        start: random bits lie behind so many bytes, if there are more.
-        options: `bytes`, positions to values, where there is such a position; else `bits`, how many, 1 by default.
-        random: where the bits are.
+        start: random bits are after this number of bytes, if there are more.
+        options: `bytes`, positions to values, for existing positions; else `bits`, the number of bits, 1 by default.
+        random: chooses the bits.
     """
     changed = bytearray(data)
     if "bytes" in options:
@@ -246,7 +248,7 @@ def damaged(data: bytes, start: int, options: Any, random: Random) -> bytes:
 
 
 def _with_checksum(packet: bytes) -> bytes:
-    """A command whose checksum is right again; telemetry has none."""
+    """Return a command with a correct checksum; telemetry has none."""
     if packet[0] & 0x18 != 0x18 or len(packet) < CMD_HEADER_SIZE:
         return packet
     command = bytearray(packet)
@@ -269,17 +271,18 @@ DATAGRAM_FAULTS: dict[str, type[MessageFault]] = {**MESSAGE_FAULTS, "corrupt": C
 def pass_through(
     faults: Sequence[MessageFault], data: bytes, flags: int, stream: object, where: str, send: Send
 ) -> None:
-    """Send a message through faults, in their order; each of them may keep, double or change it for the next.
+    """Send a message through faults, in their order; each may delay, duplicate or change it for the next.
 
     Args:
-        faults: those that are about this message.
+        faults: the faults on this message.
         data: the message.
         flags: its sequence flags.
-        stream: tells senders apart.
-        where: the message in words.
-        send: what the last one sends with.
+        stream: identifies the sender.
+        where: description of the message.
+        send: used by the last one for sending.
     """
-    struck = [fault for fault in faults if fault.strikes(data, flags, stream)]  # each is asked, whatever others do
+    # each is asked, independent of the others
+    struck = [fault for fault in faults if fault.strikes(data, flags, stream)]
     for number, fault in enumerate(struck):
         fault.tell(flags, where)
         if isinstance(fault, DropMessage):
@@ -299,7 +302,7 @@ def _through(fault: MessageFault, flags: int, send: Send) -> Send:
 
 
 def strike_datagrams(network: Any, faults: Sequence[MessageFault]) -> None:
-    """Let every datagram of a mission's network meet faults; a target "udp:1234" is those to that port."""
+    """Apply faults to every datagram of a mission's network; a target "udp:1234" means those to that port."""
     original = network.send
 
     def send(datagram: Any) -> bool:

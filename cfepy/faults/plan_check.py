@@ -1,10 +1,11 @@
-"""The check of a fault plan for a mission: `prepare` gives its injector, and what the plan names but the mission lacks.
+"""The check of a fault plan for a mission: `prepare` returns its injector, and names in the plan that the mission
+lacks.
 
     prepared = prepare("seed:7", read_mission("capture"))
     with Mission(spec, attachments=[prepared.injector]) as mission: ...
 
-A plan is a file, a seed, or its own text. Applications and files of a plan can be looked for without a flight;
-messages, pipes and tables are known when the mission has run for a while.
+A plan is a file, a seed, or its own text. Applications and files of a plan can be checked without a flight; messages,
+pipes and tables are known only after the mission has run for a while.
 """
 
 from __future__ import annotations
@@ -37,8 +38,8 @@ class Prepared:
     """A plan that is ready for one flight of a mission.
 
     Attributes:
-        injector: lets its faults happen; attach it as the last one.
-        problems: what the plan names that is not in the mission, each with its place. Such a fault never happens.
+        injector: injects its faults; attach it last.
+        problems: names in the plan that the mission lacks, each with its place. Such a fault never happens.
     """
 
     injector: FaultInjector
@@ -46,24 +47,24 @@ class Prepared:
 
 
 def prepare(text: str, spec: MissionSpec, *, flies: bool = False) -> Prepared:
-    """The plan that a command line names, ready and checked; every command that flies with faults asks here.
+    """Return the plan named on a command line, ready and checked; used by every command that flies with faults.
 
     Args:
         text: see `plan_of`.
         spec: the mission.
-        flies: the mission is flown for some virtual seconds, to find messages, pipes and tables that it does not have;
-            otherwise only applications and files are looked for.
+        flies: whether the mission is flown for some virtual seconds, to find messages, pipes and tables that it lacks;
+            otherwise only applications and files are checked.
 
     Raises:
-        UsageError: there is no such plan, or something in it is wrong.
-        CfeError: the mission cannot boot.
+        UsageError: if there is no such plan, or it has a mistake.
+        CfeError: if the mission cannot boot.
     """
     plan = plan_of(text, spec)
     return Prepared(FaultInjector(plan), tuple(check_plan(plan, spec, look_at(spec) if flies else None)))
 
 
 def plan_of(text: str, spec: MissionSpec) -> FaultPlan:
-    """The plan that a command line names.
+    """Return the plan named on a command line.
 
     Args:
         text: path of a plan; `seed:N` or `seed:N:INTENSITY` for a random one; or the text of a plan itself, which has
@@ -71,8 +72,8 @@ def plan_of(text: str, spec: MissionSpec) -> FaultPlan:
         spec: the mission.
 
     Raises:
-        UsageError: there is no such plan, or something in it is wrong.
-        CfeError: the mission cannot boot.
+        UsageError: if there is no such plan, or it has a mistake.
+        CfeError: if the mission cannot boot.
     """
     if text.startswith(SEED_WORD):
         seed, intensity = seed_of(text)
@@ -83,10 +84,10 @@ def plan_of(text: str, spec: MissionSpec) -> FaultPlan:
 
 
 def seed_of(text: str) -> tuple[int, str]:
-    """Seed and intensity of `seed:7` or `seed:7:high`.
+    """Return seed and intensity of `seed:7` or `seed:7:high`.
 
     Raises:
-        UsageError: it is neither.
+        UsageError: if the text has another form.
     """
     found = _SEED.fullmatch(text)
     if found is None or found[2] not in (None, *INTENSITIES):
@@ -96,18 +97,18 @@ def seed_of(text: str) -> tuple[int, str]:
 
 
 def app_names(spec: MissionSpec) -> list[str]:
-    """The applications of a mission, as its startup script has them, and names of nodes that stand for them."""
+    """Return the applications of a mission in its startup script, and the names of their nodes."""
     own = [entry.name for entry in spec.entries if entry.kind == CFE_APP]
     return [*own, *CORE_APPS, *([ROS] if spec.has_nodes else []), *apps_of_nodes(spec)]
 
 
 def check_plan(plan: FaultPlan, spec: MissionSpec, found: Found | None = None) -> list[UsageError]:
-    """What a plan names that is not in the mission, each with its place.
+    """Return the names in a plan that the mission lacks, each with its place.
 
     Args:
         plan: the plan.
         spec: the mission.
-        found: what a run has shown; None checks only what can be told without one.
+        found: findings of a run; None checks only names that are known without a run.
     """
     return [
         UsageError(text, file=plan.file or None, line=fault.line or None, field=fault.name)

@@ -1,9 +1,9 @@
 """Faults on the processor: its clock, its resets, and its memory.
 
-The spacecraft clock jumps or drifts, the 1 Hz signal or the tone does not come. Spacecraft time is STCF and MET
-(CFE_TIME); ROS nodes read the same clock by another way, and so does OSAL's local time. The kernel's virtual time goes
-on all the same: it is what the simulation runs by. The processor is reset, a core application dies, the watchdog bites.
-Files, table images, the CDS and other retained memory get other bytes.
+The spacecraft clock jumps or drifts, or the 1 Hz signal or the tone is missing. Spacecraft time is STCF and MET
+(CFE_TIME); ROS nodes and OSAL's local time read the same clock in other ways. The kernel's virtual time, by which the
+simulation runs, is not affected. The processor is reset, a core application dies, or the watchdog expires. Files, table
+images, the CDS and other retained memory are changed.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from cfepy.status import CfeError
 from cfepy.units import NS_PER_S
 
 OSAL_TICK_NS = 100
-PPM_NS = 1000  # in a second
+PPM_NS = 1000  # 1 ppm of a second
 VICTIM = "CFE_TBL"
-"""A core application, out of which an exception comes: ES cannot restart it, and so reset the processor."""
+"""A core application that is ended by an exception: ES cannot restart it, and thus resets the processor."""
 TYPES = {"processor": RST_TYPE_PROCESSOR, "poweron": RST_TYPE_POWERON}
 DEFAULT_SIGNATURE = {"bytes": {0: 0}}
 
 
 def shift(processor: Processor, by_ns: int, clock: str) -> None:
-    """Set the spacecraft clock of cFE, of ROS nodes and of OSAL, or one of the first two.
+    """Set the spacecraft clock of cFE, ROS nodes and OSAL, or one of the first two.
 
     Args:
-        processor: the one that runs.
-        by_ns: how far, in ns; negative is back.
+        processor: the running processor.
+        by_ns: change in ns; negative is back.
         clock: "all", "cfe" or "ros".
     """
     cfe = processor.cfe
@@ -50,15 +50,15 @@ def shift(processor: Processor, by_ns: int, clock: str) -> None:
 
 
 Again = Callable[[int, Callable[[Processor], object]], object]
-"""Has a function called at a virtual time, with the processor that runs then."""
+"""Calls a function at a virtual time, with the processor that runs then."""
 
 
 class Jump:
     """The clock jumps.
 
     Args:
-        fault: what the plan says; its target is how far, in s.
-        report: takes what happens.
+        fault: the fault in the plan; its target is the change in s.
+        report: receives a text for each occurrence.
     """
 
     def __init__(self, fault: Fault, report: FaultReport) -> None:
@@ -66,7 +66,7 @@ class Jump:
         self._report = report
 
     def strike(self, processor: Processor) -> None:
-        """Do it now."""
+        """Set the clock now."""
         seconds = float(self._fault.target[0])
         clock = self._fault.options.get("clock", "all")
         self._report.happened(
@@ -76,13 +76,13 @@ class Jump:
 
 
 class Drift:
-    """The clock is set a little every second.
+    """The clock drifts: it is adjusted every second.
 
     Args:
-        fault: what the plan says; its target is how fast, in ppm.
+        fault: the fault in the plan; its target is the drift in ppm.
         gate: its window.
-        report: is told once.
-        again: has `strike` called at a virtual time, after a reset of the processor with the one that runs then.
+        report: called once.
+        again: calls `strike` at a virtual time, after a reset with the processor that runs then.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class Drift:
         self._again = again
 
     def strike(self, processor: Processor) -> None:
-        """A second is over; the next one follows as long as the window is open."""
+        """Adjust the clock after a second; the next call follows as long as the window is open."""
         now = processor.machine.kernel.now
         if not self._gate.is_open(now):
             return
@@ -111,12 +111,12 @@ class Drift:
 
 
 class LostSignal:
-    """The local 1 Hz signal, or the tone, does not come.
+    """The local 1 Hz signal, or the tone, is missing.
 
     Args:
-        fault: what the plan says; its target is "1hz" or "tone".
-        gate: which ones.
-        report: takes what happens.
+        fault: the fault in the plan; its target is "1hz" or "tone".
+        gate: selects the signals.
+        report: receives a text for each occurrence.
         kernel: for the time.
     """
 
@@ -127,7 +127,7 @@ class LostSignal:
         self._kernel = kernel
 
     def power_up(self, processor: Processor) -> None:
-        """Stand between a new processor's Time Services and their signal."""
+        """Wrap the signal of a new processor's Time Services."""
         task = processor.cfe.time.task
         name = "interrupt" if self._fault.target[0] == "1hz" else "take_tone"
         pass_on = getattr(task, name)
@@ -145,8 +145,8 @@ class ProcessorFault:
     """A reset.
 
     Args:
-        fault: what the plan says; its target is the kind of reset.
-        report: takes what happens.
+        fault: the fault in the plan; its target is the kind of reset.
+        report: receives a text for each occurrence.
     """
 
     def __init__(self, fault: Fault, report: FaultReport) -> None:
@@ -154,7 +154,7 @@ class ProcessorFault:
         self._report = report
 
     def strike(self, processor: Processor) -> None:
-        """Do it now; the calling task does not come back from a reset."""
+        """Reset the processor now; the calling task does not return."""
         how = self._fault.target[0]
         if how == "exception":
             self._raise(processor)
@@ -181,9 +181,9 @@ class MemoryFault(ABC):
     """A fault on some bytes.
 
     Args:
-        fault: what the plan says.
-        random: where random bits are.
-        report: takes what happens.
+        fault: the fault in the plan.
+        random: chooses random bits.
+        report: receives a text for each occurrence.
     """
 
     def __init__(self, fault: Fault, random: Random, report: FaultReport) -> None:
@@ -192,7 +192,7 @@ class MemoryFault(ABC):
         self._report = report
 
     def strike(self, processor: Processor) -> None:
-        """Do it now."""
+        """Change the bytes now."""
         try:
             memory, what = self._find(processor)
         except (CfeError, LookupError) as error:
@@ -209,7 +209,7 @@ class MemoryFault(ABC):
 
     @abstractmethod
     def _find(self, processor: Processor) -> tuple[Any, str]:
-        """The bytes, which can be written in place, and what they are.
+        """Return the bytes, which can be written in place, and their description.
 
         Raises:
             CfeError, LookupError: there are none; the latter with a text.
@@ -241,10 +241,10 @@ class TableFault(MemoryFault):
 
 
 class RetainedFault(MemoryFault):
-    """Memory that outlives a reset: the CDS or a block of it, the EEPROM, the reset and the user reserved area."""
+    """Memory that survives a reset: the CDS or a block of it, the EEPROM, the reset and the user reserved area."""
 
     def _options(self) -> Any:
-        """By default the CDS as a whole loses its signature, so that the next boot finds none."""
+        """By default the CDS as a whole loses its signature, so the next boot does not find it."""
         options = self._fault.options
         whole_cds = self._fault.target[0] == "cds" and "block" not in options
         return DEFAULT_SIGNATURE if whole_cds and not {"bits", "bytes"} & set(options) else options

@@ -1,6 +1,6 @@
-"""What faults can strike in a mission, found by flying it for a while, and random plans that choose among it.
+"""Possible targets of faults in a mission, found by a short flight, and random plans that choose from them.
 
-The same seed and targets always give the same plan: every choice is drawn from the plan's own stream of random numbers.
+The same seed and targets always give the same plan: every choice uses the plan's own stream of random numbers.
 """
 
 from __future__ import annotations
@@ -21,23 +21,22 @@ from cfepy.writing.console import Console
 
 LOW, MEDIUM, HIGH = "low", "medium", "high"
 INTENSITIES = {LOW: 2, MEDIUM: 5, HIGH: 12}
-"""How many faults a plan has."""
-FREQUENT = 20  # messages in the survey, from which on one is struck by probability
+"""Number of faults in a plan."""
+FREQUENT = 20  # number of messages in the survey from which on faults use a probability
 LOOK_S = 3.0
-KEPT = 8  # missions whose targets are kept
+KEPT = 8  # number of missions whose targets are cached
 
 
 @dataclass(frozen=True, slots=True)
 class Targets:
-    """What faults can strike in a mission.
+    """Possible targets of faults in a mission.
 
     Attributes:
         apps: the mission's own applications.
-        messages: names of messages that have a receiver, with how many of them there were.
-        pipes: of the mission's own applications.
+        messages: names of messages that have a receiver, with their number.
+        pipes: pipes of the mission's own applications.
         tables: full names of tables.
         files: paths of table files.
-        begin_ns, end_ns: virtual times between which faults are to happen.
     """
 
     apps: tuple[str, ...] = ()
@@ -50,11 +49,11 @@ class Targets:
 
 
 def random_plan(seed: int, targets: Targets, intensity: str = MEDIUM) -> FaultPlan:
-    """A plan for a mission; the same one for the same arguments.
+    """Return a plan for a mission, the same for the same arguments.
 
     Args:
-        seed: chooses.
-        targets: what the mission has.
+        seed: seed of the choices.
+        targets: possible targets.
         intensity: a key of `INTENSITIES`.
     """
     maker = _Maker(Random(f"fault plan {seed}"), targets)
@@ -66,7 +65,7 @@ def random_plan(seed: int, targets: Targets, intensity: str = MEDIUM) -> FaultPl
 
 
 class _Maker:
-    """Makes one fault after the other. Messages come first: most of what goes wrong in flight is about them."""
+    """Creates faults one by one. Messages come first, because most faults in flight concern them."""
 
     def __init__(self, random: Random, targets: Targets) -> None:
         self._random = random
@@ -86,7 +85,7 @@ class _Maker:
         self._makers = [make for weight, there_are, make in choices if there_are for _ in range(weight)]
 
     def fault(self) -> Fault:
-        """The next fault, without a name."""
+        """Return the next fault, without a name."""
         return self._random.choice(self._makers)()
 
     def _instant(self) -> int:
@@ -114,7 +113,7 @@ class _Maker:
         return Fault(kind, (name,), when=self._occasions(count), options=options)
 
     def _occasions(self, count: int) -> When:
-        """Some messages of a frequent one, a single one of a rare one."""
+        """Return options for several messages if they are frequent, or for a single one."""
         if count < FREQUENT:
             return When(after_ns=self._targets.begin_ns, number=(self._random.randint(1, max(1, count)),))
         return replace(self._window(), probability=self._random.choice((0.01, 0.05, 0.2, 1.0)))
@@ -155,7 +154,7 @@ class _Maker:
     def _call(self) -> Fault:
         call = self._random.choice(("os.queue_put", "os.write", "sb.transmit_msg", "es.get_pool_buf", "os.open_create"))
         options = {"app": self._random.choice(self._targets.apps)}
-        if call == "os.queue_put" and self._targets.pipes:  # applications seldom have queues, but all send messages
+        if call == "os.queue_put" and self._targets.pipes:  # applications rarely have queues, but all send messages
             options = {"object": self._random.choice(self._targets.pipes)}
         return Fault("fail", (call,), when=replace(self._window(), count=self._random.randint(1, 3)), options=options)
 
@@ -170,13 +169,12 @@ class _Maker:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What there is in a mission that faults can strike, by name.
+    """Possible names in a mission.
 
     Attributes:
         messages: all names of messages that were sent or subscribed to.
-        pipes, tables: names of all of them.
-        tasks: names of those that sent a message, or were there in the end.
-        targets: what a random plan chooses from.
+        tasks: names of tasks that sent a message, or existed at the end.
+        targets: choices for a random plan.
     """
 
     messages: tuple[str, ...]
@@ -187,13 +185,15 @@ class Found:
 
 
 def targets_of(spec: MissionSpec) -> Targets:
-    """What random faults strike in a mission; see `look_at`. It is looked at again when its files have changed."""
+    """Return possible targets of random faults in a mission; see `look_at`. They are found again if its files have
+    changed.
+    """
     return _targets_of(_Version(spec, tuple(_stamps(spec))))
 
 
 @dataclass(frozen=True, slots=True)
 class _Version:
-    """A mission as its files are now: path, time stamp and size of each."""
+    """Return a mission's current files: path, time stamp and size of each."""
 
     spec: MissionSpec = field(hash=False)
     stamps: tuple[tuple[str, int, int], ...]
@@ -205,7 +205,7 @@ def _targets_of(version: _Version) -> Targets:
 
 
 def _stamps(spec: MissionSpec) -> Iterator[tuple[str, int, int]]:
-    """Of the files in its folder, and of those that it is made of and that are somewhere else."""
+    """Return the files in its folder, and other files that it consists of."""
     named = (spec.script, spec.mission_file, *spec.scripts.values())
     inside = spec.folder.iterdir() if spec.folder.is_dir() else ()
     for path in sorted({*inside, *filter(None, named)}):
@@ -215,14 +215,14 @@ def _stamps(spec: MissionSpec) -> Iterator[tuple[str, int, int]]:
 
 
 def look_at(spec: MissionSpec, look_s: float = LOOK_S) -> Found:
-    """Find what faults can strike in a mission.
+    """Find possible targets of faults in a mission.
 
     Args:
         spec: the mission; it runs for some virtual seconds.
-        look_s: how many.
+        look_s: number of seconds.
 
     Raises:
-        CfeError: it cannot boot.
+        CfeError: if it cannot boot.
     """
     counts: dict[str, int] = {}
     called: dict[str, None] = {}

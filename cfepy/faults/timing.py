@@ -1,8 +1,8 @@
-"""When faults happen: at occasions, as `When` says and a `Gate` counts, and at the times of an `Agenda`.
+"""When faults happen: at occasions, selected by `When` and counted by a `Gate`, or at the times of an `Agenda`.
 
-An occasion is a message, a call or a tick. At which of them it happens can be open to the schedule: the fault then asks
-at each, and the answer is a decision like any other, no under fifo. Faults that are due at a time are carried out by a
-task of priority 0, which exists only while some are left.
+An occasion is a message, a call or a tick. The schedule can be asked at which of them the fault happens; its answer is
+a decision like any other, "no" under fifo. Faults with a time are executed by a task of priority 0, which exists only
+while some are left.
 """
 
 from __future__ import annotations
@@ -29,14 +29,12 @@ class When:
     """At which occasions a fault happens; an occasion is a message, a call or a tick that matches the fault.
 
     Attributes:
-        at_ns: virtual times in ns. A fault of occasions happens at the next one after each of them.
-        after_ns, until_ns: the window of virtual time, its end not included; None is the end of the run.
-        number: which occasions within the window, from 1; any when empty.
-        every: only every so many-th of them.
-        probability: of each that is left, 0 to 1.
-        count: most times that it happens; None for no limit.
-        explored: it is open to the schedule at which of these occasions it happens, at most so many times; 0 where it
-            is not.
+        at_ns: virtual times in ns. A fault with occasions happens at the next one after each of them.
+        number: which occasions within the window, from 1; any if empty.
+        every: only every n-th of them.
+        probability: probability of each that is left, 0 to 1.
+        count: maximum number of occurrences; None for no limit.
+        explored: maximum number of occurrences chosen by the schedule; 0 if it is not asked.
     """
 
     at_ns: tuple[int, ...] = ()
@@ -50,16 +48,16 @@ class When:
 
 
 class Gate:
-    """Decides for one fault, through all resets of the processor.
+    """Decides for one fault, across all resets of the processor.
 
     Args:
         when: at which occasions.
-        random: the fault's own stream of random numbers, so that no other fault changes its draws.
-        strikes: asks the schedule whether it happens at an occasion, where that is open.
+        random: the fault's own stream of random numbers, independent of other faults.
+        strikes: asks the schedule whether it happens at an occasion.
 
     Attributes:
-        seen: occasions so far, outside the window too.
-        fired: how often it happened.
+        seen: number of occasions so far, including those outside the window.
+        fired: number of occurrences.
     """
 
     def __init__(self, when: When, random: Random, strikes: Callable[[], bool] = lambda: False) -> None:
@@ -71,7 +69,7 @@ class Gate:
         self._waiting = sorted(when.at_ns)
 
     def opens(self, now_ns: int) -> bool:
-        """Whether the fault happens at this occasion."""
+        """Return whether the fault happens at this occasion."""
         self.seen += 1
         if not self._is_due(now_ns):
             return False
@@ -79,7 +77,7 @@ class Gate:
         return True
 
     def is_open(self, now_ns: int) -> bool:
-        """Whether it is within the window of time."""
+        """Return whether it is within the window of time."""
         when = self.when
         return when.after_ns <= now_ns and (when.until_ns is None or now_ns < when.until_ns)
 
@@ -100,7 +98,7 @@ class Gate:
         return when.probability >= 1 or self.random.random() < when.probability
 
     def why_not(self) -> str:
-        """Why it never happened, as far as its occasions can tell."""
+        """Return why it never happened, as far as its occasions show."""
         if self.when.explored:
             return "no schedule asked for it; cfepy explore tries those that do"
         if not self.seen:
@@ -112,34 +110,30 @@ class Gate:
 
 
 def asker(kernel: Kernel, name: str) -> Callable[[], bool]:
-    """What asks the schedule whether the fault of a name happens at an occasion."""
+    """Return the function that asks the schedule whether the fault with a name happens at an occasion."""
     question = Question(f"fault {name}", "fault", (NO, YES), f"fault {name} {{}}", is_rare=True)
     return lambda: bool(kernel.answer(question))
 
 
 class OpenCalls:
-    """The calls of applications as occasions of faults, if the kernel explores.
-
-    An occasion is before each call, and before each bit of CPU time that is paid for: wherever others could get in.
-    """
+    """Calls of applications as occasions of faults, if the kernel explores."""
 
     def __init__(self) -> None:
         self._open: list[tuple[str | None, Gate, Callable[[], object]]] = []
         self._is_asking = False
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """See `Attachment.kernel`."""
         if not issubclass(base, ExploringKernel):
             return base
         return wrapping(base, dict.fromkeys(CALLS, self._wrapped))
 
     def add(self, app_name: str | None, gate: Gate, strike: Callable[[], object]) -> None:
-        """Let a fault happen at calls.
+        """Execute a fault at calls.
 
         Args:
-            app_name: of this application; None for those of all.
-            gate: asks.
-            strike: does it, in the task that calls.
+            app_name: application of the calls; None for all.
+            gate: selects the calls.
+            strike: executes it, in the calling task.
         """
         self._open.append((app_name, gate, strike))
 
@@ -153,7 +147,7 @@ class OpenCalls:
         return call
 
     def _ask(self, app_name: str, now: int) -> None:
-        self._is_asking = True  # what strikes makes calls of its own
+        self._is_asking = True  # the fault itself makes calls
         try:
             due = [strike for app, gate, strike in self._open if app in (None, app_name) and gate.opens(now)]
         finally:
@@ -163,10 +157,10 @@ class OpenCalls:
 
 
 class Agenda:
-    """Actions by virtual time; it goes on over resets of the processor.
+    """Actions by virtual time; it continues after resets of the processor.
 
     Args:
-        kernel: the simulated computer's.
+        kernel: kernel of the simulated computer.
     """
 
     def __init__(self, kernel: Kernel) -> None:
@@ -177,12 +171,12 @@ class Agenda:
         self._is_running = self._is_up = False
 
     def add(self, when_ns: int, action: Callable[[], object], survives: bool = False) -> None:
-        """Do something at a time, at once when that is over.
+        """Execute an action at a time, or at once if that has passed.
 
         Args:
             when_ns: virtual time.
             action: called without arguments in the task of the faults.
-            survives: a reset of the processor before that time changes nothing; otherwise it is forgotten then.
+            survives: whether it is kept if the processor is reset before that time.
         """
         self._serial += 1
         heappush(self._entries, (when_ns, self._serial, survives, action))
@@ -192,7 +186,7 @@ class Agenda:
             self._start()
 
     def power_up(self) -> None:
-        """A processor was made: what belonged to the one before is forgotten, the rest goes on."""
+        """A processor was created: drop the actions of the previous one, and keep the others."""
         self._entries = [entry for entry in self._entries if entry[2]]
         heapify(self._entries)
         self._is_running, self._is_up = False, True
@@ -212,6 +206,6 @@ class Agenda:
             if when_ns > kernel.now:
                 kernel.wait_on(self._waits, when_ns - kernel.now)
             else:
-                with suppress(CfeError):  # a late message that finds no room; the bus has reported it
+                with suppress(CfeError):  # a delayed message that finds no room; the bus has reported it
                     heappop(self._entries)[3]()
         self._is_running = False

@@ -1,8 +1,8 @@
-"""A mission in the hands of a program: flown step by step, or looked at when it has flown.
+"""A mission in the hands of a program: flown step by step, or examined after its flight.
 
-What belongs here is what a test, a notebook or a script does with a mission: let it run, send and publish, wait for
-what should come, and read what was sent. How a run is flown is in `cfepy.pilot`; what pytest adds is in
-`cfepy.testing`. The central file is `cfepy/flight/flight.py`.
+The actions of a test, a notebook or a script on a mission belong here: let it run, send and publish, wait for events
+and messages, and read what was sent. Flying a run is in `cfepy.pilot`, and the pytest parts are in `cfepy.testing`. The
+central file is `cfepy/flight/flight.py`.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ __all__ = [
     "schedule_of",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

@@ -1,6 +1,6 @@
-"""What a test can wait for: an event, a message, telemetry, a line of the console, anything that a function tells.
+"""The things that a test can wait for: an event, a message, telemetry, a line of the console, or any condition.
 
-A `Wanted` looks only at what is new since its last look. It says what there was instead, nearest things first.
+A `Wanted` only checks input that is new since its last check. After a failure it describes the nearest other input.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from cfepy.units import NS_PER_S
 Text = str | re.Pattern[str]
 Check = Callable[[Any], Any]
 
-NEAR = 3  # things that are told of those that came instead
-LONGEST = 200  # characters of a message that are told
+NEAR = 3  # number of other items to describe
+LONGEST = 200  # maximum number of characters of a message to show
 
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """Something that is waited for.
+    """Something that a test waits for.
 
     Attributes:
-        text: what it is, for the failure.
-        find: what has met it since the last look, None as long as nothing has.
-        instead: what there was instead.
+        text: its description, for the failure.
+        find: returns an item that matched since the last check, or None.
+        instead: describes the other input.
     """
 
     text: str
@@ -42,10 +42,10 @@ class Wanted:
 def event(
     log: FlightLog, here: Here, app: str | None, event_id: int | None, text: Text | None, kind: str | None
 ) -> Wanted:
-    """An event of an application; None stands for any.
+    """Return the expectation of an event of an application; None means any.
 
     Raises:
-        UsageError: there is no such type of event.
+        UsageError: if there is no such type of event.
     """
     if kind is not None and kind not in EVENT_TYPES:
         raise UsageError(f"{kind!r} is no type of event; there are {', '.join(EVENT_TYPES)}", field="type")
@@ -73,12 +73,12 @@ def event(
 
 
 def _nearest_events(events: list[DecodedEvent], event_id: int | None) -> list[DecodedEvent]:
-    """The last events with the wanted id, or the last of all."""
+    """Return the last events with the wanted id, or otherwise the last of all."""
     return ([each for each in events if each.event_id == event_id] or events)[-NEAR:]
 
 
 def message(log: FlightLog, here: Here, topic: str, check: Check | None, fields: Mapping[str, Any]) -> Wanted:
-    """A message on a topic that a function accepts, or with fields of certain values."""
+    """Return the expectation of a message on a topic that a function accepts, or with given field values."""
     start = here.messages.get(topic, 0)
     read: list[Heard] = []
 
@@ -104,7 +104,7 @@ def message(log: FlightLog, here: Here, topic: str, check: Check | None, fields:
 def telemetry(
     log: FlightLog, here: Here, name: str, msg_id: int, check: Check | None, fields: Mapping[str, Any]
 ) -> Wanted:
-    """A telemetry packet that a function accepts, or with fields of certain values."""
+    """Return the expectation of a telemetry packet that a function accepts, or with given field values."""
     start = here.packets.get(msg_id, 0)
     read: list[Packet] = []
 
@@ -124,7 +124,7 @@ def telemetry(
 
 
 def line(lines: list[str], here: Here, text: Text) -> Wanted:
-    """A line of the console."""
+    """Return the expectation of a line of the console."""
     return Wanted(
         f"console line {shown_text(text)}",
         _first(lines, here.lines, lambda each: has_text(text, each)),
@@ -133,12 +133,12 @@ def line(lines: list[str], here: Here, text: Text) -> Wanted:
 
 
 def condition(check: Callable[[], Any], what: str | None) -> Wanted:
-    """Whatever a function tells."""
+    """Return the expectation of a condition given by a function."""
     return Wanted(what or name_of(check), lambda: check() or None, lambda: "it never held when it was looked at")
 
 
 def _first(things: list[Any], start: int, meets: Callable[[Any], bool]) -> Callable[[], Any]:
-    """Finds the first new thing that meets a condition."""
+    """Return a function that finds the first new item that meets a condition."""
     looked = start
 
     def find() -> Any:
@@ -153,17 +153,17 @@ def _first(things: list[Any], start: int, meets: Callable[[Any], bool]) -> Calla
 
 
 def has_text(wanted: Text, text: str) -> bool:
-    """Whether a text contains another, or matches a regular expression somewhere."""
+    """Return whether a text contains another, or matches a regular expression somewhere."""
     return wanted in text if isinstance(wanted, str) else wanted.search(text) is not None
 
 
 def shown_text(text: Text) -> str:
-    """A wanted text or regular expression for a person."""
+    """Return a wanted text or regular expression for display."""
     return f'"{text}"' if isinstance(text, str) else f"/{text.pattern}/"
 
 
 def name_of(check: Callable[..., Any]) -> str:
-    """A function for a person: its name, or its source line if it is a lambda."""
+    """Return the text of a function for display: its name, or its source line for a lambda."""
     name = getattr(check, "__name__", repr(check))
     code = getattr(check, "__code__", None)
     return f"the condition in line {code.co_firstlineno}" if name == "<lambda>" and code is not None else name
@@ -182,10 +182,10 @@ def _agrees(wanted: Any, actual: Any) -> bool:
 
 
 def _value(thing: Any, path: str) -> Any:
-    """A field by its path, of a packet or a message.
+    """Return a field of a packet or a message by its path.
 
     Raises:
-        UsageError: it has no such field.
+        UsageError: if it has no such field.
     """
     try:
         if isinstance(thing, Packet):
@@ -212,10 +212,10 @@ def _short(thing: Any) -> str:
 
 
 def counted(number: int, what: str) -> str:
-    """A number of things for a person."""
+    """Return a number of items as text."""
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def seconds(ns: int) -> str:
-    """A virtual time as failures show it."""
+    """Return a virtual time in the format of failures."""
     return f"{ns / NS_PER_S:.3f}"

@@ -1,4 +1,4 @@
-"""`explore`: a mission under many schedules, as `cfepy explore` does it, and what failed under some of them."""
+"""`explore`: a mission under many schedules, like `cfepy explore`, and the failures under some of them."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from cfepy.writing.markup import code, folded, headline, lines_of, trouble
 
 DEFAULT_SEEDS = 100
 EXPLORE: Hook[Callable[..., Explored]] = Hook("explore")
-"""Explores a plan; the other arguments are those of `explore`, with their units in their names."""
+"""Explores a plan; the other arguments are those of `explore`, with the unit in their names."""
 
 
 @dataclass(frozen=True, repr=False, slots=True)
 class FoundFailure:
-    """A failure that some schedules show.
+    """A failure under some schedules.
 
     Attributes:
-        title: what failed, in a line.
-        detail: more of it, such as a traceback.
-        at: virtual time in s of the first run that showed it; None when it has none.
-        schedules: how many of the schedules showed it.
-        under_fifo: whether the default schedule shows it as well.
-        schedule: the shortest schedule known that shows it.
-        preemptions: of that schedule; None when it was not shrunk.
-        cause: a sentence, where what was observed says it; empty otherwise.
-        timeline: what happens under it, a line each, the cause above it; empty when it was not shrunk.
+        title: a line about the failure.
+        detail: more details, such as a traceback.
+        at: virtual time in s in the first run that showed it; None if it has no time.
+        schedules: number of schedules that showed it.
+        under_fifo: whether the default schedule shows it too.
+        schedule: the shortest known schedule that shows it.
+        preemptions: number of preemptions of that schedule; None if it was not shrunk.
+        cause: a sentence about the cause, if the observations show it; otherwise empty.
+        timeline: the events under that schedule, one per line, after the cause; empty if it was not shrunk.
         plan: the shortest run that shows it.
     """
 
@@ -55,12 +55,12 @@ class FoundFailure:
         return self.plan.command_line()
 
     def replay(self) -> Run:
-        """Fly the shortest run that shows it; its `problems` and `console` have the failure."""
+        """Fly the shortest run that shows the failure, which is in its `problems` and `console`."""
         return fly_plan(self.plan)
 
     @property
     def about(self) -> str:
-        """How many schedules show it, and the shortest."""
+        """The number of schedules that show it, and the shortest."""
         default = ", the default one among them" if self.under_fifo else ""
         shortest = "" if self.preemptions is None else f", {counted(self.preemptions, 'preemption')}"
         return f"{counted(self.schedules, 'schedule')}{default}; the shortest is {self.schedule}{shortest}"
@@ -69,7 +69,7 @@ class FoundFailure:
         return f"<{self.title}: {self.schedules} schedules, shortest {self.schedule}>"
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """Return the HTML for a notebook."""
         parts = [trouble(self.title), headline("shown by", self.about), code(self.command)]
         parts.append(folded("What happens", lines_of(self.timeline), is_open=True))
         parts.append(folded("More of it", lines_of(self.detail.splitlines())))
@@ -78,17 +78,17 @@ class FoundFailure:
 
 @dataclass(frozen=True, repr=False, slots=True)
 class Explored:
-    """What became of a mission under many schedules.
+    """The results of a mission under many schedules.
 
     Attributes:
-        mission: what was explored, as it was given.
+        mission: the explored mission, as given.
         failures: each failure once, those of the default schedule first.
-        schedules: how many were flown.
-        failed: how many of them failed.
-        worst: the longest that was measured, and the schedule that gives it; None when nothing was to be.
-        troubles: errors of cfepy itself, which are to be reported.
-        notes: what its user should know.
-        numbers: what `to_dict` gives.
+        schedules: number of schedules flown.
+        failed: number of failed ones.
+        worst: the longest measured time and its schedule; None if nothing was measured.
+        troubles: errors of cfepy itself, which you should report.
+        notes: notes for the user.
+        numbers: the data of `to_dict`.
     """
 
     mission: str
@@ -101,7 +101,7 @@ class Explored:
     numbers: Mapping[str, Any]
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data, as `cfepy explore --json` writes it."""
+        """Return plain data, as in the output of `cfepy explore --json`."""
         return dict(self.numbers)
 
     def __repr__(self) -> str:
@@ -109,7 +109,7 @@ class Explored:
         return f"<{self.schedules} schedules, {self.failed} failed{titles}>"
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """Return the HTML for a notebook."""
         failed = f"{self.failed} failed" if self.failed else "none failed"
         parts = [headline(self.mission, f"{counted(self.schedules, 'schedule')}, {failed}")]
         parts += [trouble(f"an error of cfepy itself: {each}") for each in self.troubles]
@@ -142,40 +142,41 @@ def explore(
     shrink: int | None = None,
     **options: Unpack[RunOptions],
 ) -> Explored:
-    """Fly a mission under many schedules, and find what fails under some of them.
+    """Fly a mission under many schedules, and find the failures under some of them.
 
         for failure in cfepy.explore("my_mission", seeds=200, seconds=2).failures:
             print(failure.title, failure.command)
 
     Args:
-        mission: as of `run`.
-        seeds: how many schedules.
-        budget: wall time in s after which no further schedule is begun; None for no limit.
-        policy: where they come from: "random", "pct", "abreast", "dfs", "orders", or "all".
-        depth: of the bugs that PCT looks for; most preemptions of "dfs"; how many steps "orders" may differ in. None is
-            1 to 3, 2 and all.
-        until_failure: whether the first failure ends it.
-        any_priority: less urgent tasks may run before more urgent ones.
-        hold: how long the running task may be held up, in virtual s.
-        connect: how long a connection between two ROS nodes may take, in virtual s.
-        points: where others may get in besides calls: "lines", "attributes" or "calls", in some modules alone as
-            "lines:arm,util"; empty for nowhere.
-        start: virtual time in s until which all is as by default; 0 for that at which the mission is OPERATIONAL.
-        fair: decisions in which a task that could run may be passed over; None for any number.
+        mission: see `run`.
+        seeds: number of schedules.
+        budget: wall time in s after which no new schedule starts; None for no limit.
+        policy: their source: "random", "pct", "abreast", "dfs", "orders", or "all".
+        depth: depth of the bugs that PCT looks for; maximum number of preemptions of "dfs"; number of steps in which
+            "orders" may differ. None means 1 to 3, 2 and all.
+        until_failure: whether to stop at the first failure.
+        any_priority: whether less urgent tasks may run before more urgent ones.
+        hold: longest time to hold up the running task, in virtual s.
+        connect: longest delay of a connection between two ROS nodes, in virtual s.
+        points: preemption points besides calls: "lines", "attributes" or "calls", or only in some modules, as
+            "lines:arm,util"; empty for none.
+        start: virtual time in s until which the schedule is the default one; 0 means until the mission is OPERATIONAL.
+        fair: number of decisions in which a ready task may be passed over; None for no limit.
         events: which events of the mission's applications are failures: "error", "critical" or "none".
-        starved: virtual time in s for which a task may be ready and not run; None for any time.
-        livelock: virtual time in s for which an application may run on without a message; None for any time.
-        stuck: whether a task that waits for ever, and does not by default, is a failure.
-        worst: what is to take as long as it can, such as "latency:/topic"; None for nothing.
-        jobs: processes; None is one on each CPU.
-        results: file that keeps the verdicts, and that it goes on from.
-        shrink: how many runs it may take to shrink a failure; None for as many as there were schedules, 300 to 800; 0
-            leaves it as it is.
-        options: `seconds`, `seed`, `board`, `script`, `faults` and so on, see `RunOptions`. A schedule is none of them.
+        starved: virtual time in s after which a ready task that does not run is starved; None for no limit.
+        livelock: virtual time in s after which an application that runs without a message is livelocked; None for no
+            limit.
+        stuck: whether a task that waits forever, but not under the default schedule, is a failure.
+        worst: the time to maximize, such as "latency:/topic"; None for none.
+        jobs: number of processes; None means one for each CPU.
+        results: file that stores the verdicts, and from which the search resumes.
+        shrink: maximum number of runs to shrink a failure; None means the number of schedules, within 300 to 800; 0
+            does not shrink.
+        options: `seconds`, `seed`, `board`, `script`, `faults` and so on, see `RunOptions`. `schedule` is not allowed.
 
     Raises:
-        TypeError: there is no such option.
-        UsageError: there is no such mission, something in it or in an option is wrong, or it cannot boot.
+        TypeError: if there is no such option.
+        UsageError: if the mission does not exist, it or an option is wrong, or it cannot boot.
     """
     known = RunOptions.__annotations__.keys() - {"schedule"}
     if isinstance(options.get("faults"), Mapping):

@@ -1,12 +1,12 @@
-"""`Flight`: a mission under test. It goes on when the test says so, and remembers all that was sent.
+"""`Flight`: a mission under test. It runs when the test calls for it, and records everything that is sent.
 
     flight.run_until_operational()
     flight.send("SAMPLE_APP_NOOP")
     flight.expect_event("SAMPLE_APP", 2, within=1.0)
 
-Times are virtual, in seconds. Expectations look every 10 ms of virtual time, and at everything since the test last did
-something to the mission, so after one command several may stand in any order. `RosSide` finds mistakes of the test in
-messages, parameters and service calls; `cfepy.mission.host_actions` then carries them out.
+Times are virtual, in seconds. Expectations check every 10 ms of virtual time, and look at everything since the test's
+last action. So several expectations after one command can be in any order. `RosSide` finds mistakes of the test in
+messages, parameters and service calls. `cfepy.mission.host_actions` then carries them out.
 """
 
 from __future__ import annotations
@@ -38,32 +38,32 @@ from cfepy.units import NS_PER_MS, NS_PER_S
 if TYPE_CHECKING:
     from rospy_shim.runtime import RosRuntime
 
-__tracebackhide__ = True  # pytest shows the line of the test
+__tracebackhide__ = True  # pytest then shows the line of the test
 MISSING = object()
-LIKE_IT = 3  # names that are told in place of one that there is not
+LIKE_IT = 3  # number of similar names to suggest
 LOOK_NS = 10 * NS_PER_MS
 WITHIN_S = 5.0
 LONGEST_BOOT_S = 60.0
 TABLE_FILE = "/ram/cfepy_test.tbl"
 VALID = re.compile("validation succ|assumed valid")
-"""What CFE_TBL says of an image that its owner took, and of one whose owner looks at none."""
+"""The event texts of CFE_TBL for an image that its owner accepted, or whose owner does not validate."""
 
 
 class RosSide:
     """The ROS side of a mission, for its test.
 
     Args:
-        mission: the mission, also after it was reset.
+        mission: the mission; it may be reset.
     """
 
     def __init__(self, mission: Mission) -> None:
         self._mission = mission
 
     def _started(self) -> RosRuntime:
-        """The ROS side of the mission.
+        """Return the ROS side of the mission.
 
         Raises:
-            ExpectationError: there is none before the first node.
+            ExpectationError: if there is none before the first node.
         """
         ros: RosRuntime | None = self._mission.ros
         if ros is None:
@@ -75,7 +75,7 @@ class RosSide:
     # -- topics --------------------------------------------------------------------------------------------------------
 
     def publish(self, name: str, message: Any, fields: Mapping[str, Any]) -> None:
-        """Put a message on a topic; see `Flight.publish`."""
+        """Publish a message on a topic; see `Flight.publish`."""
         topic = self._topic(name)
         route = self._mission.cfe.sb.routes.get(topic.msg_id)
         if route is None or not route.active:
@@ -91,10 +91,10 @@ class RosSide:
         return known[full]
 
     def _payload(self, topic: Topic, message: Any, fields: Mapping[str, Any]) -> bytes:
-        """The message as ROS serialises it.
+        """Return the message in ROS serialization.
 
         Raises:
-            UsageError: it is of another type, or has no such field or value.
+            UsageError: if it has another type, or no such field or value.
         """
         if message is None:
             if not topic.type:
@@ -108,7 +108,7 @@ class RosSide:
     # -- parameters ----------------------------------------------------------------------------------------------------
 
     def param(self, name: str, default: Any) -> Any:
-        """A parameter's value now; see `Flight.param`."""
+        """Return the present value of a parameter; see `Flight.param`."""
         tree = self._started().graph.params
         found = tree.find(name)
         if found is not tree.MISSING:
@@ -125,7 +125,7 @@ class RosSide:
     # -- services ------------------------------------------------------------------------------------------------------
 
     def call(self, name: str, request: Any, fields: Mapping[str, Any]) -> HostCall:
-        """Begin to call a service; the mission has to run for the answer to come."""
+        """Start a service call; the mission must run for the response to arrive."""
         graph = self._started().graph
         services = graph.services
         full = name if name.startswith("/") else f"/{name}"
@@ -139,7 +139,7 @@ class RosSide:
 
 
 def near(name: str, known: Iterable[str]) -> str:
-    """What there is instead of a name: those that are like it, or all."""
+    """Return a hint for an unknown name: similar names, or all."""
     names = list(known)
     return did_you_mean(name, names, f"there are {', '.join(names) or 'none'}", most=LIKE_IT)
 
@@ -148,13 +148,13 @@ class Flight(Run):
     """A mission under test; the fixture `mission` makes it, and closes it.
 
     Args:
-        plan: what is flown.
-        policy: decides which task goes first, in place of the plan's schedule.
-        attachments: what else watches the run or changes it.
-        again: the command that does it again when the program has had a hand in it.
+        plan: the plan of the run.
+        policy: decides which task runs next, instead of the plan's schedule.
+        attachments: further objects that observe or modify the run.
+        again: returns the command that repeats the run if the program has acted on it.
 
     Attributes:
-        touched: whether the program has had a hand in it, other than to let it run.
+        touched: whether the program has acted on it, other than to let it run.
         closed: whether all its tasks have ended.
     """
 
@@ -181,18 +181,18 @@ class Flight(Run):
     # -- time ----------------------------------------------------------------------------------------------------------
 
     def run_for(self, seconds: float) -> None:
-        """Let the mission run for some virtual seconds more."""
+        """Run the mission for a number of virtual seconds."""
         self._run_until_ns(self.mission.kernel.now + round(seconds * NS_PER_S))
 
     def run_until(self, time: float) -> None:
-        """Let it run until a virtual time in s since the boot; nothing when that is over."""
+        """Run the mission until a virtual time in s since the boot; do nothing if that has passed."""
         self._run_until_ns(round(time * NS_PER_S))
 
     def run_until_operational(self, within: float = LONGEST_BOOT_S) -> None:
-        """Let it run until the startup script is done and cFE is OPERATIONAL, or was once.
+        """Run the mission until the startup script is done and cFE is OPERATIONAL, or was once.
 
         Raises:
-            ExpectationError: it is not after so many virtual seconds.
+            ExpectationError: if this takes more than `within` virtual seconds.
         """
         mission = self.mission
         operational = Wanted(
@@ -203,7 +203,7 @@ class Flight(Run):
         self._await(operational, within)
 
     def mark(self) -> None:
-        """Let the expectations that follow look only at what is still to come."""
+        """Make the following expectations look only at input from now on."""
         self._here = self.log.here()
 
     def _run_until_ns(self, until_ns: int) -> None:
@@ -220,14 +220,14 @@ class Flight(Run):
         """Put a command on the Software Bus at once.
 
         Args:
-            command: its name in the mission's dictionary, such as "CFE_ES_NOOP"; or the bytes of any packet, which
-                needs no subscriber.
-            values, fields: of its fields; those that are not given are zero.
+            command: its name in the mission's dictionary, such as "CFE_ES_NOOP"; or the bytes of any packet, which need
+                not have a subscriber.
+            values, fields: values of its fields; missing ones are zero.
 
         Raises:
-            UsageError: there is no such command or field.
-            CfeError: the bus refuses the packet, as when the length in its header is not its own.
-            ExpectationError: a command that was given by name has no subscriber.
+            UsageError: if the command or field does not exist.
+            CfeError: if the bus refuses the packet, for example for a wrong length in its header.
+            ExpectationError: if a command given by name has no subscriber.
         """
         packet = command if isinstance(command, bytes | bytearray) else self._packet(command, values, fields)
         bus = self.mission.cfe.sb
@@ -240,34 +240,34 @@ class Flight(Run):
         return self.dictionary.command(name).packet({**(values or {}), **fields})
 
     def publish(self, topic: str, message: Any = None, /, **fields: Any) -> None:
-        """Put a message on a ROS topic at once.
+        """Publish a message on a ROS topic at once.
 
         Args:
             topic: its name.
-            message: of the topic's type: one of ROS's own classes, or of `flight.message_class`.
-            fields: of a message of the topic's type, instead; dictionaries stand for nested messages.
+            message: a message of the topic's type, of ROS's own classes or of `flight.message_class`.
+            fields: fields of a message of the topic's type, as an alternative; dictionaries are nested messages.
 
         Raises:
-            UsageError: it is of another type, or has no such field or value.
-            ExpectationError: there is no such topic yet, or it has no subscriber.
+            UsageError: if it has another type, or no such field or value.
+            ExpectationError: if the topic does not exist yet, or has no subscriber.
         """
         self._act()
         self._checked(lambda: self._ros.publish(topic, message, fields))
 
     def call_service(self, name: str, request: Any = None, /, *, within: float = WITHIN_S, **fields: Any) -> Any:
-        """Call a ROS service, and let the mission run until the answer is there.
+        """Call a ROS service, and run the mission until the response arrives.
 
         Args:
-            name: of the service.
-            request: a message of its request's type.
-            within: virtual seconds in which the answer has to come.
-            fields: of a request, instead.
+            name: name of the service.
+            request: a message of its request type.
+            within: time limit of the response in virtual seconds.
+            fields: fields of a request, as an alternative.
 
         Returns:
             The response.
 
         Raises:
-            ExpectationError: no node offers it, it failed, or did not answer in time.
+            ExpectationError: if no node offers it, it failed, or there was no response in time.
         """
         self._act()
         call = self._checked(lambda: self._ros.call(name, request, fields))
@@ -278,14 +278,14 @@ class Flight(Run):
         return call.response
 
     def param(self, name: str, default: Any = MISSING) -> Any:
-        """A ROS parameter's value now.
+        """Return the present value of a ROS parameter.
 
         Args:
             name: its full name.
-            default: the value of one that is not there.
+            default: the result if the parameter does not exist.
 
         Raises:
-            ExpectationError: there is none, and no default.
+            ExpectationError: if it does not exist and there is no default.
         """
         return self._checked(lambda: self._ros.param(name, default))
 
@@ -299,14 +299,14 @@ class Flight(Run):
 
         Args:
             name: full name, such as "HK.CopyTable".
-            rows: as `cfepy.tbl.TableType.pack` takes them, or the table's bytes.
-            wake: a command that lets the table's owner look after its tables, such as "SAMPLE_APP_SEND_HK", for an
-                application that does so only when it is asked for housekeeping.
+            rows: see `cfepy.tbl.TableType.pack`, or the table's bytes.
+            wake: a command that makes the table's owner manage its tables, such as "SAMPLE_APP_SEND_HK", for an
+                application that does so only at a housekeeping request.
             within: virtual seconds for each of the three steps.
 
         Raises:
-            UsageError: there is no such table, or rows that are none of its.
-            ExpectationError: cFE or the table's owner refuses it.
+            UsageError: if the table does not exist, or the rows do not fit it.
+            ExpectationError: if cFE or the table's owner refuses it.
         """
         kind = table_type(name, self.plan.words[0])
         data = bytes(rows) if isinstance(rows, bytes | bytearray) else kind.pack(rows)
@@ -320,11 +320,11 @@ class Flight(Run):
         self._await_owner("Update", wake, within)
 
     def _await_owner(self, text: Text, wake: str | None, within: float) -> None:
-        """Wait for an event of CFE_TBL about what a table's owner does in CFE_TBL_Manage."""
+        """Wait for an event of CFE_TBL about the owner's work in CFE_TBL_Manage."""
         wanted = expectations.event(self.log, self._here, "CFE_TBL", None, text, None)
         first = self._here.events
         if wake is not None:
-            self._run_until_ns(self.mission.kernel.now + LOOK_NS)  # CFE_TBL has to have got its command before
+            self._run_until_ns(self.mission.kernel.now + LOOK_NS)  # CFE_TBL must have received its command before
             self.send(wake)
 
         def instead() -> str:
@@ -335,12 +335,12 @@ class Flight(Run):
         self._await(replace(wanted, instead=instead), within)
 
     def _act(self) -> None:
-        """The test does something: from here on, expectations look."""
+        """Mark an action of the test: expectations look at input from here on."""
         self.touched = True
         self.mark()
 
     def _checked(self, act: Callable[[], Any]) -> Any:
-        """Do something; what cannot be gets the text of a failure."""
+        """Perform an action; give an error the text of a failure."""
         try:
             return act()
         except ExpectationError as error:
@@ -370,7 +370,7 @@ class Flight(Run):
             The event: `at_ns`, `app`, `event_id`, `type_name`, `text`.
 
         Raises:
-            ExpectationError: it did not come.
+            ExpectationError: if the event did not occur.
         """
         event: DecodedEvent = self._await(expectations.event(self.log, self._here, app, event_id, text, type), within)
         return event
@@ -384,7 +384,9 @@ class Flight(Run):
         type: str | None = None,
         within: float = WITHIN_S,
     ) -> None:
-        """Let the mission run for `within` virtual seconds; arguments and errors as `expect_event`, the other way."""
+        """Run the mission for `within` virtual seconds, and fail if the event occurs; see `expect_event` for the
+        arguments.
+        """
         self._refuse(expectations.event(self.log, self._here, app, event_id, text, type), within)
 
     def expect_message(
@@ -394,22 +396,24 @@ class Flight(Run):
 
         Args:
             topic: its name.
-            check: tells whether a message is the one.
+            check: returns whether a message matches.
             within: virtual seconds from now.
-            fields: values that it has to have, or functions that accept them.
+            fields: required values of its fields, or functions that accept them.
 
         Returns:
             The message.
 
         Raises:
-            ExpectationError: it did not come.
+            ExpectationError: if no such message arrived.
         """
         return self._await(expectations.message(self.log, self._here, topic, check, fields), within)
 
     def expect_no_message(
         self, topic: str, check: Check | None = None, /, *, within: float = WITHIN_S, **fields: Any
     ) -> None:
-        """Let the mission run for `within` virtual seconds; arguments and errors as `expect_message`, the other way."""
+        """Run the mission for `within` virtual seconds, and fail if the message arrives; see `expect_message` for the
+        arguments.
+        """
         self._refuse(expectations.message(self.log, self._here, topic, check, fields), within)
 
     def expect_telemetry(
@@ -425,17 +429,17 @@ class Flight(Run):
         """Wait for a telemetry packet.
 
         Args:
-            name: in the mission's dictionary, such as "SAMPLE_APP_HK_TLM", or a MsgId such as "0x0883".
-            check: tells whether a packet is the one.
-            values, fields: values that its fields have to have, by path, or functions that accept them.
+            name: name in the mission's dictionary, such as "SAMPLE_APP_HK_TLM", or a MsgId such as "0x0883".
+            check: returns whether a packet matches.
+            values, fields: required values of its fields by path, or functions that accept them.
             within: virtual seconds from now.
 
         Returns:
             The packet.
 
         Raises:
-            UsageError: there is no such packet.
-            ExpectationError: it did not come.
+            UsageError: if the packet is unknown.
+            ExpectationError: if no such packet was sent.
         """
         wanted = {**(values or {}), **fields}
         entry = self.dictionary.telemetry_of(name)
@@ -445,20 +449,20 @@ class Flight(Run):
         return packet
 
     def expect_console(self, text: Text, *, within: float = WITHIN_S) -> str:
-        """Wait for a line of the console that contains a text or matches a regular expression; the line."""
+        """Wait for a line of the console that contains a text or matches a regular expression; return the line."""
         line: str = self._await(expectations.line(self.log.lines, self._here, text), within)
         return line
 
     def expect(self, check: Callable[[], Any], what: str | None = None, *, within: float = WITHIN_S) -> Any:
-        """Wait until a function returns something that is true; what it returned.
+        """Wait until a function returns a true value; return that value.
 
         Args:
             check: the function.
-            what: what it stands for, in the text of the failure.
+            what: its description in the text of the failure.
             within: virtual seconds from now.
 
         Raises:
-            ExpectationError: it never did.
+            ExpectationError: if it never did.
         """
         return self._await(expectations.condition(check, what), within)
 
@@ -483,7 +487,7 @@ class Flight(Run):
     # -- the end -------------------------------------------------------------------------------------------------------
 
     def flown(self) -> Flown:
-        """How the run ended, which it does now."""
+        """End the run now, and return its end state."""
         if self._flown is None:
             self._live.end(self._wall_ns)
             self.close()
@@ -491,14 +495,14 @@ class Flight(Run):
         return self._flown
 
     def close(self) -> None:
-        """End every task; what was taken down stays readable."""
+        """End every task; the recorded data stay readable."""
         if not self.closed:
             self.mission.kernel.check_caller()
             self.closed = True
             self._flight.__exit__(None, None, None)
 
     def command(self) -> str:
-        """The command that does the same run again: `cfepy run`, or the test when it has had a hand in it."""
+        """Return the command that repeats the run: `cfepy run`, or the test if it has acted on the mission."""
         return self._again() if self.touched and self._again is not None else super().command()
 
     def __enter__(self) -> Flight:

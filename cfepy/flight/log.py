@@ -1,6 +1,6 @@
-"""The log of a flight: packets, events, messages on topics and console lines, in the order in which they came.
+"""The log of a flight: packets, events, messages on topics and console lines, in order.
 
-It watches the Software Bus and changes nothing, so the run has the trace of one that is not watched.
+It observes the Software Bus and changes nothing, so the trace is the same as without it.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ from cfepy.units import NS_PER_S
 
 
 class Packet:
-    """A telemetry packet that was read; `packet["PacketID.AppName"]` gives a field by its path.
+    """A decoded telemetry packet; `packet["PacketID.AppName"]` returns a field by its path.
 
     Attributes:
-        name: as the dictionary has it.
-        at: virtual time of sending in s.
+        name: its name in the dictionary.
+        at: virtual time in s at which it was sent.
         sender: the application that sent it.
         values: its fields, as nested dictionaries.
         flat: its fields by path.
@@ -55,7 +55,7 @@ class Packet:
 
 
 class Here(NamedTuple):
-    """A place in a log: how many events, console lines, packets by MsgId, messages by topic there were."""
+    """A position in a log: the numbers of events, console lines, packets by MsgId and messages by topic."""
 
     events: int
     lines: int
@@ -67,16 +67,16 @@ START = Here(0, 0, {}, {})
 
 
 class FlightLog(Attachment):
-    """Takes down what is sent in a mission.
+    """Records everything sent in a mission.
 
     Args:
-        spec: the mission's.
+        spec: the mission.
 
     Attributes:
         events: all events, in order.
         packets: telemetry and commands by MsgId, in order.
         topics: the messages on ROS topics.
-        lines: of the console.
+        lines: the lines of the console.
     """
 
     def __init__(self, spec: MissionSpec) -> None:
@@ -93,11 +93,13 @@ class FlightLog(Attachment):
 
     @CachedProperty
     def dictionary(self) -> Dictionary:
-        """The mission's packets by name; made when first asked for, since the applications' code is read for it."""
+        """Return the mission's packets by name, created on demand, because it requires reading the
+        applications' code.
+        """
         return dictionary_of(self._spec)
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        return self._topic_watch.hearing(self._packet_watch.bus(base))  # a packet is looked at once
+        return self._topic_watch.hearing(self._packet_watch.bus(base))  # each packet is observed only once
 
     def begin(self, mission: Mission) -> None:
         self._mission = mission
@@ -111,7 +113,7 @@ class FlightLog(Attachment):
             self.events.append(DecodedEvent.of(seen))
 
     def heard(self, topic: str) -> list[Heard]:
-        """The messages on a ROS topic."""
+        """Return the messages on a ROS topic."""
         series = self.topics.get(topic)
         if series is None:
             return []
@@ -120,13 +122,13 @@ class FlightLog(Attachment):
         return found
 
     def here(self) -> Here:
-        """Where what is still to come begins."""
+        """Return the present end of the log."""
         packets = {msg_id: len(seen) for msg_id, seen in self.packets.items()}
         messages = {name: len(self.topics.series(name)) for name in self.topics.names}
         return Here(len(self.events), len(self.lines), packets, messages)
 
     def packet(self, seen: Seen) -> Packet:
-        """A packet, read."""
+        """Return a packet, decoded."""
         dictionary = self.dictionary
         entry = dictionary.telemetry_of(f"0x{seen.msg_id:04X}")
         if isinstance(entry, Topic) and not entry.type and self._mission is not None:
@@ -134,7 +136,7 @@ class FlightLog(Attachment):
         return Packet(seen, dictionary)
 
     def series(self) -> SeriesSet:
-        """Everything that was sent until now and whose layout is known: topics, telemetry and commands by name."""
+        """Return everything sent so far with a known layout: topics, telemetry and commands by name."""
         found, dictionary = SeriesSet(), self.dictionary
         for name in self.topics.names:
             found.add(self.topics.series(name))
@@ -150,6 +152,6 @@ class FlightLog(Attachment):
         return found
 
     def telemetry_names(self) -> list[str]:
-        """Names of the telemetry packets that were sent, in the order in which they first came."""
+        """Return the names of the telemetry packets sent so far, in the order of their first packets."""
         sent = [seen[0] for seen in self.packets.values()]
         return [self.dictionary.decode(each.packet).name for each in sent if get_type(each.packet) == MsgType.TLM]

@@ -18,18 +18,18 @@ SECONDS = {"time": (0, 2**32 - 1), "duration": (-(2**31), 2**31 - 1)}
 
 
 def array_of(field_type: str) -> tuple[str, int | None]:
-    """The type of an array's items, and its length if it is fixed."""
+    """Return the type of an array's items, and its length if it is fixed."""
     base, _, length = field_type[:-1].partition("[")
     return base, int(length) if length else None
 
 
 def build(library: Library, field_type: str, value: Any) -> Any:
-    """A message, or the value of a field, from plain data; what is a message already stays as it is.
+    """Return a message, or the value of a field, from plain data; a message stays unchanged.
 
     Args:
-        library: knows the type.
+        library: has the type.
         field_type: the type.
-        value: as `MessageValues` makes it.
+        value: a value from `MessageValues`.
     """
     if field_type.endswith("]") and not isinstance(value, bytes):
         return [build(library, array_of(field_type)[0], item) for item in value]
@@ -45,7 +45,8 @@ def build(library: Library, field_type: str, value: Any) -> Any:
 
 
 def library_near(place: str | os.PathLike[str] | None = None) -> Library:
-    """The message library of a program: ROS's common packages, those near it, those on ROS_PACKAGE_PATH.
+    """Return the message library of a program: ROS's common packages, packages near the program, and those on
+    ROS_PACKAGE_PATH.
 
     Args:
         place: a file or folder of the package; None for the working directory.
@@ -58,10 +59,10 @@ def library_near(place: str | os.PathLike[str] | None = None) -> Library:
 
 
 def library_of_class(kind: MessageClass) -> Library:
-    """The library that knows a class and what is nested in it.
+    """Return a library with a message class and its nested types.
 
     Raises:
-        UsageError: it is no message class.
+        UsageError: if it is not a message class.
     """
     from rospy_shim.types.msgs import library_of
 
@@ -72,31 +73,31 @@ def library_of_class(kind: MessageClass) -> Library:
 
 
 def filled(library: Library, kind: str, fields: Mapping[str, Any]) -> Any:
-    """A message with fields from plain values; dictionaries stand for nested messages.
+    """Return a message with fields from plain values; dictionaries are nested messages.
 
     Args:
-        library: knows the type.
+        library: has the type.
         kind: the type.
         fields: values by name.
 
     Raises:
-        UsageError: there is no such field, or a value does not fit.
+        UsageError: if there is no such field, or a value does not fit.
     """
     from rospy_shim.types.genpy.arguments import ArgumentFiller
 
     message = library.message_class(kind)()
     try:
         ArgumentFiller(library.message_class).fill_message_args(message, [dict(fields)])
-    except Exception as error:  # whatever genpy raises for values that do not fit
+    except Exception as error:  # any error of genpy for values that do not fit
         raise UsageError(f"no {kind}: {error}") from None
     return message
 
 
 def serialized(message: Any) -> bytes:
-    """The bytes of a message of whatever make.
+    """Return the bytes of a message of any implementation.
 
     Raises:
-        UsageError: it is no message.
+        UsageError: if it is not a message.
     """
     if not hasattr(message, "serialize"):
         raise UsageError(f"{message!r} is no ROS message; give one, or its fields by name")

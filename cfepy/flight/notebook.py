@@ -1,4 +1,4 @@
-"""What a notebook shows of a run: what is wrong first, then tables; and pictures of values over time."""
+"""The notebook view of a run: problems first, then tables, and pictures of values over time."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
     from cfepy.pilot import Results
 
 PICTURE: Hook[Callable[[SeriesSet, Sequence[str], str, Path | None], Any]] = Hook("picture")
-"""Draws what words mean into a figure of matplotlib: the values, the words, the title, the file to write or None."""
-LAST_LINES = 30  # of the console: the rest is in `Run.console`
+"""Draws the named values into a matplotlib figure: the values, the names, the title, the file to write or None."""
+LAST_LINES = 30  # of the console; all lines are in `Run.console`
 SERIOUS = ("ERROR", "CRITICAL")
 
 
 class Picture:
-    """A picture that a notebook shows by itself.
+    """A picture that a notebook displays.
 
     Attributes:
-        figure: of matplotlib, to be changed or saved.
+        figure: the matplotlib figure, to change or save.
     """
 
     def __init__(self, figure: Figure) -> None:
@@ -40,14 +40,14 @@ class Picture:
         return f"<Picture of {len(self.figure.axes)} axes>"
 
     def _repr_png_(self) -> bytes:
-        """What a notebook shows."""
+        """Return the PNG for a notebook."""
         stream = io.BytesIO()
         self.figure.savefig(stream, format="png")
         return stream.getvalue()
 
 
 def picture(series: SeriesSet, words: Sequence[str], title: str, file: str | os.PathLike[str] | None) -> Picture:
-    """A picture of what words mean, as `cfepy plot` draws it; see `Run.plot`."""
+    """Return a picture of named values, as `cfepy plot` draws it; see `Run.plot`."""
     draw = PICTURE.need("a picture of a run")
     try:
         return Picture(draw(series, words, title, None if file is None else Path(file)))
@@ -64,12 +64,12 @@ def page_of_run(
     events: Sequence[DecodedEvent],
     console: Sequence[str],
 ) -> str:
-    """A run as HTML.
+    """Return a run as HTML.
 
     Args:
-        results: its numbers; without a trace as long as it flies.
-        problems: what is wrong.
-        notes: what its user should know.
+        results: its numbers; without a trace while it flies.
+        problems: its problems.
+        notes: notes for the user.
         events: all events.
         console: all lines.
     """
@@ -83,7 +83,7 @@ def page_of_run(
 
 
 def _topics(results: Results) -> str:
-    """Those with most messages first: they are why one looks."""
+    """Return the table of topics, those with the most messages first."""
     topics = sorted((row for row in results.topics if row.sent), key=lambda row: (-row.sent, row.msg_id))
     rows = [
         (
@@ -104,7 +104,7 @@ def _topics(results: Results) -> str:
 
 
 def _apps(results: Results) -> str:
-    """The mission's own; those that are not well first."""
+    """Return the table of the mission's own applications, those that are not RUNNING first."""
     apps = sorted((row for row in results.apps if not row.core), key=lambda row: row.state == "RUNNING")
     rows = [(row.name, row.state, row.cpu_text, row.restarts, row.error or "") for row in apps]
     states = ", ".join(f"{count} {state}" for state, count in Counter(row.state for row in apps).items())
@@ -112,7 +112,7 @@ def _apps(results: Results) -> str:
 
 
 def _events(events: Sequence[DecodedEvent], results: Results) -> str:
-    """The serious ones first."""
+    """Return the table of events, the serious ones first."""
     serious = sorted(events, key=lambda event: event.type_name not in SERIOUS)
     rows = [(f"{each.at_ns / NS_PER_S:.3f}", each.app, each.event_id, each.type_name, each.text) for each in serious]
     counts = ", ".join(f"{count} {kind}" for kind, count in results.events.items() if count)

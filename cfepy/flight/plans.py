@@ -1,4 +1,6 @@
-"""What a program says of a run, as a `RunPlan`: a mission, and what decides the run, by name."""
+"""The options of a program for a run, converted to a `RunPlan`: a mission, and all options that decide the run, by
+name.
+"""
 
 from __future__ import annotations
 
@@ -17,37 +19,38 @@ if TYPE_CHECKING:
     from cfepy.faults import FaultPlan
 
 MissionWords = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
-"""A mission: the name of one that cfepy brings along, a folder, a startup script, a launch file, or a node's .py file;
-in a sequence with what follows it on the command line, such as `("talker.py", "_rate:=5")`."""
+"""A mission: the name of one included in cfepy, a folder, a startup script, a launch file, or a node's .py file. A
+sequence also has the words after it on the command line, such as `("talker.py", "_rate:=5")`.
+"""
 
 Faults: TypeAlias = "str | os.PathLike[str] | Mapping[str, Any] | FaultPlan"
-"""What goes wrong: a plan's file, "seed:N", a plan, or a dictionary of its form."""
+"""The faults of a run: a plan's file, "seed:N", a plan, or a dictionary of its form."""
 
 SEED = "seed:"
 _NODE_FILE = ".py"
 
 
 class MissionOptions(TypedDict, total=False):
-    """What decides how a mission flies. What is not given is as usual.
+    """Options that decide how a mission flies. Missing options have their defaults.
 
     Attributes:
-        seed: of everything random.
+        seed: seed of everything random.
         board: name of a board, or its file.
-        tasks: "thread", "greenlet", or "auto", which is greenlets where they are installed, else threads.
-        schedule: which task goes first, such as "random:7".
-        faults: what goes wrong: a plan's file, "seed:N", a `cfepy.faults.FaultPlan` or a dictionary of that form.
-        play: a bag or an MCAP file that is played into the mission.
-        play_options: how, as `rosbag play` is told, such as "--rate 2 --topics /a /a:=/b".
-        args: of a launch file.
-        stall: seconds of wall time after which a task that does not give up the CPU ends the run; 0 waits for ever.
-        races: accesses of Python code that nothing orders are looked for, and told with what went wrong.
-        guard: compiled applications fault where they write past a buffer, or use one that was freed.
-        cpp_nodes: how nodes in C++ of launch files are built: "host", "pool", "strict", or a mission whose
-            file has the section `cpp_nodes:`, or that file.
-        settings: ROS parameters by their full names, in place of what the mission says of them.
-        spacecraft_id: number of the spacecraft, in place of the mission's own.
-        processor_id: number of the processor, in place of the mission's own.
-        beside: missions that fly beside it, on one network with it; "MISSION@0.5" begins half a second later.
+        tasks: "thread", "greenlet", or "auto": greenlets if they are installed, otherwise threads.
+        schedule: the rule for the next task, such as "random:7".
+        faults: the faults to inject: a plan's file, "seed:N", a `cfepy.faults.FaultPlan` or a dictionary of that form.
+        play: a bag or an MCAP file to play into the mission.
+        play_options: options as for `rosbag play`, such as "--rate 2 --topics /a /a:=/b".
+        args: arguments of a launch file.
+        stall: wall time in s after which the run is ended if a task does not give up the CPU; 0 for no limit.
+        races: whether to detect unordered accesses of Python code and report them as problems.
+        guard: whether compiled applications fault if they write past a buffer or use a freed one.
+        cpp_nodes: how nodes in C++ of launch files are built: "host", "pool", "strict", or a mission whose file has the
+            section `cpp_nodes:`, or the file itself.
+        settings: ROS parameters by their full names, which override the mission's.
+        spacecraft_id: number of the spacecraft, which overrides the mission's.
+        processor_id: number of the processor, which overrides the mission's.
+        beside: missions that fly together with it on one network; "MISSION@0.5" starts half a second later.
     """
 
     seed: int
@@ -69,12 +72,12 @@ class MissionOptions(TypedDict, total=False):
 
 
 class RunOptions(MissionOptions, total=False):
-    """What decides a run: `MissionOptions`, and how long it goes on.
+    """Options that decide a run: `MissionOptions`, and its length.
 
     Attributes:
-        seconds: virtual time to run, from the boot; of a node, from its start.
-        script: file of commands and expectations.
-        stop_on_failure: the run ends with the first step of the script that fails.
+        seconds: virtual time to run in s, from the boot, or from its start for a single node.
+        script: file with commands and expectations.
+        stop_on_failure: whether the run ends at the first failed step of the script.
     """
 
     seconds: float | None
@@ -83,16 +86,16 @@ class RunOptions(MissionOptions, total=False):
 
 
 def plan_of(mission: MissionWords, options: Mapping[str, Any], known: Iterable[str]) -> RunPlan:
-    """The plan of a run.
+    """Return the plan of a run.
 
     Args:
-        mission: what is flown.
-        options: of the run, by name.
-        known: the names that there are.
+        mission: the mission.
+        options: options of the run, by name.
+        known: the valid names.
 
     Raises:
-        TypeError: an option that there is not.
-        UsageError: the schedule is none, or what is said of nodes in C++ is nowhere.
+        TypeError: for an unknown option.
+        UsageError: if the schedule or the source of the settings for nodes in C++ is invalid.
     """
     names = sorted(known)
     for name in options:
@@ -121,24 +124,24 @@ def _words(mission: MissionWords) -> tuple[str, ...]:
 
 
 def schedule_of(given: str | Schedule) -> Schedule:
-    """A schedule, from its text or as it is.
+    """Return a schedule, from its text or unchanged.
 
     Raises:
-        UsageError: the text is none.
+        UsageError: if the text is not a schedule.
     """
     return given if isinstance(given, Schedule) else Schedule.parse(given)
 
 
 def fault_text(faults: Faults | None) -> str | None:
-    """What a plan says of the faults; None for those that the program alone has, see `fault_attachments`."""
+    """Return the faults for a plan as text; None for faults that only the program has, see `fault_attachments`."""
     return os.fspath(faults) if isinstance(faults, str | os.PathLike) else None
 
 
 def fault_attachments(faults: Faults | None) -> list[Attachment]:
-    """What lets faults happen that the program alone has.
+    """Return the attachments for faults that only the program has.
 
     Raises:
-        UsageError: something in the plan is wrong.
+        UsageError: if the fault plan is wrong.
     """
     if faults is None or isinstance(faults, str | os.PathLike):
         return []

@@ -1,9 +1,9 @@
-"""`Run`: a mission that flies or has flown, to be looked at: messages, packets, events, console, numbers.
+"""`Run`: the data of a mission that flies or has flown: messages, packets, events, console, numbers.
 
     run.topic("/joint_states").to_numpy("position")
     run.trace, run.speed, run.topics, run.apps, run.events, run.console
 
-It finds what a `FlightLog` has kept by its name, and makes the errors of expectations that were not met.
+It finds the data of a `FlightLog` by name, and creates the errors of failed expectations.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from cfepy.pilot import AppResult, Flown, Results, RunPlan, TopicResult, mark, p
 from cfepy.units import NS_PER_S
 from cfepy.writing.escapes import visible
 
-__tracebackhide__ = True  # pytest shows the line of the test
+__tracebackhide__ = True  # pytest then shows the line of the test
 LAST_LINES = 10  # of the console, in the text of a failure
 
 
 class ExpectationError(AssertionError):
-    """Something that a test waited for did not come, or something came that must not.
+    """Exception for an expectation of a test that failed: an item was missing, or one occurred that must not.
 
-    The text says what was expected and until when, what there was instead, and the command that does it again. Control
-    characters of messages and events in it are escapes.
+    The text has the expectation and its time limit, the nearest other input, and the command that repeats the run.
+    Control characters of messages and events are escaped.
     """
 
     def __str__(self) -> str:
@@ -40,7 +40,7 @@ class ExpectationError(AssertionError):
 
 @dataclass(frozen=True, slots=True)
 class App:
-    """An application: its state ("RUNNING", "GONE", ...), how often it was restarted and died, its last error."""
+    """An application: its state ("RUNNING", "GONE", ...), its numbers of restarts and deaths, its last error."""
 
     name: str
     state: str
@@ -50,16 +50,16 @@ class App:
 
 
 class Run:
-    """A mission that flies or has flown, to be looked at. A notebook shows it as tables.
+    """The data of a mission that flies or has flown. A notebook shows it as tables.
 
-    The numbers of a run that still flies are those until now; those of its whole, `trace`, `speed` and `results`, end
+    While the run flies, its numbers are those so far. `trace`, `speed` and `results` are about the whole run, and end
     it.
 
     Args:
-        plan: of the run.
-        mission: that is flown.
-        log: attached to it.
-        flown: its end; None as long as it flies.
+        plan: plan of the run.
+        mission: the mission.
+        log: the log attached to it.
+        flown: its end state; None while it flies.
 
     Attributes:
         plan, mission, log: as given.
@@ -73,27 +73,27 @@ class Run:
 
     @property
     def dictionary(self) -> Dictionary:
-        """Its packets by name."""
+        """The mission's packets by name."""
         return self.log.dictionary
 
     @property
     def now(self) -> float:
-        """Virtual time in s since the boot; when the results are there, that of the end without the nodes' shutdown."""
+        """Virtual time in s since the boot; after the end, the end of the run without the nodes' shutdown."""
         return self.mission.kernel.now / NS_PER_S if self._flown is None else self._flown.results.virtual_s
 
     @property
     def trace(self) -> str:
-        """The digest of the run, 32 hexadecimal digits: the same for the same run. Asking for it ends the run."""
+        """The digest of the run, 32 hexadecimal digits, equal for equal runs. Reading it ends the run."""
         return self.results.trace
 
     @property
     def speed(self) -> float:
-        """Virtual time by wall time. Asking for it ends the run."""
+        """Virtual time divided by wall time. Reading it ends the run."""
         return self.results.speed
 
     @property
     def topics(self) -> list[TopicResult]:
-        """What became of the messages of each topic and packet, a row for each MsgId."""
+        """The delivery counts of each topic and packet, a row for each MsgId."""
         return self._numbers.topics
 
     @property
@@ -103,12 +103,12 @@ class Run:
 
     @property
     def _numbers(self) -> Results:
-        """Of the whole run, or until now."""
+        """The numbers of the whole run, or so far."""
         return self._flown.results if self._flown is not None else Results.of(self.mission, mark(self.mission, 0), "")
 
     @property
     def console(self) -> list[str]:
-        """All lines of the console: system log, events on the port, what nodes print and log."""
+        """All lines of the console: system log, events on the port, output and logs of nodes."""
         return self.log.lines
 
     @property
@@ -118,35 +118,35 @@ class Run:
 
     @property
     def series(self) -> SeriesSet:
-        """Values over time of everything that was sent until now; `Run.topic` gives one of them."""
+        """Values over time of everything sent so far; `Run.topic` returns one of them."""
         return self.log.series()
 
     def topic(self, name: str) -> Series:
-        """What was sent on a ROS topic, or as a cFE packet, with its values over time.
+        """Return the messages on a ROS topic, or the packets of a cFE packet type, with their values over time.
 
         Args:
-            name: of the topic, or of the packet in the mission's dictionary, such as "CFE_ES_HK_TLM".
+            name: name of the topic, or of the packet in the mission's dictionary, such as "CFE_ES_HK_TLM".
 
         Returns:
-            The messages: `to_numpy(field)` gives times in s and values, `to_pandas()` a table.
+            The messages: `to_numpy(field)` returns times in s and values, `to_pandas()` a table.
 
         Raises:
-            UsageError: nothing was sent under this name.
+            UsageError: if nothing was sent under this name.
         """
         found = self.log.topics.get(name)
         return self.series.series(name) if found is None else found
 
     def plot(self, name: str, *fields: str, file: str | os.PathLike[str] | None = None) -> Picture:
-        """A picture of values over time, one axes below the other.
+        """Return a picture of values over time, one axes below the other.
 
         Args:
-            name: of a topic or a packet.
-            fields: their paths, such as "position" or "pose.position.x"; all when there are none.
-            file: where it is written, as PNG, SVG or PDF by its name; None writes nothing.
+            name: name of a topic or a packet.
+            fields: their paths, such as "position" or "pose.position.x"; empty for all.
+            file: file to write, as PNG, SVG or PDF by its suffix; None writes none.
 
         Raises:
-            UsageError: nothing was sent under this name, there is no such field, matplotlib is not installed, or the
-                file cannot be written.
+            UsageError: if nothing was sent under this name, the field does not exist, matplotlib is not installed, or
+                the file cannot be written.
         """
         words = [f"{name}.{field}" for field in fields] or [name]
         return picture(self.series, words, self.mission.spec.name, file)
@@ -156,24 +156,24 @@ class Run:
         return f"<{self.mission.spec.name}: {self.now:.3f} virtual s, seed {self.plan.seed}, {state}>"
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """Return the HTML for a notebook."""
         notes = () if self._flown is None else self._flown.notes
         return page_of_run(self._numbers, self.problems, notes, self.events, self.console)
 
     def messages(self, topic: str) -> list[Any]:
-        """All messages on a ROS topic, also those without a subscriber."""
+        """Return all messages on a ROS topic, including those without a subscriber."""
         return [each.msg for each in self.history(topic)]
 
     def history(self, topic: str) -> list[Heard]:
-        """The messages on a ROS topic: `msg` is the message, `sender` its sender, `t` its time in virtual s."""
+        """Return the messages on a ROS topic: `msg` is the message, `sender` its sender, `t` its time in virtual s."""
         return self.log.heard(topic)
 
     def telemetry(self, name: str) -> Packet:
-        """The last packet of a kind.
+        """Return the last packet of a kind.
 
         Raises:
-            UsageError: there is no such packet in the dictionary.
-            ExpectationError: none was sent.
+            UsageError: if the packet is not in the dictionary.
+            ExpectationError: if none was sent.
         """
         found = self.packets(name)
         if not found:
@@ -183,19 +183,20 @@ class Run:
         return found[-1]
 
     def packets(self, name: str) -> list[Packet]:
-        """All packets of a kind, by the name of the telemetry or its MsgId, also those without a subscriber.
+        """Return all packets of a kind, by the name of the telemetry or its MsgId, including those without a
+        subscriber.
 
         Raises:
-            UsageError: there is no such packet in the dictionary.
+            UsageError: if the packet is not in the dictionary.
         """
         msg_id = self.dictionary.telemetry_of(name).msg_id
         return [self.log.packet(seen) for seen in self.log.packets.get(msg_id, ())]
 
     def stdout(self, node: str) -> list[str]:
-        """The lines that a node has printed and logged, by the node's name, without the name in front.
+        """Return the lines that a node has printed and logged, without the node's name in front.
 
         Raises:
-            ExpectationError: there is no such node, and was none.
+            ExpectationError: if there is and was no such node.
         """
         name = node.lstrip("/")
         found = [line.removeprefix(f"[{name}] ") for line in self.log.lines if line.startswith(f"[{name}] ")]
@@ -206,10 +207,10 @@ class Run:
         return found
 
     def app(self, name: str) -> App:
-        """An application, by its cFE name.
+        """Return an application, by its cFE name.
 
         Raises:
-            ExpectationError: there is none, and was none.
+            ExpectationError: if there is and was no such application.
         """
         es = self.mission.cfe.es
         history = es.history.get(name)
@@ -225,16 +226,17 @@ class Run:
 
     @property
     def problems(self) -> list[str]:
-        """A line for each thing that went wrong until now, as a run's report tells it; a run without one went well."""
+        """A line for each problem so far, as in a run's report; a run without problems went well."""
         if self._flown is not None:
             return self._flown.results.problems
         return [problem.text for problem in problems_of(self.mission, endless_waits(self.mission))]
 
     def message_class(self, kind: str) -> Any:
-        """The class of a ROS message type, such as "std_msgs/Float64", also of the mission's own packages.
+        """Return the class of a ROS message type, such as "std_msgs/Float64", including those of the mission's own
+        packages.
 
         Raises:
-            UsageError: there is no such type.
+            UsageError: if the type is unknown.
         """
         return library_near(self.mission.spec.folder).message_class(kind)
 
@@ -242,16 +244,16 @@ class Run:
 
     @property
     def results(self) -> Results:
-        """The numbers of the whole run (`cfepy.pilot.Results`). Asking for them ends it: the nodes shut down."""
+        """The numbers of the whole run (`cfepy.pilot.Results`). Reading them ends the run: the nodes shut down."""
         return self.flown().results
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What its user should know, such as a fault that never happened. Asking for it ends the run."""
+        """Notes for the user, such as a fault that never happened. Reading them ends the run."""
         return self.flown().notes
 
     def flown(self) -> Flown:
-        """How it ended."""
+        """Return the end state."""
         assert self._flown is not None
         return self._flown
 
@@ -262,11 +264,11 @@ class Run:
         return ExpectationError("\n".join([first, *self.state_lines(), f"the same again: {self.command()}"]))
 
     def state_lines(self) -> list[str]:
-        """What is wrong, and the end of the console, as failures have it."""
+        """Return the problems and the end of the console, as failures show them."""
         lines = [f"  {line}" for line in self.log.lines[-LAST_LINES:]]
         problems = [f"problem: {each}" for each in self.problems]
         return [*problems, f"console until {self.now:.3f}:", *lines]
 
     def command(self) -> str:
-        """The command that does the same run again."""
+        """Return the command that repeats the run."""
         return replace(self.plan, seconds=self.now).command_line()

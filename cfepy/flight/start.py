@@ -1,7 +1,7 @@
 """`run`, `boot` and `replay`: a mission by its name, flown to its end, step by step, or again.
 
-Each gets the mission as the command line does, and options by name. What they raise for a mission, an option or a file
-that is wrong is a `UsageError`, which says where and what to do.
+Each takes the mission like the command line, and options by name. For a wrong mission, option or file they raise a
+`UsageError`, which names the place and the remedy.
 """
 
 from __future__ import annotations
@@ -47,21 +47,21 @@ def run(
         run.topic("/joint_states").to_numpy("position")
 
     Args:
-        mission: the name of a mission that cfepy brings along, a folder, a startup script, a launch file or a node's
-            .py file; in a sequence with what follows it on the command line.
-        attachments: what else watches the run or changes it.
-        journal: file into which the run is recorded; None records none.
-        echo: whether the console's lines are printed.
+        mission: the name of a mission included in cfepy, a folder, a startup script, a launch file or a node's .py
+            file; a sequence also has the words after it on the command line.
+        attachments: further objects that observe or modify the run.
+        journal: file to record the run in; None for none.
+        echo: whether to print the console's lines.
         options: `seconds`, `seed`, `board`, `tasks`, `schedule`, `script`, `stop_on_failure`, `faults`, `play`,
-            `play_options`, `args`, `stall`, `guard`, `races`, `cpp_nodes`, `settings`, `spacecraft_id`,
-            `processor_id` and `beside`, see `RunOptions`.
+            `play_options`, `args`, `stall`, `guard`, `races`, `cpp_nodes`, `settings`, `spacecraft_id`, `processor_id`
+            and `beside`, see `RunOptions`.
 
     Returns:
-        The run, with everything that was sent in it.
+        The run, with all data sent in it.
 
     Raises:
-        TypeError: there is no such option.
-        UsageError: there is no such mission, something in it or in an option is wrong, or it cannot boot.
+        TypeError: for an unknown option.
+        UsageError: if the mission does not exist, it or an option is wrong, or it cannot boot.
     """
     plan = plan_of(mission, options, RunOptions.__annotations__)
     return fly_plan(plan, [*fault_attachments(options.get("faults")), *attachments], journal, echo)
@@ -73,7 +73,7 @@ def fly_plan(
     journal: str | os.PathLike[str] | None = None,
     echo: bool = False,
 ) -> Run:
-    """As `run`, of a plan."""
+    """Fly a plan to its end; see `run`."""
     spec = plan.spec()
     log = FlightLog(spec)
     watching, console = [log, *attachments], Console(quiet=not echo)
@@ -87,7 +87,7 @@ def fly_plan(
 
 
 def boot(mission: MissionWords, *, attachments: Sequence[Attachment] = (), **options: Unpack[MissionOptions]) -> Flight:
-    """Boot a mission, which stands at virtual time 0 and goes on when it is told.
+    """Boot a mission, which is paused at virtual time 0 until you let it run.
 
         with cfepy.boot("capture") as m:
             m.run_for(2.0)
@@ -95,18 +95,17 @@ def boot(mission: MissionWords, *, attachments: Sequence[Attachment] = (), **opt
             m.expect_event("CFE_ES", 3)
 
     Args:
-        mission: as of `run`.
-        attachments: what else watches the run or changes it.
+        mission: see `run`.
+        attachments: further objects that observe or modify the run.
         options: `seed`, `board`, `tasks`, `schedule`, `faults`, `play`, `play_options`, `args`, `stall`, `guard`,
-            `races`, `cpp_nodes`, `settings`, `spacecraft_id`, `processor_id` and `beside`,
-            see `MissionOptions`.
+            `races`, `cpp_nodes`, `settings`, `spacecraft_id`, `processor_id` and `beside`, see `MissionOptions`.
 
     Returns:
-        The flight, to be closed: use it as a context manager.
+        The flight, which must be closed; use it as a context manager.
 
     Raises:
-        TypeError: there is no such option.
-        UsageError: as of `run`.
+        TypeError: for an unknown option.
+        UsageError: see `run`.
     """
     from cfepy.flight.flight import Flight
 
@@ -115,17 +114,17 @@ def boot(mission: MissionWords, *, attachments: Sequence[Attachment] = (), **opt
 
 
 def replay(journal: str | os.PathLike[str], *, tasks: str | None = None) -> Run:
-    """Do the run of a journal again, as `cfepy replay` does.
+    """Repeat the run of a journal, like `cfepy replay`.
 
     Args:
         journal: the file.
-        tasks: "thread", "greenlet" or "auto"; None is that of the journal.
+        tasks: "thread", "greenlet" or "auto"; None takes the journal's.
 
     Returns:
-        The run. Its trace is the journal's when it was the same.
+        The run. Its trace equals the journal's if the runs are equal.
 
     Raises:
-        UsageError: it is no journal, or its mission cannot fly.
+        UsageError: if it is not a journal, or its mission cannot fly.
     """
     from cfepy.journal import Replay, read_journal, staged
 
@@ -134,5 +133,5 @@ def replay(journal: str | os.PathLike[str], *, tasks: str | None = None) -> Run:
         log = FlightLog(stage.spec())
         again = Replay(journal_of_run, stage, tasks=tasks)
         flown = again.fly([log], host=TimedHost())
-        _ = log.dictionary  # made now: the files that it is read from are about to go
+        _ = log.dictionary  # created now, because the files it is read from are about to disappear
         return Run(again.plan, flown.mission, log, flown)

@@ -1,8 +1,8 @@
-"""File services (CFE_FS): file and table headers, CRC, file names; in `services`, `cfe.fs`.
+"""File services (CFE_FS): file and table headers, CRC and file names; `services` has `cfe.fs`.
 
-What belongs here knows how cFE's files are laid out and named, or writes files in the background. What a particular
-file contains belongs to the service that writes it. All names below but `FileServices` are usable without a mission.
-The central file is `cfepy/fs/services.py`.
+Code that defines the layout and names of cFE's files, or writes files in the background, belongs here. The content of a
+file belongs to the service that writes it. You can use all names below without a mission, except `FileServices`. The
+central file is `cfepy/fs/services.py`.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ __all__ = [
     "write_table_file",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

@@ -1,7 +1,7 @@
-"""Files that are written bit by bit by a background task (CFE_FS_BackgroundFileDump*).
+"""Files that a background task writes in small parts (CFE_FS_BackgroundFileDump*).
 
-Code that has much to write describes it in a `FileWriteMetaData` and goes on; the background task of Executive Services
-asks for one record after the other, as many bytes a second as it may, and reports how it ended.
+Code with much to write describes it in a `FileWriteMetaData` and continues. The background task of Executive Services
+requests one record after another, within a limit of bytes per second, and reports the result.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from cfepy.status import (
     CfeError,
 )
 
-MAX_REQUESTS = 3  # CFE_FS_MAX_BACKGROUND_FILE_WRITES less the entry of its ring that stays empty
+MAX_REQUESTS = 3  # CFE_FS_MAX_BACKGROUND_FILE_WRITES minus the entry of its ring that stays empty
 BYTES_PER_SECOND = 10_000
 MAX_CREDIT = 10_000
 
 
 class FileWriteEvent(IntEnum):
-    """How a background write ended (CFE_FS_FileWriteEvent_t)."""
+    """The result of a background write (CFE_FS_FileWriteEvent_t)."""
 
     COMPLETE = 1
     CREATE_ERROR = 2
@@ -36,7 +36,7 @@ class FileWriteEvent(IntEnum):
 
 
 class FileWrite(Protocol):
-    """A file to be written, as the queue sees it; see `FileWriteMetaData`."""
+    """A file to write, as the queue sees it; see `FileWriteMetaData`."""
 
     is_pending: bool
 
@@ -54,24 +54,24 @@ class FileWrite(Protocol):
 
     @property
     def get_data(self) -> Callable[[int], tuple[bytes, bool]]:
-        """Gives a record by its number, and whether it is the last one."""
+        """Returns a record by its number, and whether it is the last one."""
 
     @property
     def on_event(self) -> Callable[[FileWriteEvent, int, int, int, int], object]:
-        """Told how it ended."""
+        """Called with the result."""
 
 
 @dataclass(eq=False)
 class FileWriteMetaData:
-    """A file to be written (CFE_FS_FileWriteMetaData_t).
+    """A file to write (CFE_FS_FileWriteMetaData_t).
 
     Attributes:
         file_name: full path.
         file_subtype: SUBTYPE_* of its header.
         description: text of its header.
-        get_data: gives a record by its number, from 0, and whether it is the last one; empty records are left out.
-        on_event: told how it ended: event, status, number of the record, its size in bytes, bytes of the file.
-        is_pending: it is waiting or being written.
+        get_data: returns a record by its number, from 0, and whether it is the last one; empty records are not written.
+        on_event: called with the result: event, status, number of the record, its size in bytes, bytes of the file.
+        is_pending: whether it is waiting or being written.
     """
 
     file_name: str
@@ -83,12 +83,12 @@ class FileWriteMetaData:
 
 
 class BackgroundWriter:
-    """The queue of files to be written.
+    """The queue of files to write.
 
     Args:
-        osal: writes them.
+        osal: writes the files.
         write_header: writes the header to a descriptor; CFE_FS_WriteHeader.
-        wake: lets the background task run at once.
+        wake: wakes the background task.
     """
 
     def __init__(self, osal: Osal, write_header: Callable[[int, FileHeader], int], wake: Callable[[], object]) -> None:
@@ -102,7 +102,7 @@ class BackgroundWriter:
         self._size = 0
 
     def request(self, meta: FileWrite) -> None:
-        """Put a file into the queue; see `FileServices.background_file_dump_request`."""
+        """Add a file to the queue; see `FileServices.background_file_dump_request`."""
         if not callable(meta.get_data) or not callable(meta.on_event):
             raise CfeError(CFE_FS_BAD_ARGUMENT, "a background write needs a function for its data and one for its end")
         if not meta.file_name:
@@ -114,7 +114,7 @@ class BackgroundWriter:
         self._wake()
 
     def run(self, elapsed_ms: int) -> bool:
-        """Write as much as may be written after some time (CFE_FS_RunBackgroundFileDump); whether more is to do."""
+        """Write as much as the elapsed time allows (CFE_FS_RunBackgroundFileDump); return whether more is left."""
         self._credit = min(MAX_CREDIT, self._credit + elapsed_ms * BYTES_PER_SECOND // 1000)
         if not self._waiting:
             return False
@@ -128,7 +128,7 @@ class BackgroundWriter:
         return bool(self._waiting)
 
     def _begin(self, meta: FileWrite) -> bool:
-        """Make the file with its header; False after an error."""
+        """Create the file with its header; return False after an error."""
         try:
             flags = OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE
             self._filedes = self._osal.open_create(meta.file_name, flags, OS_WRITE_ONLY)
@@ -146,7 +146,7 @@ class BackgroundWriter:
         return True
 
     def _write_record(self, meta: FileWrite) -> bool:
-        """Write the next record; True when that was the last one, or went wrong."""
+        """Write the next record; return True after the last one or an error."""
         data, is_last = meta.get_data(self._record)
         try:
             if data:

@@ -1,6 +1,6 @@
-"""The cyclic redundancy checks of CFE_ES_CalculateCRC: table images, CDS blocks and code segments are guarded by them.
+"""The checksums of CFE_ES_CalculateCRC, which protect table images, CDS blocks and code segments.
 
-cFE computes CRC-16/ARC alone; its CRC_8 and CRC_32 have been names without an algorithm from the start and give 0.
+cFE only computes CRC-16/ARC. Its CRC_8 and CRC_32 have always been names without an algorithm, and give 0.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ _REMEMBERED = 4096
 
 
 def crc16(data: bytes | bytearray | memoryview, crc: int = 0) -> int:
-    """CRC-16/ARC of some bytes.
+    """Return the CRC-16/ARC of some bytes.
 
-    An image of which little has changed since the last time is quick: the results of pieces are remembered, and those
-    of two pieces make that of both, since the code is linear.
+    It is fast for an image that has changed little since the last call: the results of parts are cached, and the
+    results of two parts give the result of both, because the code is linear.
 
     Args:
         data: the bytes.
-        crc: result of the bytes before these, 0 to begin.
+        crc: result of the preceding bytes, 0 at the start.
     """
     crc &= 0xFFFF
     whole = len(data) - len(data) % _PIECE if len(data) >= 2 * _PIECE else 0
     if whole:
-        if not crc and bytes(data) == bytes(len(data)):  # nothing yet, and only zeros: a table before its first load
+        if not crc and bytes(data) == bytes(len(data)):  # only zeros from the start: a table before its first load
             return 0
         low, high = _behind_a_piece()
         view = memoryview(data).cast("B")
@@ -66,14 +66,14 @@ def _crc_of_piece(piece: bytes) -> int:
 
 @lru_cache(1)
 def _behind_a_piece() -> tuple[list[int], list[int]]:
-    """What a piece of zeros makes of each CRC before it: of its low byte, and of its high byte."""
+    """Return the effect of a block of zeros on each CRC before it, for its low byte and its high byte."""
     zeros = bytes(_PIECE)
     of_bits = [_crc_of(zeros, 1 << bit) for bit in range(16)]
     return _sums(of_bits[:8]), _sums(of_bits[8:])
 
 
 def _sums(of_bits: list[int]) -> list[int]:
-    """The result for each byte, from those for its bits."""
+    """Return the result for each byte from the results for its bits."""
     sums = [0]
     for result in of_bits:
         sums += [before ^ result for before in sums]
@@ -81,11 +81,11 @@ def _sums(of_bits: list[int]) -> list[int]:
 
 
 def calculate_crc(data: bytes | bytearray | memoryview, crc: int = 0, kind: int = CRC_16) -> int:
-    """CFE_ES_CalculateCRC.
+    """Return a check value as CFE_ES_CalculateCRC does.
 
     Args:
-        data: the bytes; of none at all the result is `crc` itself.
-        crc: result of the bytes before these, 0 to begin.
+        data: the bytes; without any, the result is `crc` itself.
+        crc: result of the preceding bytes, 0 at the start.
         kind: CRC_16; any other kind gives 0, as in cFE.
     """
     if len(data) == 0:

@@ -1,6 +1,6 @@
-"""File names as people and commands give them, completed with the default directory and extension of their kind.
+"""File names as users and commands give them, completed with the default directory and extension of their kind.
 
-Stands for CFE_FS_ParseInputFileName and the like. Works on text alone and opens nothing.
+It replaces CFE_FS_ParseInputFileName and its relatives. It only handles text and opens no files.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from cfepy.reading.texts import from_bytes, to_bytes
 from cfepy.status import CFE_FS_BAD_ARGUMENT, CFE_FS_FNAME_TOO_LONG, CFE_FS_INVALID_PATH, CfeError
 
 MAX_PATH_LEN = 64
-"""OS_MAX_PATH_LEN and CFE_MISSION_MAX_PATH_LEN, the NUL included."""
+"""OS_MAX_PATH_LEN and CFE_MISSION_MAX_PATH_LEN, including the NUL."""
 
 NONVOL_MOUNT_POINT = "/cf"
 RAM_MOUNT_POINT = "/ram"
@@ -20,7 +20,7 @@ MODULE_EXTENSION = ".so"
 
 
 class FileCategory(IntEnum):
-    """Kind of file, which decides where it lives and how its name ends (CFE_FS_FileCategory_t)."""
+    """The kind of a file, which determines its directory and extension (CFE_FS_FileCategory_t)."""
 
     UNKNOWN = 0
     DYNAMIC_MODULE = 1
@@ -46,24 +46,26 @@ _EXTENSIONS: dict[int, str] = {
 
 
 def get_default_mount_point(category: int) -> str | None:
-    """Where files of a kind live, "/cf" or "/ram"; None for an unknown kind (CFE_FS_GetDefaultMountPoint)."""
+    """Return the mount point for files of a kind, "/cf" or "/ram"; None for an unknown kind
+    (CFE_FS_GetDefaultMountPoint).
+    """
     return _MOUNT_POINTS.get(category)
 
 
 def get_default_extension(category: int) -> str | None:
-    """How names of a kind end, with the dot; None when they have no usual end (CFE_FS_GetDefaultExtension)."""
+    """Return the default extension of a kind, with the dot; None if it has none (CFE_FS_GetDefaultExtension)."""
     return _EXTENSIONS.get(category)
 
 
 def _directory(parts: list[str], default_path: str | None) -> str:
-    """The path part of a name, with one "/" at its end; runs of "/" count as one."""
+    """Return the path part of a name, with one "/" at its end; runs of "/" count as one."""
     if not parts:
         return (default_path or "").rstrip("/") + "/"
     return re.sub("/+", "/", "/".join([*parts, ""]))
 
 
 class FileNameError(CfeError):
-    """A file name that cannot be; `made` is what was made of it, as NASA's code leaves it in the buffer."""
+    """Exception for an invalid file name; `made` is the incomplete result that NASA's code leaves in the buffer."""
 
     def __init__(self, status: int, text: str, made: str) -> None:
         super().__init__(status, text)
@@ -77,17 +79,17 @@ def parse_input_file_name_ex(
     default_extension: str | None = None,
     max_len: int = MAX_PATH_LEN,
 ) -> str:
-    """A complete file name from what a person or a command gave (CFE_FS_ParseInputFileNameEx).
+    """Return a complete file name from the input of a user or a command (CFE_FS_ParseInputFileNameEx).
 
     Args:
-        name: the input; what follows a NUL does not count.
-        default_name: taken when the input is empty.
-        default_path: put before a name without any "/".
-        default_extension: put after a name without any "."; a "." too many or too few between them is mended.
-        max_len: size of the C buffer the result must fit, its NUL included.
+        name: the input, up to a NUL.
+        default_name: used if the input is empty.
+        default_path: directory for a name without any "/".
+        default_extension: extension for a name without any "."; a missing or duplicate "." between them is corrected.
+        max_len: size of the C buffer for the result, including its NUL.
 
     Raises:
-        FileNameError: CFE_FS_INVALID_PATH when there is no name before the extension, CFE_FS_FNAME_TOO_LONG.
+        FileNameError: CFE_FS_INVALID_PATH if there is no name before the extension, CFE_FS_FNAME_TOO_LONG.
         CfeError: CFE_FS_BAD_ARGUMENT for a `max_len` of 0.
     """
     if max_len <= 0:
@@ -119,14 +121,14 @@ def parse_input_file_name(name: str, category: int, max_len: int = MAX_PATH_LEN)
 
 
 def dump_file_name(name: str, default_name: str) -> str:
-    """The path of a file that a command has written: as the command says, completed as binary dumps are.
+    """Return the path of a file that a command requests, completed like the names of binary dumps.
 
     Args:
-        name: from the command; empty for the default.
-        default_name: of this kind of file.
+        name: the name in the command; empty for the default.
+        default_name: the default of this kind of file.
 
     Raises:
-        CfeError: as `parse_input_file_name_ex`.
+        CfeError: see `parse_input_file_name_ex`.
     """
     category = FileCategory.BINARY_DATA_DUMP
     return parse_input_file_name_ex(
@@ -135,7 +137,7 @@ def dump_file_name(name: str, default_name: str) -> str:
 
 
 def extract_filename_from_path(path: str) -> str:
-    """What follows the last "/" (CFE_FS_ExtractFilenameFromPath).
+    """Return the part after the last "/" (CFE_FS_ExtractFilenameFromPath).
 
     Raises:
         CfeError: CFE_FS_INVALID_PATH without a "/" beyond the first character, CFE_FS_FNAME_TOO_LONG.

@@ -1,7 +1,7 @@
 """The headers at the front of cFE's files: the 64-byte cFE file header and the 52-byte table header after it.
 
-Both are big-endian whatever the processor (CFE_FS_Header_t, CFE_TBL_File_Hdr_t). Works on bytes; opening files is up to
-the caller.
+Both are big-endian on every processor (CFE_FS_Header_t, CFE_TBL_File_Hdr_t). The functions work on bytes; the caller
+opens the files.
 """
 
 from __future__ import annotations
@@ -53,13 +53,13 @@ def _text(data: bytes) -> str:
 
 
 def _fixed(text: str, size: int) -> bytes:
-    """Text for a field of `size` bytes; the last byte stays NUL, as strncpy(size - 1) leaves it."""
+    """Return the bytes of a text for a field of `size` bytes; the last byte stays NUL, as after strncpy(size - 1)."""
     return to_bytes(text)[: size - 1]
 
 
 @dataclass(frozen=True, slots=True)
 class FileHeader:
-    """CFE_FS_Header_t; times are seconds and 2**-32 s, ids as they stand in the file."""
+    """CFE_FS_Header_t; times are seconds and 2**-32 s, ids are as in the file."""
 
     description: str = ""
     subtype: int = 0
@@ -72,10 +72,10 @@ class FileHeader:
     time_subseconds: int = 0
 
     def pack(self) -> bytes:
-        """The 64 bytes.
+        """Return the 64 bytes.
 
         Raises:
-            UsageError: a number does not fit 32 bits.
+            UsageError: if a number does not fit 32 bits.
         """
         numbers = (
             self.content_type,
@@ -95,7 +95,7 @@ class FileHeader:
 
 @dataclass(frozen=True, slots=True)
 class TableHeader:
-    """CFE_TBL_File_Hdr_t: which table, from which byte on, how many bytes follow."""
+    """CFE_TBL_File_Hdr_t: the table, the offset of the first byte, and the number of bytes that follow."""
 
     table_name: str
     num_bytes: int
@@ -103,10 +103,10 @@ class TableHeader:
     reserved: int = 0
 
     def pack(self) -> bytes:
-        """The 52 bytes.
+        """Return the 52 bytes.
 
         Raises:
-            UsageError: a number does not fit 32 bits.
+            UsageError: if a number does not fit 32 bits.
         """
         try:
             return _TABLE.pack(self.reserved, self.offset, self.num_bytes, _fixed(self.table_name, TABLE_NAME_SIZE))
@@ -115,19 +115,21 @@ class TableHeader:
 
 
 def init_header(description: str, subtype: int) -> FileHeader:
-    """A header with all else zero, as CFE_FS_InitHeader leaves it; `stamp_header` fills the rest in at writing."""
+    """Return a header with all other fields zero, as after CFE_FS_InitHeader; `stamp_header` fills them in before
+    writing.
+    """
     return FileHeader(_text(_fixed(description, DESCRIPTION_SIZE)), subtype, content_type=0, length=0)
 
 
 def stamp_header(
     header: FileHeader, *, spacecraft_id: int, processor_id: int, application_id: int, time: tuple[int, int]
 ) -> FileHeader:
-    """The header as CFE_FS_WriteHeader writes it: content type, length, ids and time are its own doing.
+    """Return the header as CFE_FS_WriteHeader writes it: with content type, length, ids and time.
 
     Args:
-        header: gives description and subtype.
-        spacecraft_id: the PSP's.
-        processor_id: the PSP's.
+        header: provides description and subtype.
+        spacecraft_id: the PSP's spacecraft id.
+        processor_id: the PSP's processor id.
         application_id: AppId of the writer.
         time: spacecraft time, (seconds, subseconds).
     """
@@ -144,10 +146,10 @@ def stamp_header(
 
 
 def read_header(data: bytes) -> FileHeader:
-    """The cFE header that data starts with; its content type is not judged (CFE_FS_ReadHeader).
+    """Return the cFE header that data starts with; its content type is not checked (CFE_FS_ReadHeader).
 
     Raises:
-        CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL when there are not 64 bytes.
+        CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL if there are not 64 bytes.
     """
     if len(data) < HEADER_SIZE:
         text = f"a cFE file header has {HEADER_SIZE} bytes, the file only {len(data)}"
@@ -157,10 +159,10 @@ def read_header(data: bytes) -> FileHeader:
 
 
 def read_table_header(data: bytes, at: int = HEADER_SIZE) -> TableHeader:
-    """The table header at an offset of a table file; of a name that fills its field the last character is lost.
+    """Return the table header at an offset of a table file. A name that fills its field loses its last character.
 
     Raises:
-        CfeError: CFE_TBL_ERR_NO_TBL_HEADER when the file ends before it.
+        CfeError: CFE_TBL_ERR_NO_TBL_HEADER if the file ends before it.
     """
     if len(data) < at + TABLE_HEADER_SIZE:
         text = f"a table header has {TABLE_HEADER_SIZE} bytes after the {at} of the file header, the file ends before"
@@ -170,10 +172,10 @@ def read_table_header(data: bytes, at: int = HEADER_SIZE) -> TableHeader:
 
 
 def read_table_file(data: bytes) -> tuple[FileHeader, TableHeader, bytes]:
-    """A table file taken apart: both headers and the image that follows, checked as cFE does before a load.
+    """Return both headers and the image of a table file, after the checks that cFE makes before a load.
 
     Raises:
-        CfeError: CFE_TBL_ERR_NO_STD_HEADER, _BAD_CONTENT_ID, _BAD_SUBTYPE_ID, _NO_TBL_HEADER, or _LOAD_INCOMPLETE when
+        CfeError: CFE_TBL_ERR_NO_STD_HEADER, _BAD_CONTENT_ID, _BAD_SUBTYPE_ID, _NO_TBL_HEADER, or _LOAD_INCOMPLETE if
             the image is shorter than its header says.
     """
     if len(data) < HEADER_SIZE:
@@ -195,13 +197,13 @@ def read_table_file(data: bytes) -> tuple[FileHeader, TableHeader, bytes]:
 
 
 def write_table_file(header: FileHeader, table_name: str, image: bytes, offset: int = 0) -> bytes:
-    """A whole table file.
+    """Return a whole table file.
 
     Args:
         header: its subtype is set to that of a table image.
         table_name: full name, "APP.Table".
         image: the table's bytes, native byte order.
-        offset: where in the table they belong.
+        offset: offset of these bytes in the table.
     """
     table = TableHeader(table_name, len(image), offset)
     return replace(header, subtype=SUBTYPE_TBL_IMG).pack() + table.pack() + image

@@ -1,7 +1,7 @@
-"""`FileServices`: what an application finds as `cfe.fs` (cFE's File Services).
+"""`FileServices`: the object behind `cfe.fs` (cFE's File Services).
 
-The functions of cfe_fs.h: those on open files and the background writes are methods here, the others are the pure
-functions of this package.
+It has the functions of cfe_fs.h. Those on open files and the background writes are methods here; the others are the
+pure functions of this package.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from cfepy.status import CFE_FS_BAD_ARGUMENT, CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
 
 
 class FileServices:
-    """One processor's File Services.
+    """The File Services of one processor.
 
     Args:
         osal: reads and writes files.
-        ports: for the time and the writer's AppId.
-        config: for the ids in headers.
-        wake: lets the background task of Executive Services run at once.
+        ports: provides the time and the writer's AppId.
+        config: provides the ids in headers.
+        wake: wakes the background task of Executive Services.
     """
 
     init_header = staticmethod(header.init_header)
@@ -43,13 +43,13 @@ class FileServices:
         self.run_background_file_dump = self._background.run
 
     def read_header(self, filedes: int) -> FileHeader:
-        """The cFE header of an open file, which then stands behind it (CFE_FS_ReadHeader).
+        """Return the cFE header of an open file, and move its position past the header (CFE_FS_ReadHeader).
 
         Args:
             filedes: descriptor from `cfe.os.open_create`.
 
         Raises:
-            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL: not open for reading, or shorter than 64 bytes.
+            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL if it is not open for reading or is shorter than 64 bytes.
         """
         try:
             self._osal.lseek(filedes, 0, OS_SEEK_SET)
@@ -59,7 +59,7 @@ class FileServices:
         return header.read_header(data)
 
     def stamp_header(self, file_header: FileHeader) -> FileHeader:
-        """A header as `write_header` writes it: with this processor's ids, the caller's AppId, and the time."""
+        """Return a header as `write_header` writes it: with this processor's ids, the caller's AppId, and the time."""
         return header.stamp_header(
             file_header,
             spacecraft_id=self._config.spacecraft_id,
@@ -73,14 +73,14 @@ class FileServices:
 
         Args:
             filedes: descriptor from `cfe.os.open_create`.
-            file_header: gives description and subtype; from `init_header`.
+            file_header: provides description and subtype; from `init_header`.
 
         Returns:
             The bytes written: 64.
 
         Raises:
-            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL (not open for writing, or the disk is full),
-                CFE_FS_BAD_ARGUMENT (a subtype of more than 32 bits).
+            CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL (not open for writing, or the disk is full), CFE_FS_BAD_ARGUMENT
+                (a subtype of more than 32 bits).
         """
         try:
             data = self.stamp_header(file_header).pack()
@@ -115,10 +115,10 @@ class FileServices:
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
 
     def background_file_dump_request(self, meta: FileWrite) -> None:
-        """Have a file written by the background task (CFE_FS_BackgroundFileDumpRequest).
+        """Request that the background task writes a file (CFE_FS_BackgroundFileDumpRequest).
 
         Args:
-            meta: what to write; it belongs to the writer until `is_pending` is False again.
+            meta: the file to write; do not change it until `is_pending` is False again.
 
         Raises:
             CfeError: CFE_FS_BAD_ARGUMENT (a function is missing), CFE_FS_INVALID_PATH (no file name),
@@ -127,11 +127,11 @@ class FileServices:
         self._background.request(meta)
 
     def background_file_dump_is_pending(self, meta: FileWrite) -> bool:
-        """Whether a background write has not ended yet (CFE_FS_BackgroundFileDumpIsPending)."""
+        """Return whether a background write has not ended yet (CFE_FS_BackgroundFileDumpIsPending)."""
         return meta.is_pending
 
     def _caller(self) -> int:
-        """AppId of the caller, 0 outside any application."""
+        """Return the AppId of the caller, or 0 outside any application."""
         try:
             return self._ports.es.get_app_id()
         except CfeError:

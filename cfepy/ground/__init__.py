@@ -1,10 +1,10 @@
-"""What a ground system knows of a mission, and how it reaches it: names, dictionary, topics, values, link, bags, files.
+"""A ground system's view of a mission: names, dictionary, topics, values, link, bags and files.
 
-What belongs here works on packets, files and names as a ground system has them, with a mission that flies or without
-one. What judges a run is in `cfepy.monitors`; what decides how one is flown is in `cfepy.pilot`.
+Code that works on packets, files and names of a ground system, with or without a running mission, belongs here.
+Checking a run is in `cfepy.monitors`; flying one is in `cfepy.pilot`.
 
-The names below are loaded when they are first used: a run imports no more of this package than it needs. The central
-file is `cfepy/ground/dictionary.py`.
+The names below are loaded on first use, so a run loads only the parts of this package that it needs. The central file
+is `cfepy/ground/dictionary.py`.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ __all__ = [
     "with_player",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

@@ -1,6 +1,6 @@
-"""Bags on the host's side: a run's ROS topics recorded as `rosbag record -a` would, and bags and MCAP files read.
+"""Bags on the host: recording a run's ROS topics like `rosbag record -a`, and reading bags and MCAP files.
 
-Recording watches the bus (`cfepy.mission.topic_watch`), so it changes nothing in the run.
+Recording observes the bus (`cfepy.mission.topic_watch`), so it does not change the run.
 """
 
 from __future__ import annotations
@@ -27,21 +27,22 @@ class RunRecorder(TopicWatch, ABC):
     """Records a run into a file; use as a context manager around the run.
 
     Args:
-        take: gets each message.
-        file: where to; an older one is written over.
+        take: receives each message.
+        file: the file; it is overwritten.
         patterns: see `TopicWatch`.
 
     Raises:
-        UsageError: the file cannot be written.
+        UsageError: if the file cannot be written.
 
     Attributes:
-        count: messages so far.
+        count: number of messages so far.
     """
 
     def __init__(self, take: Callable[[TopicMessage], None], file: str, patterns: Sequence[str]) -> None:
         super().__init__(take, patterns)
         self.count = 0
-        self._failed: OSError | None = None  # the run goes on without the file; its sender is not to blame
+        # the run continues without the file; the sender of the message is not responsible
+        self._failed: OSError | None = None
         try:
             self._file = Path(file).open("w+b")  # noqa: SIM115  # closed by `__exit__`
         except OSError as error:
@@ -57,10 +58,10 @@ class RunRecorder(TopicWatch, ABC):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
     ) -> None:
-        """The run is over: write the index, unless the disk is full.
+        """Write the index at the end of the run.
 
         Raises:
-            UsageError: it is.
+            UsageError: if the disk is full.
         """
         try:
             with self._file:
@@ -75,11 +76,11 @@ class BagRecorder(RunRecorder):
     """Records topics into a bag.
 
     Args:
-        file: the bag; an older one is written over.
+        file: the bag; it is overwritten.
         patterns: see `TopicWatch`.
 
     Raises:
-        UsageError: the file cannot be written.
+        UsageError: if the file cannot be written.
     """
 
     def __init__(self, file: str, patterns: Sequence[str] = ()) -> None:
@@ -93,7 +94,7 @@ class BagRecorder(RunRecorder):
 
     def _write(self, message: TopicMessage) -> None:
         if message.stamp_ns is None or self._failed is not None:
-            return  # rosbag, too, begins when there is a time
+            return  # rosbag, too, starts once there is a time
         key = (message.topic, message.header.get("callerid", ""))
         connection = self._connections.get(key)
         if connection is None or connection.md5sum != message.header["md5sum"]:
@@ -107,18 +108,18 @@ class BagRecorder(RunRecorder):
 
 
 def _unwritable(file: str, error: OSError) -> UsageError:
-    """The error of a recording that cannot be written."""
+    """Return the error of a recording that cannot be written."""
     return UsageError(f"could not be written: {error.strerror}", file=file, field="--bag")
 
 
 class BagReader:
-    """A bag to look into, or the topics of ROS 1 of an MCAP file; use as a context manager.
+    """A bag for reading, or the ROS 1 topics of an MCAP file; use as a context manager.
 
     Args:
         file: the bag.
 
     Raises:
-        UsageError: there is none, or it is broken.
+        UsageError: if it does not exist, or is damaged.
     """
 
     def __init__(self, file: str) -> None:
@@ -133,18 +134,18 @@ class BagReader:
         except _broken() as error:
             self._file.close()
             raise UsageError(f"{error}{_hint(error, file)}", file=file) from None
-        except ImportError as error:  # of what its chunks are compressed by
+        except ImportError as error:  # missing support for the compression of its chunks
             self._file.close()
             raise UsageError(str(error), file=file) from None
 
     @property
     def connections(self) -> list[Connection]:
-        """The connections (`rosbag_storage.Connection`), as they came."""
+        """The connections (`rosbag_storage.Connection`), in order of appearance."""
         return list(self._bag.contents.connections.values())
 
     @property
     def start_ns(self) -> int | None:
-        """Time of the first message; None when there is none."""
+        """Time of the first message; None if there is none."""
         return min((chunk.start for chunk in self._bag.contents.chunks), default=None)
 
     @property
@@ -154,10 +155,10 @@ class BagReader:
         return max((chunk.end for chunk in chunks), default=0) - min((chunk.start for chunk in chunks), default=0)
 
     def messages(self, patterns: Sequence[str] = ()) -> Iterator[TopicMessage]:
-        """The messages by time, `at_ns` since the first one of the bag; see `TopicWatch` for the patterns.
+        """Yield the messages by time, `at_ns` since the first one of the bag; see `TopicWatch` for the patterns.
 
         Raises:
-            UsageError: the bag is broken.
+            UsageError: if the bag is damaged.
         """
         contents = self._bag.contents
         start_ns = min((chunk.start for chunk in contents.chunks), default=0)
@@ -182,28 +183,30 @@ class BagReader:
 
 
 def header_of(connection: Connection) -> dict[str, str]:
-    """What a bag tells of a connection: type, md5sum, message_definition, callerid, ..."""
+    """Return the header of a connection: type, md5sum, message_definition, callerid, ..."""
     header = connection.header.items()
     return {name: value if isinstance(value, str) else value.decode(errors="replace") for name, value in header}
 
 
 def _hint(error: Exception, file: str) -> str:
-    """What to do about a file that cannot be read."""
+    """Return advice about a file that cannot be read."""
     if isinstance(error, storage().ROSBagUnindexedException):
         return f"; rosbag reindex makes an index, cfepy bag recover {file} saves what is left"
     return f"; cfepy bag recover {file} saves what is left" if is_bag(file) else ""
 
 
 def is_bag(file: str) -> bool:
-    """Whether a file is a bag or an MCAP file, by its first bytes."""
+    """Return whether a file is a bag or an MCAP file, by its first bytes."""
     return beginning_of(file, 8).startswith((b"#ROSBAG", b"\x89MCAP0\r\n"))
 
 
 def _broken() -> tuple[type[Exception], ...]:
-    """What reading bytes that are no bag, or no longer one, raises."""
+    """Return the exceptions raised by bytes that are not a valid bag."""
     return (storage().ROSBagException, ValueError, LookupError, OSError, EOFError, struct.error)
 
 
 def storage() -> ModuleType:
-    """The library `rosbag_storage`, which knows the format. Nodes import it, too: by that name, as type checkers do."""
+    """Return the library `rosbag_storage`, which knows the format. Nodes load it too, under the name that type checkers
+    know.
+    """
     return importlib.import_module("ros_libraries.rosbag_storage")

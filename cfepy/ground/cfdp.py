@@ -1,8 +1,7 @@
-"""A CFDP entity on the ground: the other end of CF, made with the library cfdp-py (extra `cfepy[cfdp]`).
+"""A CFDP entity on the ground: the other side of CF, implemented with the library cfdp-py (extra `cfepy[cfdp]`).
 
-It knows nothing of how PDUs travel. Whoever flies it hands in what came down, takes what is to go up, and says what
-time it is, so it serves a mission in virtual time and one over UDP alike. Only this module imports the library.
-CFDP: CCSDS 727.0-B-5.
+It does not transfer PDUs itself: its user passes in received PDUs, sends those it returns, and gives the time, so it
+works with a mission in virtual time as well as over UDP. Only this module loads the library. CFDP: CCSDS 727.0-B-5.
 """
 
 from __future__ import annotations
@@ -17,22 +16,22 @@ from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, command
 from cfepy.status import UsageError
 
 CF_IN_MID, CF_OUT_MID = 0x18C8, 0x08C2
-"""Where CF's channel 0 takes PDUs, and where it sends them, in missions/cfs."""
+"""MsgIds from which CF's channel 0 takes PDUs, and to which it sends them, in missions/cfs."""
 CLASS_1, CLASS_2 = 0, 1
-"""Unacknowledged and acknowledged, as in CF's commands; without and with repeats of what was lost."""
+"""Unacknowledged and acknowledged class, as in CF's commands; without and with retransmission."""
 LONGEST_PACKET = 512
-"""Bytes of a PDU, at most."""
+"""Maximum number of bytes of a PDU."""
 MOST_IN_A_TURN = 100
 
 Result = TypeVar("Result")
 
 
 class Transfer(NamedTuple):
-    """The end of a file's way.
+    """End of a file transfer.
 
     Attributes:
         direction: "down" or "up".
-        name: of the file on the ground, if it was told.
+        name: name of the file on the ground, if known.
         condition: CFDP's condition code: 0 is no error.
         complete: whether all data arrived.
     """
@@ -44,10 +43,10 @@ class Transfer(NamedTuple):
 
 
 def library() -> SimpleNamespace:
-    """What is needed of cfdp-py.
+    """Return the needed parts of cfdp-py.
 
     Raises:
-        UsageError: it is not installed.
+        UsageError: if it is not installed.
     """
     try:
         import cfdppy
@@ -78,32 +77,32 @@ def library() -> SimpleNamespace:
 
 
 def pdu_in(packet: bytes) -> bytes | None:
-    """The PDU in a packet of CF's channel 0; None in another packet."""
+    """Return the PDU in a packet of CF's channel 0; None for other packets."""
     is_pdu = int.from_bytes(packet[:2], "big") == CF_OUT_MID and len(packet) > TLM_HEADER_SIZE
     return packet[TLM_HEADER_SIZE:] if is_pdu else None
 
 
 def uplinked(pdu: bytes) -> bytes:
-    """The packet that takes a PDU to CF's channel 0."""
+    """Return the packet with a PDU for CF's channel 0."""
     packet = bytes(command(CF_IN_MID, 0, pdu))
     assert len(packet) == CMD_HEADER_SIZE + len(pdu)
     return packet
 
 
 class GroundEntity:
-    """A CFDP entity that receives files into a folder, and sends files of it.
+    """A CFDP entity that receives files into a folder, and sends files from it.
 
     Args:
-        folder: where its files are; it exists.
-        clock: says what time it is, in s from any beginning: the run's virtual time, or the host's.
+        folder: folder of its files; it must exist.
+        clock: returns the time in s from any start: the run's virtual time, or the host's.
         entity: its own id.
         spacecraft: CF's id.
 
     Attributes:
-        transfers: what came to its end, in order.
+        transfers: finished transfers, in order.
 
     Raises:
-        UsageError: cfdp-py is not installed.
+        UsageError: if cfdp-py is not installed.
     """
 
     def __init__(self, folder: Path, clock: Callable[[], float], entity: int = 23, spacecraft: int = 25) -> None:
@@ -133,11 +132,11 @@ class GroundEntity:
         )
 
     def put(self, name: str, target: str, cfdp_class: int = CLASS_2) -> None:
-        """Begin to send a file up; `turn` gives its PDUs.
+        """Start to send a file; `turn` returns its PDUs.
 
         Args:
-            name: of the file in the folder.
-            target: where it goes, such as "/ram/new.tbl".
+            name: name of the file in the folder.
+            target: target path, such as "/ram/new.tbl".
             cfdp_class: CLASS_1 or CLASS_2.
         """
         modes = self._library.pdus.TransmissionMode
@@ -148,20 +147,20 @@ class GroundEntity:
         self._in_time(lambda: self._up.put_request(request))
 
     def take(self, pdu: bytes) -> list[bytes]:
-        """A PDU came down; the PDUs that go up for it."""
+        """Process a received PDU; returns the PDUs to send for it."""
         packet = self._library.PduFactory.from_raw(pdu)
         where = self._library.cfdp.get_packet_destination(packet)
         is_ours = where == self._library.cfdp.PacketDestination.DEST_HANDLER
         return self._in_time(lambda: self._advance(self._down if is_ours else self._up, packet))
 
     def turn(self) -> list[bytes]:
-        """Time has passed; the PDUs that go up now: more of a file, or what is repeated."""
+        """Process the passage of time; returns the PDUs to send now: more of a file, or retransmissions."""
         return self._in_time(lambda: [*self._advance(self._down, None), *self._advance(self._up, None)])
 
     def _advance(self, handler: Any, packet: Any) -> list[bytes]:
         sent: list[bytes] = []
         for _ in range(MOST_IN_A_TURN):
-            with suppress(*self._library.ignored):  # of a transfer that is over, or whose beginning was lost
+            with suppress(*self._library.ignored):  # PDU of a transfer that has ended, or whose start was lost
                 handler.state_machine(packet)
             packet = None
             before = len(sent)
@@ -172,7 +171,7 @@ class GroundEntity:
         return sent
 
     def _in_time(self, work: Callable[[], Result]) -> Result:
-        """Do something while the library's count-downs go by this entity's clock."""
+        """Context in which the library's timers use this entity's clock."""
         module, before = self._library.countdown, self._library.countdown.time_ms
         module.time_ms = lambda: round(self._clock() * 1000)
         try:
@@ -181,7 +180,7 @@ class GroundEntity:
             module.time_ms = before
 
     def _user(self, direction: str, files: Any) -> Any:
-        """What the library tells: only the ends of transfers matter, and the names of files."""
+        """Events of the library: only the ends of transfers and the names of files are used."""
         names: dict[Any, str] = {}
         transfers, base = self.transfers, self._library.cfdp.CfdpUserBase
         complete = self._library.pdus.DeliveryCode.DATA_COMPLETE
@@ -200,11 +199,11 @@ class GroundEntity:
 
 
 def _nothing(*_: Any) -> None:
-    """An indication that nobody needs."""
+    """Ignore an indication."""
 
 
 def _silent(base: Any) -> Any:
-    """Faults are in the ends of transfers."""
+    """Ignore faults: they are included in the ends of transfers."""
     return type("Faults", (base,), dict.fromkeys(base.__abstractmethods__, _nothing))()
 
 

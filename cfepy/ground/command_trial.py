@@ -1,4 +1,6 @@
-"""A trial of a command: a mission is flown until it is OPERATIONAL, gets the command, and what follows is recorded."""
+"""Trial of a command: a mission is flown until it is OPERATIONAL, receives the command, and the effects are
+recorded.
+"""
 
 from __future__ import annotations
 
@@ -14,22 +16,22 @@ from cfepy.units import NS_PER_MS, NS_PER_S
 
 LONGEST_BOOT_NS = 60 * NS_PER_S
 PIECE_NS = 10 * NS_PER_MS
-ANSWER_NS = 100 * NS_PER_MS  # in which a request for housekeeping is answered
+ANSWER_NS = 100 * NS_PER_MS  # time within which a request for housekeeping is answered
 REQUEST = "_SEND_HK"
 
 
 class CommandTrial(PacketWatch):
-    """Sends a command to the mission that it is attached to, and takes down what follows.
+    """Sends a command to the mission that it is attached to, and records the effects.
 
     Args:
-        dictionary: tells how to ask for housekeeping.
+        dictionary: gives the requests for housekeeping.
         packet: the command.
 
     Attributes:
         sent_ns: virtual time at which it was sent; set by `run`, like the others.
-        receivers: the applications that subscribe to it.
-        events: all that were sent after it.
-        telemetry: the last packet of each kind that the receivers sent, housekeeping included: they are asked for it.
+        receivers: applications that subscribe to it.
+        events: all events after it.
+        telemetry: the last packet of each kind from the receivers, including housekeeping, which is requested.
     """
 
     sent_ns: int
@@ -53,15 +55,15 @@ class CommandTrial(PacketWatch):
         self._mission = mission
 
     def run(self, run_until: Callable[[int], object], seconds: float, patience: float = 0) -> None:
-        """Wait until the mission is OPERATIONAL, send the command, and look what it causes.
+        """Wait until the mission is OPERATIONAL, send the command, and record its effects.
 
         Args:
-            run_until: lets the mission go on to a virtual time in ns.
-            seconds: virtual time to wait for what the command causes.
-            patience: virtual time in s to wait, once it is OPERATIONAL, for somebody who takes the command.
+            run_until: runs the mission to a virtual time in ns.
+            seconds: virtual time to wait for effects.
+            patience: virtual time in s to wait for a receiver of the command, once the mission is OPERATIONAL.
 
         Raises:
-            CfeError: the mission does not become OPERATIONAL.
+            CfeError: if the mission does not become OPERATIONAL.
         """
         mission, bus = self._mission, self._mission.cfe.sb
         self._boot(run_until)
@@ -70,7 +72,7 @@ class CommandTrial(PacketWatch):
         self.receivers, self.sent_ns = self._receivers(), mission.kernel.now
         bus.transmit_msg(self._packet, is_origination=False)
         run_until(mission.kernel.now + round(seconds * NS_PER_S))
-        bus = mission.cfe.sb  # a reset has put another one there
+        bus = mission.cfe.sb  # a reset has created another one
         for request in self._dictionary.commands.values():
             if request.name.endswith(REQUEST) and set(receivers(bus, request.msg_id)) & set(self.receivers):
                 bus.transmit_msg(request.packet(), is_origination=False)
@@ -99,6 +101,6 @@ def _is_event(seen: Seen) -> bool:
 
 
 def _last(seen: list[Seen], senders: list[str]) -> list[Seen]:
-    """The last telemetry packet of each MsgId that came from these applications."""
+    """Return the last telemetry packet of each MsgId that came from these applications."""
     own = [each for each in seen if each.sender in senders and not _is_event(each)]
     return list({each.msg_id: each for each in own if get_type(each.packet) == MsgType.TLM}.values())

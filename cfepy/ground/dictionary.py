@@ -1,9 +1,9 @@
-"""Every command, telemetry packet and table of a mission by name: what its services and applications declare.
+"""Every command, telemetry packet and table of a mission by name, as declared by its services and applications.
 
 Commands and telemetry are collected from the declarations (`cfepy.msg.Command` and `Telemetry`) of the five services
-and of the applications that the startup script names, tables from their `TABLES`. An application's module is executed
-for that, but not started; one that declares nothing is not executed, and a ROS node never. ROS topics are telemetry
-too: those that the mission file names are known from the start, with what they carry as soon as a mission runs.
+and of the applications in the startup script, tables from their `TABLES`. An application's module is executed for that,
+but not started; one without declarations is not executed, and a ROS node never is. ROS topics are telemetry too: those
+in the mission file are known from the start, their message types once a mission runs.
 """
 
 from __future__ import annotations
@@ -33,15 +33,11 @@ DECLARATIONS = ("COMMANDS", "TELEMETRY")
 TABLES = "TABLES"
 CF = "/cf/"
 ROS_PACKETS = "rospy_shim.parameters.table"
-"""The code in which the application ROS declares its packets, as a loader finds it."""
+"""Code in which the application ROS declares its packets, as found by a loader."""
 
 
 class Decoded(NamedTuple):
-    """A packet that was read.
-
-    `time_s` is the time in its header in s; None for a command. `problem` says why `values` is empty though there is a
-    payload.
-    """
+    """A decoded packet."""
 
     name: str
     msg_id: int
@@ -52,7 +48,7 @@ class Decoded(NamedTuple):
     layout: Layout | None = None
 
     def line(self) -> str:
-        """Its values on one line, those of enumerations by their names."""
+        """Return its values on one line, with the names of enumeration values."""
         return line_of(self.values, self.layout)
 
     def texts(self) -> dict[str, str]:
@@ -62,7 +58,7 @@ class Decoded(NamedTuple):
 
 @dataclass(slots=True)
 class Dictionary:
-    """Commands and telemetry by name. `problems` says, a line each, what could not be read."""
+    """Commands and telemetry by name. `problems` has a line for each declaration that could not be read."""
 
     commands: dict[str, Command] = field(default_factory=dict)
     telemetry: dict[str, Telemetry | Topic] = field(default_factory=dict)
@@ -71,7 +67,7 @@ class Dictionary:
     _by_code: dict[tuple[int, int], Command] = field(default_factory=dict)
 
     def add(self, declarations: Iterable[Command | Telemetry | Topic]) -> None:
-        """Take declarations in; the first one of a name or MsgId stays."""
+        """Add declarations; the first one of a name or MsgId stays."""
         for each in declarations:
             if isinstance(each, Command):
                 self.commands.setdefault(each.name, each)
@@ -81,11 +77,11 @@ class Dictionary:
                 self._by_id.setdefault(each.msg_id, each)
 
     def add_from_table(self, kind: TableType, image: bytes | None) -> None:
-        """Take in the packets that follow from a table; a topic that is known from the mission file stays one by name.
+        """Add the packets that depend on a table; a topic known by name from the mission file stays.
 
         Args:
-            kind: of the table.
-            image: the whole table; None takes in nothing.
+            kind: type of the table.
+            image: the whole table; None adds nothing.
         """
         if kind.telemetry is None or image is None:
             return
@@ -99,27 +95,27 @@ class Dictionary:
                 self._by_id[each.msg_id] = each
 
     def learn(self, topics: Iterable[Topic]) -> None:
-        """Take in what a running mission knows of its topics; a packet that an application declares stays as it is."""
+        """Add the topics that a running mission knows; a packet declared by an application stays."""
         for topic in topics:
             self.telemetry[topic.name] = topic
             if not isinstance(self._by_id.get(topic.msg_id), Telemetry):
                 self._by_id[topic.msg_id] = topic
 
     def command(self, name: str) -> Command:
-        """A command by its name.
+        """Return a command by its name.
 
         Raises:
-            UsageError: there is none; the text names those that are like it.
+            UsageError: if there is none; the text names similar ones.
         """
         if name not in self.commands:
             raise self._unknown("command", name, self.commands)
         return self.commands[name]
 
     def telemetry_of(self, name: str) -> Telemetry | Topic:
-        """A telemetry packet by its name or MsgId ("0x0800", "2048"); one whose MsgId alone is known has no fields.
+        """Return a telemetry packet by its name or MsgId ("0x0800", "2048"); one known only by MsgId has no fields.
 
         Raises:
-            UsageError: there is none of that name.
+            UsageError: if there is none of that name.
         """
         if name in self.telemetry:
             return self.telemetry[name]
@@ -130,10 +126,10 @@ class Dictionary:
         return self._by_id.get(msg_id) or Telemetry(f"0x{msg_id:04X}", msg_id)
 
     def decode(self, packet: bytes) -> Decoded:
-        """Name and fields of a packet: telemetry, or a command.
+        """Return name and fields of a packet: telemetry, or a command.
 
         Raises:
-            CfeError: CFE_MSG_BAD_ARGUMENT when it has no primary header.
+            CfeError: CFE_MSG_BAD_ARGUMENT if it has no primary header.
         """
         msg_id, header = msg.get_msg_id(packet), msg.get_header_size(packet)
         decoded = Decoded(f"0x{msg_id:04X}", msg_id, msg.get_sequence_count(packet), None, {})
@@ -151,7 +147,9 @@ class Dictionary:
         return _read(self._by_code.get((msg_id, code)), packet, decoded._replace(name=f"{decoded.name}/{code}"))
 
     def declared_as(self, packet: bytes) -> Command | Telemetry | None:
-        """What a packet is declared as, by its MsgId and function code; None for a ROS message, and what is unknown."""
+        """Return the declaration of a packet, by its MsgId and function code; None for ROS messages and unknown
+        packets.
+        """
         msg_id, header = msg.get_msg_id(packet), msg.get_header_size(packet)
         if header == TLM_HEADER_SIZE:
             found = self._by_id.get(msg_id)
@@ -159,10 +157,10 @@ class Dictionary:
         return self._by_code.get((msg_id, msg.get_fcn_code(packet))) if len(packet) >= header else None
 
     def fields_of(self, packet: bytes) -> dict[str, Any]:
-        """The fields of a packet; one whose layout is not declared has one, `data`, its bytes behind the header.
+        """Return the fields of a packet; one without declared layout has only `data`, the bytes after the header.
 
         Raises:
-            UsageError: it is no such packet.
+            UsageError: if it is not such a packet.
         """
         decoded = self.decode(packet)
         if not decoded.problem:
@@ -187,10 +185,10 @@ def _read(entry: Command | Telemetry | Topic | None, packet: bytes, decoded: Dec
 
 
 def dictionary_of(spec: MissionSpec | None) -> Dictionary:
-    """The dictionary of a mission.
+    """Return the dictionary of a mission.
 
     Args:
-        spec: the mission; None takes the services and every application that cfepy brings along.
+        spec: the mission; None for the services and all applications included in cfepy.
     """
     found = Dictionary()
     for packets in CORE_PACKETS.values():
@@ -209,7 +207,7 @@ def dictionary_of(spec: MissionSpec | None) -> Dictionary:
 
 
 def _default_image(spec: MissionSpec, kind: TableType, problems: list[str]) -> bytes | None:
-    """The whole image of a table as a mission loads it at first, of a file in its folder or with its application."""
+    """Return the image of a table as a mission first loads it, from a file in its folder or of its application."""
     name = kind.file.removeprefix(CF)
     if name == kind.file or not is_contained(f"/{name}"):
         return None
@@ -228,12 +226,12 @@ def _default_image(spec: MissionSpec, kind: TableType, problems: list[str]) -> b
 
 
 def declared(spec: MissionSpec | None, attributes: Sequence[str], problems: list[str]) -> list[Any]:
-    """Everything that the apps and libraries of a mission declare.
+    """Return everything that the apps and libraries of a mission declare.
 
     Args:
-        spec: the mission; None stands for all apps that cfepy brings along.
+        spec: the mission; None for all apps included in cfepy.
         attributes: names of the tuples, such as "TABLES".
-        problems: gets a line for each app that could not be executed.
+        problems: receives a line for each app that could not be executed.
     """
     found: list[Any] = []
     names = ModuleNames()
@@ -246,28 +244,28 @@ def declared(spec: MissionSpec | None, attributes: Sequence[str], problems: list
 
 
 def table_types(mission: str | None, problems: list[str]) -> dict[str, TableType]:
-    """The tables that are known, by full name: those of a mission before those of the apps that cfepy brings along.
+    """Return the known tables by full name, with tables of a mission before tables of the apps included in cfepy.
 
     Args:
-        mission: as `read_mission` takes it, or None.
-        problems: gets a line for each app that could not be executed.
+        mission: as for `read_mission`, or None.
+        problems: receives a line for each app that could not be executed.
 
     Raises:
-        UsageError: there is no such mission.
+        UsageError: if there is no such mission.
     """
     own = declared(read_mission(mission), ("TABLES",), problems) if mission is not None else []
     return {kind.name: kind for kind in [*declared(None, ("TABLES",), problems), *own]}
 
 
 def table_type(name: str, mission: str | None) -> TableType:
-    """The declaration of one table, by its full name, or by its own if no other one has it.
+    """Return the declaration of a table, by its full name, or by its own name if that is unique.
 
     Args:
         name: such as "HK.CopyTable", or "CopyTable".
-        mission: whose applications declare it, as of `table_types`.
+        mission: mission whose applications declare it, as for `table_types`.
 
     Raises:
-        UsageError: there is none, or there are several of that name.
+        UsageError: if there is none, or there are several of that name.
     """
     problems: list[str] = []
     known = table_types(mission, problems)
@@ -285,7 +283,7 @@ def table_type(name: str, mission: str | None) -> TableType:
 
 
 def _codes(spec: MissionSpec | None) -> Iterator[tuple[str, Path | str]]:
-    """(name, code) of apps and libraries, each once."""
+    """Return (name, code) of apps and libraries, each once."""
     if spec is None:
         for package in sorted(shipped("apps").glob("*/__init__.py")):
             yield package.parent.name, package
@@ -310,10 +308,11 @@ def _of_app(
         module = execute(code, names.new(file))
     except KeyboardInterrupt:
         raise
-    except BaseException as error:  # also sys.exit(): the code is the mission's, and may do anything
+    except BaseException as error:  # includes sys.exit(): the code belongs to the mission and may do anything
         from cfepy.mission import described
 
         problems.append(f"{source} could not be read: {described(error)}")
         return []
     values = (getattr(module, name, ()) for name in attributes)
-    return [item for value in values if isinstance(value, tuple | list) for item in value]  # others mean something else
+    # others have another meaning
+    return [item for value in values if isinstance(value, tuple | list) for item in value]

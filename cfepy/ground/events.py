@@ -1,4 +1,4 @@
-"""Events as their packets tell them: cFE's Event Services send each event as telemetry, long or short (CFE_EVS)."""
+"""Events decoded from packets: cFE's Event Services send each event as telemetry, long or short (CFE_EVS)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ EVENT_IDS = frozenset((evs.LONG_EVENT_MSG_MID, evs.SHORT_EVENT_MSG_MID))
 
 
 class DecodedEvent(NamedTuple):
-    """An event as its packet tells it; the short format has no text. `at_ns` is the virtual time of its sending."""
+    """A decoded event; the short format has no text. `at_ns` is the virtual time at which it was sent."""
 
     at_ns: int
     app: str
@@ -25,7 +25,7 @@ class DecodedEvent(NamedTuple):
 
     @classmethod
     def of(cls, seen: Seen) -> DecodedEvent:
-        """The event in a packet of EVS."""
+        """Return the event in a packet of EVS."""
         packet_id = evs.PACKET_ID.unpack(seen.packet, TLM_HEADER_SIZE)
         is_long = seen.msg_id == evs.LONG_EVENT_MSG_MID
         text = evs.LONG_EVENT.unpack(seen.packet, TLM_HEADER_SIZE)["Message"] if is_long else ""

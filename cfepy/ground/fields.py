@@ -1,6 +1,6 @@
-"""Fields of decoded messages by their paths: of one message, or of many as numpy arrays; and their units.
+"""Fields of decoded messages by path, of one message or of many as numpy arrays, and their units.
 
-A message is what a node gets, or a cFE packet as a mapping of its fields. A path is written as in Python, or as for
+A message is either as for a node, or a cFE packet as a mapping of its fields. A path is written as in Python, or as for
 rostopic: `pose.position.x`, `pose/position/x`, `position[2]`, `position.2`, `position[1:3]`.
 """
 
@@ -18,21 +18,21 @@ from cfepy.units import NS_PER_S
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_PART = re.compile(r"(\w+)((?:\[-?\d*(?::-?\d*)?\])*)")  # in one way only, or a long path would take for ever
+_PART = re.compile(r"(\w+)((?:\[-?\d*(?::-?\d*)?\])*)")  # unambiguous, so that a long path is matched fast
 _INDEX = re.compile(r"\[(-?\d*)(:?)(-?\d*)\]")
 
 
 class MessageDecoder:
-    """Makes messages of bytes, by the definition that came with them; each class is made once."""
+    """Creates messages from bytes, by the definition that came with them; each class is created once."""
 
     def __init__(self) -> None:
         self._classes: dict[str, Any] = {}
 
     def decode(self, message: TopicMessage) -> Any:
-        """The message.
+        """Return the message.
 
         Raises:
-            UsageError: its definition or its bytes are broken.
+            UsageError: if its definition or its bytes are invalid.
         """
         header = message.header
         kind = self._classes.get(header["md5sum"])
@@ -45,21 +45,21 @@ class MessageDecoder:
             return kind().deserialize(message.data)
         except UsageError:
             raise
-        except Exception as error:  # whatever the generated code raises for bytes that are no such message
+        except Exception as error:  # any exception of the generated code for bytes that are not such a message
             raise UsageError(f"no {header['type']}: {error}", file=message.topic) from None
 
 
 # -- one message -------------------------------------------------------------------------------------------------------
 
 Step = str | int | slice
-"""From a value into it: the name of a field, an index, a part of an array."""
+"""One step into a value: the name of a field, an index, or a slice of an array."""
 
 
 def steps_of(path: str) -> tuple[Step, ...]:
-    """The way to a field.
+    """Return the steps to a field.
 
     Raises:
-        LookupError: it is no path.
+        LookupError: if it is not a path.
     """
     steps: list[Step] = []
     for part in filter(None, re.split(r"[./]", path)):
@@ -83,7 +83,7 @@ def _index(first: str, colon: str, last: str) -> Step:
 
 
 def path_of(steps: Iterable[Step]) -> str:
-    """The path of a way, in the form in which paths are shown: `poses[2].position.x`."""
+    """Return the path of steps in display form: `poses[2].position.x`."""
     text = ""
     for step in steps:
         if isinstance(step, str):
@@ -96,10 +96,10 @@ def path_of(steps: Iterable[Step]) -> str:
 
 
 def value_at(message: Any, steps: Iterable[Step]) -> Any:
-    """What is at the end of the way.
+    """Return the value at the end of the steps.
 
     Raises:
-        LookupError: there is nothing.
+        LookupError: if it does not exist.
     """
     value = message
     for step in steps:
@@ -117,7 +117,7 @@ def value_at(message: Any, steps: Iterable[Step]) -> Any:
 
 
 def names_in(value: Any) -> tuple[str, ...]:
-    """Names of the fields of a message or a struct; of anything else, also of times, none."""
+    """Return the names of the fields of a message or struct; empty for anything else, including times."""
     if isinstance(value, Mapping):
         return tuple(value)
     if hasattr(value, "to_nsec") or not hasattr(value, "_slot_types"):
@@ -129,10 +129,10 @@ def names_in(value: Any) -> tuple[str, ...]:
 
 
 def values_at(messages: Sequence[Any], steps: Sequence[Step]) -> list[Any]:
-    """A field of each message; None of one that has it not, such as the third item of a shorter array.
+    """Return a field of each message; None for a message without it, such as the third item of a shorter array.
 
     Raises:
-        LookupError: none has it.
+        LookupError: if no message has it.
     """
     found, is_there = [], False
     for message in messages:
@@ -147,11 +147,7 @@ def values_at(messages: Sequence[Any], steps: Sequence[Step]) -> list[Any]:
 
 
 def array_of(values: Sequence[Any]) -> NDArray[Any]:
-    """Values as an array, the first axis of which counts them.
-
-    Arrays of one length become rows. Times and durations are in s, as float64, and a number that is missing is NaN.
-    Texts, arrays of different lengths and structs are objects.
-    """
+    """Return values as an array, with the first axis counting them."""
     import numpy
 
     if _are_rows(values):
@@ -162,7 +158,7 @@ def array_of(values: Sequence[Any]) -> NDArray[Any]:
 
 
 def column_of(values: Sequence[Any]) -> NDArray[Any]:
-    """Values as an array of one dimension; see `array_of`."""
+    """Return values as an array of one dimension; see `array_of`."""
     import numpy
 
     present = [value for value in values if value is not None]
@@ -171,17 +167,17 @@ def column_of(values: Sequence[Any]) -> NDArray[Any]:
     if present and all(isinstance(value, int | float) for value in present):
         return numpy.array(values if len(present) == len(values) else [numpy.nan if v is None else v for v in values])
     column = numpy.empty(len(values), object)
-    for number, value in enumerate(values):  # an assignment of the whole would unpack lists
+    for number, value in enumerate(values):  # assigning them all at once would unpack lists
         column[number] = value
     return column
 
 
 def columns_of(values: Sequence[Any], path: str = "") -> Iterator[tuple[str, NDArray[Any]]]:
-    """Every number, time and text in values, by its path, each as a column; bytes are one value.
+    """Yield every number, time and text in values, by its path, each as a column; bytes are one value.
 
     Args:
-        values: messages, or values of a field; None for one that is missing.
-        path: of the field.
+        values: messages, or values of a field; None for a missing one.
+        path: path of the field.
     """
     sample = next((value for value in values if value is not None), None)
     names = names_in(sample)
@@ -207,7 +203,7 @@ def _columns_of_arrays(values: Sequence[Any], path: str) -> Iterator[tuple[str, 
 
 
 def _are_rows(values: Sequence[Any]) -> bool:
-    """Whether all are arrays of numbers with the same lengths."""
+    """Return whether all are arrays of numbers with the same lengths."""
     if not values or not all(isinstance(value, list | tuple) for value in values):
         return False
     if len({*map(len, values)}) != 1:
@@ -264,16 +260,17 @@ UNITS: Mapping[str, Mapping[str, str]] = {
         "effort": "N·m or N",
     },
 }
-"""By message type and field, as the definitions and REP 103 say. What is inside such a field has its unit, unless it
-has one of its own."""
+"""Units by message type and field, from the definitions and REP 103. The unit of a field applies to everything in it
+that has no unit of its own.
+"""
 
 
 def unit_at(message: Any, steps: Iterable[Step]) -> str:
-    """The unit of a field of a message; "" when it is not known.
+    """Return the unit of a field of a message; "" if it is not known.
 
     Args:
-        message: one that has the field.
-        steps: the way to it, see `cfepy.ground.fields.steps_of`.
+        message: a message with the field.
+        steps: steps to the field, see `cfepy.ground.fields.steps_of`.
     """
     value, unit = message, ""
     for step in steps:

@@ -1,4 +1,4 @@
-"""A ROS message from JSON, as Foxglove's panels publish it: {"linear": {"x": 1}}; a field that is left out is zero."""
+"""A ROS message from JSON, as published by Foxglove's panels: {"linear": {"x": 1}}; missing fields are zero."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ _REAL = ("float32", "float64")
 
 
 def message_from_json(class_of: Callable[[str], Any], kind: str, value: Any) -> Any:
-    """A message.
+    """Return a message.
 
     Args:
         class_of: class of a message type by its full name.
         kind: the type, such as "geometry_msgs/Twist".
-        value: what the JSON says: objects are messages and times, base64 is an array of bytes, too.
+        value: the JSON value: objects are messages and times, base64 may be an array of bytes.
 
     Raises:
-        ValueError: it does not fit the type; the text has the path of the field.
+        ValueError: if it does not fit the type; the text has the path of the field.
     """
     return _message(class_of, kind, value, kind)
 
@@ -58,7 +58,7 @@ def _value(class_of: Callable[[str], Any], kind: str, value: Any, path: str) -> 
 
 def _number(kind: str, value: Any, path: str) -> Any:
     if kind in _REAL and value is None:
-        return float("nan")  # JSON has no other way to say it
+        return float("nan")  # JSON has no other representation
     if isinstance(value, bool) and kind == _TRUTH:
         return value
     if not isinstance(value, int | float):

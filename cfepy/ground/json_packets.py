@@ -1,7 +1,7 @@
-"""Packets and events as JSON with a schema, for MCAP files and for Foxglove: one form for both.
+"""Packets and events as JSON with a schema, for MCAP files and Foxglove.
 
-A packet is the fields of its declaration, `_header` with what its CCSDS headers say, and `_packet`, all its bytes in
-base64. An event is a `foxglove.Log` (docs.foxglove.dev/docs/visualization/message-schemas/log).
+A packet has the fields of its declaration, `_header` with the contents of its CCSDS headers, and `_packet` with all its
+bytes in base64. An event is a `foxglove.Log` (docs.foxglove.dev/docs/visualization/message-schemas/log).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from cfepy.mission import Seen
 
 PACKETS, EVENTS = "/cfe/", "/cfe/events"
-"""What the names of packets' channels begin with, and the channel of events."""
+"""Prefix of the names of packets' channels, and the channel of events."""
 
 _INTEGER, _NUMBER, _TEXT = {"type": "integer"}, {"type": "number"}, {"type": "string"}
 _BYTES = {"type": "string", "contentEncoding": "base64"}
@@ -55,11 +55,11 @@ _LOG_LEVELS = {DEBUG: 1, INFORMATION: 2, ERROR: 4, CRITICAL: 5}
 
 
 def packet_schema(name: str, declared: Command | Telemetry | None) -> bytes:
-    """The JSON schema of a packet.
+    """Return the JSON schema of a packet.
 
     Args:
-        name: of the packet.
-        declared: what it is declared as; None when that is not known.
+        name: name of the packet.
+        declared: its declaration; None if it is not known.
     """
     layout = None if declared is None else declared.payload
     fields = {} if layout is None else _properties(layout.unpack(bytes(layout.size)))
@@ -67,16 +67,16 @@ def packet_schema(name: str, declared: Command | Telemetry | None) -> bytes:
 
 
 def log_schema() -> bytes:
-    """The JSON schema of an event."""
+    """Return the JSON schema of an event."""
     return _bytes_of(_LOG)
 
 
 def packet_json(seen: Seen, decoded: Decoded) -> bytes:
-    """A packet as JSON.
+    """Return a packet as JSON.
 
     Args:
         seen: the packet.
-        decoded: what is in it.
+        decoded: its contents.
     """
     packet = seen.packet
     header: dict[str, Any] = {"msg_id": decoded.msg_id, "sequence": decoded.sequence, "length": len(packet)}
@@ -91,11 +91,11 @@ def packet_json(seen: Seen, decoded: Decoded) -> bytes:
 
 
 def event_json(event: DecodedEvent, time_ns: int) -> bytes:
-    """An event as a `foxglove.Log`: the application is its name, the event's id its line.
+    """Return an event as a `foxglove.Log`: the application is its name, the event's id its line.
 
     Args:
         event: the event.
-        time_ns: when it was sent.
+        time_ns: time at which it was sent.
     """
     return _bytes_of(
         {
@@ -130,7 +130,7 @@ def _bytes_of(value: Any) -> bytes:
 
 
 def _plain(value: Any) -> Any:
-    """With what JSON has: bytes as base64, and null for a number that it has not."""
+    """Return a value in JSON types: bytes as base64, null for numbers that JSON lacks."""
     if isinstance(value, dict):
         return {name: _plain(each) for name, each in value.items()}
     if isinstance(value, (list, tuple)):

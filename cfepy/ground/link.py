@@ -1,8 +1,8 @@
-"""The ground link: commands to a mission and telemetry from it as UDP would carry them, but inside the process.
+"""The ground link: commands to a mission and telemetry from it as over UDP, but inside the process.
 
-It stands for a ground system at the other end of CI_LAB's and TO_LAB's sockets. The host uses it between two pieces of
-a run; what it sends arrives at the virtual instant at which the run stands, and is noted in the trace with its bytes.
-So a run with a ground link is as deterministic as one without.
+It acts as a ground system that is connected to CI_LAB's and TO_LAB's sockets. The host uses it between two parts of a
+run; its data arrives at the current virtual time, and is recorded in the trace with its bytes. So a run with a ground
+link is as deterministic as one without.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ GROUND = Place("127.0.0.1", TO_PORT)
 
 
 class GroundLink:
-    """The way from the host to the virtual sockets of a mission, and back.
+    """Connection from the host to the virtual sockets of a mission, and back.
 
     Args:
-        mission: the mission to talk to; also after it was reset.
-        on_datagram: called with everything that leaves the mission, at once; without it, `received` hands it out.
+        mission: the mission; the link stays connected after its resets.
+        on_datagram: called at once with everything that the mission sends; without it, `received` returns it.
     """
 
     def __init__(self, mission: Mission, on_datagram: Callable[[Datagram], object] | None = None) -> None:
@@ -33,11 +33,11 @@ class GroundLink:
         mission.network.outlets.append(self._outlet)
 
     def send(self, packet: bytes, port: int = CI_PORT, source: Place = GROUND) -> bool:
-        """Send a datagram to a port of the mission; from the host only, while the run stands still.
+        """Send a datagram to a port of the mission; only from the host, while the run is stopped.
 
         Args:
             packet: its bytes.
-            port: where CI_LAB listens: 1234 on processor 1.
+            port: port of CI_LAB: 1234 on processor 1.
             source: its sender, as the receiver sees it.
 
         Returns:
@@ -46,10 +46,10 @@ class GroundLink:
         return self._mission.outside.datagram(port, source, bytes(packet))
 
     def received(self, port: int = TO_PORT) -> list[tuple[int, bytes]]:
-        """What has come down since the last call, in order.
+        """Return the received datagrams since the last call, in order.
 
         Args:
-            port: where TO_LAB sends to.
+            port: port to which TO_LAB sends.
 
         Returns:
             The virtual time of sending in ns and the bytes of each datagram, whatever the host it was sent to.
@@ -57,7 +57,7 @@ class GroundLink:
         return self._waiting.pop(port, [])
 
     def close(self) -> None:
-        """Take the link away; the mission goes on without."""
+        """Remove the link; the mission continues without it."""
         self._mission.network.outlets.remove(self._outlet)
 
     def __enter__(self) -> GroundLink:

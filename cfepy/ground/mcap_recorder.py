@@ -1,6 +1,6 @@
-"""A run recorded into an MCAP file, for Foxglove and other tools: its ROS topics, its cFE packets and its events.
+"""Recording a run into an MCAP file, for Foxglove and other tools: its ROS topics, cFE packets and events.
 
-Recording watches the bus, as that into a bag does, so it changes nothing in the run. Packets are JSON with a schema
+Recording observes the bus, like recording a bag, so it does not change the run. Packets are JSON with a schema
 (`cfepy.ground.json_packets`), and events are also written as `foxglove.Log`.
 """
 
@@ -23,22 +23,22 @@ if TYPE_CHECKING:
     from rosbag_storage import RecordedChannel
 
 SUFFIX = ".mcap"
-FLUSH_NS = NS_PER_S  # of virtual time: what a run that is killed loses at most, as soon as it is on the disk
+FLUSH_NS = NS_PER_S  # in virtual time: maximum loss if a run is killed, apart from data not on the disk yet
 
 
 class McapRecorder(RunRecorder):
     """Records a run into an MCAP file.
 
     Args:
-        file: the file; an older one is written over.
-        patterns: names of topics and channels, such as "/odom" or "/cfe/*"; all when there are none.
-        command: the command that does the run again, which the file tells.
+        file: the file; it is overwritten.
+        patterns: names of topics and channels, such as "/odom" or "/cfe/*"; all if empty.
+        command: command that repeats the run, stored in the file.
 
     Raises:
-        UsageError: the file cannot be written, or the library mcap is not installed.
+        UsageError: if the file cannot be written, or the library mcap is not installed.
 
     Attributes:
-        count: messages, packets and events so far.
+        count: number of messages, packets and events so far.
     """
 
     def __init__(self, file: str, patterns: Sequence[str] = (), command: str = "") -> None:
@@ -68,10 +68,10 @@ class McapRecorder(RunRecorder):
         super().take_packet(seen)
         declared = None if get_header_version(seen.packet) else self._dictionary.declared_as(seen.packet)
         if declared is None and self._topic(seen.msg_id) is not None:
-            return  # the message of a ROS topic, which has been taken
+            return  # the message of a ROS topic, which was already recorded
         stamp_ns = self._stamp(seen.at_ns)
         if stamp_ns is None:
-            return  # as of topics, there is no time yet
+            return  # as for topics, there is no time yet
         self._take_cfe(seen, declared, stamp_ns)
         if seen.msg_id in EVENT_IDS and matches(EVENTS, self._patterns):
             self._take_event(seen, stamp_ns)
@@ -92,13 +92,13 @@ class McapRecorder(RunRecorder):
         try:
             event = DecodedEvent.of(seen)
         except (CfeError, UsageError):
-            return  # an application has sent something else on this MsgId, which the packet's own channel shows
+            return  # an application has sent something else with this MsgId, which the packet's own channel shows
         data = event_json(event, stamp_ns)
         self._write(EVENTS, lambda: _json_channel(EVENTS, "foxglove.Log", log_schema(), {}), seen.at_ns, stamp_ns, data)
 
     def _take_topic(self, message: TopicMessage) -> None:
         if message.stamp_ns is None:
-            return  # rosbag, too, begins when there is a time
+            return  # rosbag, too, starts once there is a time
         header = message.header
         key = (message.topic, header.get("callerid", ""), header["md5sum"])
 
@@ -140,15 +140,15 @@ def _json_channel(name: str, title: str, schema: bytes, about: dict[str, str]) -
 
 
 def recorder_of(file: str, patterns: Sequence[str] = (), command: str = "") -> RunRecorder:
-    """What records a run into a file: into an MCAP file if its name ends with .mcap, else into a bag.
+    """Return the recorder of a run: for an MCAP file if the file name ends with .mcap, otherwise for a bag.
 
     Args:
-        file: the file; an older one is written over.
-        patterns: names of topics; all when there are none.
-        command: the command that does the run again, which an MCAP file tells.
+        file: the file; it is overwritten.
+        patterns: names of topics; all if empty.
+        command: command that repeats the run, stored in an MCAP file.
 
     Raises:
-        UsageError: the file cannot be written, or the library mcap is not installed.
+        UsageError: if the file cannot be written, or the library mcap is not installed.
     """
     if file.endswith(SUFFIX):
         return McapRecorder(file, patterns, command)

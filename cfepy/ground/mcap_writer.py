@@ -1,6 +1,6 @@
-"""MCAP files are written here, by the library mcap: the one place that needs it (`pip install 'cfepy[mcap]'`).
+"""Writing MCAP files with the library mcap, which is used only here (`pip install 'cfepy[mcap]'`).
 
-What is written is the same for the same messages: no time and no name of the computer gets into a file.
+The same messages give the same file: it contains no time or name of the computer.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ class McapWriter:
 
     Args:
         file: opened for writing.
-        compression: of its chunks, one of `COMPRESSIONS`.
+        compression: compression of its chunks, one of `COMPRESSIONS`.
 
     Raises:
-        UsageError: the library mcap is not installed, or not what compresses.
-        OSError: the file cannot be written.
+        UsageError: if the library mcap or that for compression is not installed.
+        OSError: if the file cannot be written.
     """
 
     def __init__(self, file: BinaryIO, compression: str = "none") -> None:
@@ -36,13 +36,13 @@ class McapWriter:
         kind = library.CompressionType[compression.upper()]
         try:
             self._writer: Any = library.Writer(file, CHUNK_BYTES, kind)
-        except Exception as error:  # the library's own, of which only the text is of use
+        except Exception as error:  # the library's own exception, of which only the text is useful
             raise UsageError(f"{compression}: {error}", field="--compression") from None
         self._schemas: dict[McapSchema, int] = {}
         self._writer.start("ros1", LIBRARY)
 
     def channel(self, channel: RecordedChannel) -> int:
-        """Begin a channel; returns the number under which its messages are written."""
+        """Add a channel; returns the number under which its messages are written."""
         schema = channel.schema
         if schema not in self._schemas:
             known = 0 if not schema.encoding else self._writer.register_schema(*schema)
@@ -61,27 +61,27 @@ class McapWriter:
             time: in ns.
             data: the message.
             publish_time: in ns; None for `time`.
-            sequence: number that its sender gave it; 0 for none.
+            sequence: its number from the sender; 0 for none.
 
         Raises:
-            OSError: the file cannot be written.
+            OSError: if the file cannot be written.
         """
         self._writer.add_message(channel, time, data, time if publish_time is None else publish_time, sequence)
 
     def metadata(self, name: str, values: Mapping[str, str]) -> None:
-        """Write what is known of the whole file."""
+        """Write metadata of the whole file."""
         self._writer.add_metadata(name, dict(values))
 
     def attachment(self, log_time: int, create_time: int, name: str, media_type: str, data: bytes) -> None:
-        """Write a file that goes with the messages; times in ns."""
+        """Attach a file; times in ns."""
         self._writer.add_attachment(create_time, log_time, name, media_type, data)
 
     def flush(self) -> None:
-        """End the chunk: what was written up to now can be read even if nothing more comes."""
+        """End the chunk: everything so far can then be read even if nothing more follows."""
         self._writer.flush()
 
     def finish(self) -> None:
-        """Write the index; the file is whole then."""
+        """Write the index, which completes the file."""
         self._writer.finish()
 
 

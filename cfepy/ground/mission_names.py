@@ -1,8 +1,8 @@
-"""Names of MsgIds: what the core services, the apps of a mission and its ROS side call them.
+"""Names of MsgIds from the core services, the apps of a mission and its ROS part.
 
-An app's names are read from its source, where it says `SEND_HK_MID = local_cmd_topic_id_to_msg_id(0x83)` or
-`HK_TLM_MID = 0x0883` at module level; nothing of it is executed. Topics and services get their MsgIds while a mission
-runs: `LiveNames` asks for them when they are first needed.
+An app's names are read from its source, from lines such as `SEND_HK_MID = local_cmd_topic_id_to_msg_id(0x83)` or
+`HK_TLM_MID = 0x0883` at module level; the source is not executed. Topics and services get their MsgIds while a mission
+runs: `LiveNames` asks for them on first use.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from cfepy.time import packets as time
 
 SUFFIX = "_MID"
 CORE_PACKETS: dict[str, ModuleType] = {"ES": es, "EVS": evs, "SB": sb, "TBL": tbl, "TIME": time}
-"""What declares the packets of each of the five services."""
+"""Modules that declare the packets of the five services."""
 _ASSIGNMENT = re.compile(rb"_MID[\s\\)]*=")
 ROS = "ROS"
-COMMAND_BIT = 0x1000  # of commands: a ROS service's requests have the MsgId of its answers with this bit
+COMMAND_BIT = 0x1000  # bit of commands: a ROS service's requests have the MsgId of its answers with this bit
 
 
 def names_of(spec: MissionSpec) -> dict[int, str]:
-    """MsgId to name, as far as it can be told without running the mission; core services come first, topics last."""
+    """Return names by MsgId, as far as known without running the mission; core services first, topics last."""
     names = core_names()
     for entry in spec.entries:
         if entry.symbol != NODE_SYMBOL:
@@ -51,12 +51,12 @@ def names_of(spec: MissionSpec) -> dict[int, str]:
 
 
 def kind_of(msg_id: int) -> str:
-    """What a MsgId says of its packets: "command" or "telemetry"."""
+    """Return the type of packets with a MsgId: "command" or "telemetry"."""
     return "command" if msg_id & COMMAND_BIT else "telemetry"
 
 
 def names_in(mission: Mission) -> dict[int, str]:
-    """MsgId to name, in a mission that runs or has run: those of its ROS services as well."""
+    """Return names by MsgId of a mission that runs or has run, including its ROS services."""
     names = names_of(mission.spec)
     if mission.ros is not None:
         _add_services(names, mission.ros.graph.ids.services())
@@ -64,14 +64,14 @@ def names_in(mission: Mission) -> dict[int, str]:
 
 
 def _add_services(names: dict[int, str], services: Mapping[int, str]) -> None:
-    """Name the messages of ROS services, whose answers have the MsgIds by which ROS knows them."""
+    """Add the names of ROS services, which ROS knows by the MsgIds of their answers."""
     for msg_id, name in services.items():
         names.setdefault(msg_id, f"{name} answer")
         names.setdefault(msg_id | COMMAND_BIT, f"{name} request")
 
 
 def core_names() -> dict[int, str]:
-    """MsgId to NASA's name, for the messages of the five services: 0x0808 is CFE_EVS_LONG_EVENT_MSG."""
+    """Return NASA's names by MsgId, for the messages of the five services: 0x0808 is CFE_EVS_LONG_EVENT_MSG."""
     names: dict[int, str] = {}
     for service, packets in CORE_PACKETS.items():
         names = _constants(packets, f"CFE_{service}") | names
@@ -79,7 +79,7 @@ def core_names() -> dict[int, str]:
 
 
 def _constants(module: ModuleType, owner: str) -> dict[int, str]:
-    """MsgId to name of everything called *_MID in a module of cfepy's own."""
+    """Return names by MsgId of everything called *_MID in a module of cfepy."""
     found: dict[int, str] = {}
     for name, value in vars(module).items():
         if name.endswith(SUFFIX) and isinstance(value, int):
@@ -88,10 +88,10 @@ def _constants(module: ModuleType, owner: str) -> dict[int, str]:
 
 
 def constants_in(code: Path | str | None) -> Iterator[tuple[str, int]]:
-    """(constant, MsgId) of everything called *_MID in an app's sources.
+    """Yield (constant, MsgId) of everything called *_MID in an app's sources.
 
     Args:
-        code: what `find_declarations` found: a module's file or a package's `__init__.py`; others declare nothing.
+        code: result of `find_declarations`: a module's file or a package's `__init__.py`; others declare nothing.
     """
     if not isinstance(code, Path):
         return
@@ -99,10 +99,10 @@ def constants_in(code: Path | str | None) -> Iterator[tuple[str, int]]:
         try:
             source = read_limited(file, PYTHON_BYTES)
             if _ASSIGNMENT.search(source) is None:
-                continue  # quickly known: to parse all of an app takes as long as to load it
+                continue  # fast check: parsing all of an app takes as long as loading it
             tree = parsed_input(source)
         except (SyntaxError, ValueError, OSError):
-            continue  # `cfepy check` has more to say about it
+            continue  # `cfepy check` reports the error
         yield from _assigned(tree)
 
 
@@ -115,7 +115,7 @@ def _assigned(tree: ast.Module) -> Iterator[tuple[str, int]]:
 
 
 def _msg_id(node: ast.expr) -> int | None:
-    """The value of `0x1883` or of `local_cmd_topic_id_to_msg_id(0x83)`."""
+    """Return the value of `0x1883` or of `local_cmd_topic_id_to_msg_id(0x83)`."""
     value: Any = node.value if isinstance(node, ast.Constant) else None
     if isinstance(node, ast.Call) and len(node.args) == 1 and isinstance(node.args[0], ast.Constant):
         function = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
@@ -131,10 +131,10 @@ def _with_prefix(name: str, owner: str) -> str:
 
 
 class LiveNames:
-    """MsgId to name; what has no name is called by its number, "0x0883".
+    """Names by MsgId; a message without name is called by its number, "0x0883".
 
     Args:
-        mission: whose messages they are.
+        mission: mission of the messages.
     """
 
     def __init__(self, mission: Mission) -> None:
@@ -144,7 +144,7 @@ class LiveNames:
         self._seen: tuple[Any, int, int] = (None, 0, 0)
 
     def __getitem__(self, msg_id: int) -> str:
-        """The name of a MsgId."""
+        """Return the name of a MsgId."""
         name = self._found.get(msg_id)
         if name is None:
             self._look()
@@ -152,7 +152,7 @@ class LiveNames:
         return name
 
     def _look(self) -> None:
-        """Take over the names that ROS has given since the last time."""
+        """Add the names that ROS has given since the last call."""
         ros = self._mission.ros
         if ros is None:
             return

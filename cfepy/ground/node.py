@@ -1,7 +1,6 @@
-"""A ground node in a mission: its spec with one more application; the library `ground_nodes` has the scripts.
+"""A ground node in a mission: the mission's spec with an additional application from the library `ground_nodes`.
 
-It stands for the rosbag, rostopic or rosservice that an operator runs on a robot. What the last two print is a line
-of JSON.
+It acts as the rosbag, rostopic or rosservice that an operator runs on a robot. The last two print lines of JSON.
 """
 
 from __future__ import annotations
@@ -23,20 +22,20 @@ from rospy_shim.library_parts import FOLDER
 from rospy_shim.types.msgs.packages import near
 
 SCRIPTS = "ground_nodes"
-"""The library whose modules are the scripts."""
+"""Library with the scripts."""
 PLAY_OPTIONS = "ros_libraries.rosbag_storage.play_options"
-"""What knows the options of `rosbag play`; nodes import it by another name."""
+"""Module with the options of `rosbag play`, which nodes load under another name."""
 APP, PLAYER = "GROUND_NODE", "ROSBAG_PLAY"
 _SPEAKERS = (f"[{APP}", "[rosservice_", "[rostopic_", "[tf_echo_", "[view_frames_")
 
 
 def with_ground_node(spec: MissionSpec, script: str, arguments: Sequence[Any]) -> MissionSpec:
-    """A mission with a node of the ground's.
+    """Return a mission with an additional node of the ground.
 
     Args:
         spec: the mission.
         script: name of the script, such as "ground_call".
-        arguments: what it is told.
+        arguments: its arguments.
     """
     path = FOLDER / SCRIPTS / f"{script}.py"
     node = NodeConfig(
@@ -51,15 +50,12 @@ def with_ground_node(spec: MissionSpec, script: str, arguments: Sequence[Any]) -
 
 
 def empty_mission() -> MissionSpec:
-    """A mission without nodes, in the current folder, for a tool that needs none: it finds the packages here."""
+    """Return a mission without nodes, in the current folder, for a tool that needs none; packages are found there."""
     return spec_of(Path.cwd() / "tool", {}, ROSCORE_PARAMS)
 
 
 def _package_paths(spec: MissionSpec) -> dict[str, str]:
-    """Where the mission's nodes find packages: a program that talks to them needs their message types.
-
-    In a mission without nodes it finds those that its user does.
-    """
+    """Return where the mission's nodes find packages, whose message types a program needs to communicate with them."""
     nodes = spec.ros.nodes.values()
     if not nodes:
         return mission_environment()
@@ -72,40 +68,37 @@ def _package_paths(spec: MissionSpec) -> dict[str, str]:
 
 
 def ground_node_ended(mission: Mission) -> bool:
-    """Whether the ground's node has come to its end, or died."""
+    """Return whether the ground's node has ended, normally or not."""
     return mission.ros is not None and APP in mission.ros.monitor.statuses
 
 
 def with_player(spec: MissionSpec, bag: str, options: str = "") -> MissionSpec:
-    """A mission in which a bag is played, with its time on /clock if the mission's nodes use simulated time.
-
-    The player is started in the bag's folder, with the bag's name: it tells the name, and where the folder is must not
-    decide the run.
+    """Return a mission in which a bag is played, with its time on /clock if the mission's nodes use simulated time.
 
     Args:
         spec: the mission.
         bag: the bag, or the MCAP file.
-        options: what else `rosbag play` is told, as on a command line, such as "--rate 2 --topics /a /a:=/b".
+        options: further arguments of `rosbag play`, as on a command line, such as "--rate 2 --topics /a /a:=/b".
 
     Raises:
-        UsageError: there is no such bag, it is broken, or an option is none.
+        UsageError: if there is no such bag, it is damaged, or an option is invalid.
     """
     with BagReader(bag):
         pass
     words = play_words(options)
     has_clock = spec.ros.params.get("use_sim_time") is True and "--clock" not in words
     folder, name = os.path.split(os.path.abspath(bag))
-    name = f"./{name}" if name.startswith("-") else name  # which would be an option
+    name = f"./{name}" if name.startswith("-") else name  # it would be taken as an option
     args = (*(["--clock"] if has_clock else []), name, *words)
     script = FOLDER / SCRIPTS / "ground_play.py"
     return _with_node(spec, NodeConfig(PLAYER, args=args, script=script, cwd=Path(folder)))
 
 
 def play_words(options: str) -> list[str]:
-    """The words of options of `rosbag play`.
+    """Return the words of options of `rosbag play`.
 
     Raises:
-        UsageError: it has no such option, or another bag is named, which has its own `--play`.
+        UsageError: if it has no such option, or another bag is named, which has its own `--play`.
     """
     try:
         words = shlex.split(options)
@@ -126,11 +119,11 @@ def _with_node(spec: MissionSpec, node: NodeConfig) -> MissionSpec:
 
 
 class GroundConsole:
-    """Takes the lines of a mission's console, and keeps what the ground node said.
+    """Receives the lines of a mission's console, and keeps the output of the ground node.
 
     Attributes:
-        said: the node's lines, as they are after JSON.
-        others: what other nodes printed.
+        said: the node's lines, decoded from JSON.
+        others: output of other nodes.
     """
 
     def __init__(self) -> None:
@@ -138,7 +131,7 @@ class GroundConsole:
         self.others: list[str] = []
 
     def line(self, text: str) -> None:
-        """A line of the console."""
+        """Process a line of the console."""
         name, bracket, rest = text.partition("] ")
         if not bracket or not text.startswith("["):
             return
@@ -148,9 +141,9 @@ class GroundConsole:
             self.overhear(text)
 
     def take(self, said: dict[str, Any]) -> None:
-        """The node said this."""
+        """Add output of the node."""
         self.said.append(said)
 
     def overhear(self, text: str) -> None:
-        """Another node printed this."""
+        """Add output of another node."""
         self.others.append(text)

@@ -1,6 +1,6 @@
-"""The ROS parameters of a mission for tools: those at its start, those after some seconds, those in table files.
+"""ROS parameters of a mission for tools: at its start, after some seconds, or in table files.
 
-ROS's rules and tables are those of `rospy_shim.parameters`.
+ROS's rules and tables are in `rospy_shim.parameters`.
 """
 
 from __future__ import annotations
@@ -35,26 +35,26 @@ class Parameters:
         self._tree = ParameterTree(tree)
 
     def find(self, name: str) -> Any:
-        """A value, or the tree below a namespace; None when there is none of the name."""
+        """Return a value, or the tree below a namespace; None if there is no such name."""
         value = self._tree.find(name)
         return None if value is ParameterTree.MISSING else value
 
     def set(self, name: str, value: Any) -> None:
-        """Give a name a value."""
+        """Set the value of a name."""
         self._tree.set(name, value)
 
     def names(self, namespace: str = "/") -> list[str]:
-        """Full names of the parameters in a namespace, sorted."""
+        """Return the full names of the parameters in a namespace, sorted."""
         prefix, known = namespace.rstrip("/"), self._tree.names()
         return sorted(name for name in known if not prefix or name == prefix or name.startswith(f"{prefix}/"))
 
 
 def at_start(spec: MissionSpec, unknown: list[str]) -> Parameters:
-    """What a mission file says: global parameters, and those of its nodes.
+    """Return the parameters in a mission file: global ones, and those of its nodes.
 
     Args:
         spec: the mission.
-        unknown: gets the applications of nodes with parameters whose names only their scripts know.
+        unknown: receives the applications of nodes with parameters whose names only their scripts know.
     """
     found = Parameters(spec.ros.params)
     for app, node in spec.ros.nodes.items():
@@ -66,55 +66,55 @@ def at_start(spec: MissionSpec, unknown: list[str]) -> Parameters:
 
 
 def present(mission: Mission) -> Parameters:
-    """What a mission has now."""
+    """Return the current parameters of a mission."""
     return Parameters({} if mission.ros is None else mission.ros.graph.params.find("/"))
 
 
 def of_files(path: Path, problems: list[str]) -> Parameters:
-    """What a parameter table holds, or all those in a folder.
+    """Return the parameters in a table file, or in all of a folder.
 
     Args:
         path: a table file, or a folder with some.
-        problems: gets a line for each parameter that cannot be read.
+        problems: receives a line for each parameter that cannot be read.
 
     Raises:
-        UsageError: there is no parameter table.
+        UsageError: if there is no parameter table.
     """
     return Parameters(files.read(_contents(path), problems))
 
 
 def is_source_of_files(source: str) -> bool:
-    """Whether a word means table files, and not a mission."""
+    """Return whether a word refers to table files, and not to a mission."""
     path = Path(source)
     return path.suffix == TABLE_SUFFIX or (os.path.isdir(path) and not os.path.isfile(path / STARTUP_SCRIPT))
 
 
 def changed(path: Path, name: str, value: Any) -> dict[Path, bytes]:
-    """Table files with another value of a parameter; None takes it away.
+    """Return table files with another value of a parameter; None removes it.
 
     Args:
         path: a table file, or a folder with some.
-        name: of the parameter.
-        value: as XML-RPC carries it.
+        name: name of the parameter.
+        value: a value that XML-RPC supports.
 
     Returns:
         The files that changed.
 
     Raises:
-        UsageError: there is no parameter table, no room, or no such parameter.
+        UsageError: if there is no parameter table, no room, or no such parameter.
     """
     return {Path(file): data for file, data in files.change(_contents(path), name, value).items()}
 
 
 def table_files(source: Path, mission: str | None) -> dict[str, bytes]:
-    """Table files that hold the parameters of a YAML file, by name.
+    """Return table files with the parameters of a YAML file, by name.
 
     Args:
         source: the YAML file.
-        mission: whose tables they shall fit; None for a mission with cFE's limits.
+        mission: mission of the tables; None for a mission with cFE's limits.
 
     Raises:
-        UsageError: the file is wrong, or its parameters do not fit.
+        UsageError: if the file has an error, or its parameters do not fit.
     """
     tree = read_tree(load(source, handed=True))
     spec = None if mission is None else read_mission(mission)
@@ -125,7 +125,7 @@ def table_files(source: Path, mission: str | None) -> dict[str, bytes]:
 
 
 def _contents(path: Path) -> dict[str, bytes]:
-    """The parameter tables that a path means, by file name."""
+    """Return the parameter tables at a path, by file name."""
     try:
         if not os.path.isdir(path):
             return {str(path): read_limited(path, TABLE_BYTES, handed=True)}

@@ -1,8 +1,7 @@
-"""A recording as a whole, a bag or an MCAP file, in whatever state it is: what is in it, and what is left written anew.
+"""A whole recording, a bag or an MCAP file, possibly damaged: its contents, and a rewritten copy of the readable part.
 
-summary_of("run.mcap").text()
-rewrite("cut.bag", "whole.bag")  # what is left of it
-rewrite("run.mcap", "run.bag", strict=True)  # a conversion: nothing may be lost
+summary_of("run.mcap").text() rewrite("cut.bag", "whole.bag")  # what is left of it rewrite("run.mcap", "run.bag",
+strict=True)  # a conversion: nothing may be lost
 """
 
 from __future__ import annotations
@@ -29,24 +28,24 @@ if TYPE_CHECKING:
 
 BAG, MCAP = ".bag", ".mcap"
 KINDS = {BAG: ("none", "bz2", "lz4"), MCAP: COMPRESSIONS}
-"""How the chunks of each format can be compressed."""
+"""Compressions of chunks in each format."""
 _BEGINNINGS = {b"#ROSBAG": BAG, b"\x89MCAP0\r": MCAP}
 _ROS_TIME_NS = (1 << 32) * NS_PER_S
 
 
 @dataclass
 class TopicSummary:
-    """What a recording has of a topic.
+    """A topic of a recording.
 
     Attributes:
         topic: name.
-        type: of its messages.
-        encoding: "ros1", or what else an MCAP file says.
-        connections: publishers, or channels.
-        messages: how many can be read.
-        bytes: of these.
-        lost: messages that the file's index names, and that cannot be read; None without an index.
-        left_out: messages that the other format has no place for.
+        type: type of its messages.
+        encoding: "ros1", or another encoding in an MCAP file.
+        connections: number of publishers, or channels.
+        messages: number of readable messages.
+        bytes: bytes of these.
+        lost: number of messages in the file's index that cannot be read; None without an index.
+        left_out: number of messages that the other format cannot store.
     """
 
     topic: str
@@ -61,17 +60,15 @@ class TopicSummary:
 
 @dataclass
 class RecordingSummary:
-    """What is in a recording.
+    """Contents of a recording.
 
     Attributes:
-        file, format, size: name, ".bag" or ".mcap", and bytes.
-        finished: it has its end and its index.
-        start_ns, end_ns: times of the first and the last message; None without one.
-        chunks: how many, by compression.
+        finished: whether it has its end and index.
+        chunks: number of chunks, by compression.
         topics: by name.
-        losses: what could not be read.
-        doubtful: messages of chunks with a wrong checksum.
-        metadata: what an MCAP file says of itself, by name.
+        losses: parts that could not be read.
+        doubtful: number of messages in chunks with a wrong checksum.
+        metadata: metadata of an MCAP file, by name.
     """
 
     file: str
@@ -88,22 +85,22 @@ class RecordingSummary:
 
     @property
     def messages(self) -> int:
-        """How many can be read."""
+        """Number of readable messages."""
         return sum(each.messages for each in self.topics)
 
     @property
     def is_whole(self) -> bool:
-        """Whether nothing is wrong with the file."""
+        """Whether the file has no errors."""
         return self.finished and not self.losses and not any(each.lost for each in self.topics)
 
     def to_dict(self) -> dict[str, Any]:
-        """Itself as plain values."""
+        """Return it as plain values."""
         plain = {name: value for name, value in vars(self).items() if name not in ("topics", "losses")}
         topics, losses = ([dict(vars(each)) for each in found] for found in (self.topics, self.losses))
         return {**plain, "messages": self.messages, "topics": topics, "losses": losses}
 
     def damage(self) -> Iterator[str]:
-        """What is wrong with the file, a line each."""
+        """Return the errors of the file, a line each."""
         for loss in self.losses:
             yield f"{loss.size:,} bytes at byte {loss.at:,}{_between(loss)}: {loss.why}"
         if self.doubtful:
@@ -117,21 +114,21 @@ class RecordingSummary:
 
 
 def _between(loss: Loss) -> str:
-    """The messages around a loss, by their times in s."""
+    """Return the messages around a loss, by their times in s."""
     sides = (("after", loss.after), ("before", loss.before))
     said = " and ".join(f"{side} {at / NS_PER_S:.6f}" for side, at in sides if at is not None)
     return f", {said}" if said else ""
 
 
 class _Count:
-    """Counts the messages of a recording while they go by."""
+    """Counts the messages of a recording while they are read."""
 
     def __init__(self, summary: RecordingSummary, salvage: Salvage) -> None:
         self._summary, self._salvage = summary, salvage
         self._bytes: dict[RecordedChannel, int] = {}
 
     def messages(self) -> Iterator[RecordedMessage]:
-        """The messages that are left."""
+        """Yield the messages that are left."""
         summary = self._summary
         for message in self._salvage.messages():
             time = message.time
@@ -160,7 +157,7 @@ class _Count:
 
 @contextmanager
 def _opened(file: str) -> Iterator[tuple[RecordingSummary, Salvage]]:
-    """A recording, with nothing in it believed yet."""
+    """Opens a recording without trusting its contents."""
     try:
         with open_input(file) as stream:
             size = os.fstat(stream.fileno()).st_size
@@ -177,7 +174,7 @@ def _opened(file: str) -> Iterator[tuple[RecordingSummary, Salvage]]:
         salvage = storage().BagSalvage(data) if kind == BAG else storage().McapSalvage(data)
         try:
             yield RecordingSummary(file, kind, size), salvage
-        except UsageError:  # which is a ValueError, too
+        except UsageError:  # UsageError is a ValueError too
             raise
         except ImportError as error:
             raise UsageError(str(error), file=file) from None
@@ -186,13 +183,13 @@ def _opened(file: str) -> Iterator[tuple[RecordingSummary, Salvage]]:
 
 
 def summary_of(file: str) -> RecordingSummary:
-    """What is in a recording, and what is wrong with it.
+    """Return the contents of a recording, and its errors.
 
     Args:
         file: a bag or an MCAP file, which may be damaged.
 
     Raises:
-        UsageError: there is none, or what its chunks are compressed by is not installed.
+        UsageError: if there is none, or support for its compression is not installed.
     """
     with _opened(file) as (summary, salvage):
         for _ in _Count(summary, salvage).messages():
@@ -201,10 +198,10 @@ def summary_of(file: str) -> RecordingSummary:
 
 
 def packets_of(file: str) -> Iterator[RecordedMessage]:
-    """The packets of cFE in an MCAP file, as JSON (`cfepy.ground.json_packets`); none in a bag.
+    """Yield the packets of cFE in an MCAP file, as JSON (`cfepy.ground.json_packets`); none in a bag.
 
     Raises:
-        UsageError: the file cannot be read, or is broken.
+        UsageError: if the file cannot be read, or is damaged.
     """
     with _opened(file) as (_, salvage):
         for message in salvage.messages():
@@ -214,23 +211,23 @@ def packets_of(file: str) -> Iterator[RecordedMessage]:
 
 
 def rewrite(file: str, output: str, compression: str | None = None, strict: bool = False) -> RecordingSummary:
-    """Write what is in a recording into another file, whose name says the format.
+    """Write the contents of a recording to another file, whose name determines the format.
 
-    Messages keep their bytes, times, connections and order. What a bag has no place for is left out: channels of an
+    Messages keep their bytes, times, connections and order. Data that a bag cannot store is left out: channels of an
     MCAP file that are no topics of ROS 1, its metadata and attachments.
 
     Args:
         file: a bag or an MCAP file.
-        output: the file to write, which is there when all is well; it may be the same one.
-        compression: one of `KINDS` of its format; None is none at all.
-        strict: nothing may be lost.
+        output: the new file, which is created only on success; it may be the same one.
+        compression: one of `KINDS` of its format; None for no compression.
+        strict: whether losses are an error.
 
     Returns:
-        What is in the recording.
+        The contents of the recording.
 
     Raises:
-        UsageError: there is no such recording, or nothing is left of it, or the file cannot be written; if nothing may
-            be lost, that something is.
+        UsageError: if there is no such recording, nothing is left of it, the file cannot be written, or, if `strict`,
+            something is lost.
     """
     kind = Path(output).suffix
     if kind not in KINDS:
@@ -272,7 +269,7 @@ def _copy(summary: RecordingSummary, salvage: Salvage, target: _BagTarget | _Mca
 
 
 class _BagTarget:
-    """A bag that is written."""
+    """A bag to write."""
 
     def __init__(self, file: BinaryIO, compression: str) -> None:
         self._bag = storage().BagFile(file)
@@ -281,7 +278,7 @@ class _BagTarget:
         self._connections: dict[RecordedChannel, Connection] = {}
 
     def write(self, message: RecordedMessage) -> bool:
-        """Write a message; whether a bag has a place for it."""
+        """Write a message; returns whether a bag can store it."""
         source = message.channel.connection
         if source is None or message.time >= _ROS_TIME_NS:
             return False
@@ -298,14 +295,14 @@ class _BagTarget:
 
 
 class _McapTarget:
-    """An MCAP file that is written."""
+    """An MCAP file to write."""
 
     def __init__(self, file: BinaryIO, compression: str) -> None:
         self._writer = McapWriter(file, compression)
         self._channels: dict[RecordedChannel, int] = {}
 
     def write(self, message: RecordedMessage) -> bool:
-        """Write a message; there is a place for each."""
+        """Write a message; returns True, because all can be stored."""
         channel = message.channel
         if channel not in self._channels:
             self._channels[channel] = self._writer.channel(channel)
@@ -313,7 +310,7 @@ class _McapTarget:
         return True
 
     def finish(self, salvage: Salvage) -> None:
-        """Write what goes with the messages, and the index."""
+        """Write the attachments and the index."""
         for name, values in salvage.metadata:
             self._writer.metadata(name, values)
         for attachment in salvage.attachments:

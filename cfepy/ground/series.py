@@ -1,13 +1,13 @@
-"""Values over time: the messages of a run on its ROS topics and of its cFE packets, as numpy arrays and tables.
+"""Values over time: the messages of a run's ROS topics and its cFE packets, as numpy arrays and tables.
 
-    recorder = SeriesRecorder(["/joint_states", "CFE_ES_HK_TLM"])  # an attachment; without names it takes everything
+    recorder = SeriesRecorder(["/joint_states", "CFE_ES_HK_TLM"])  # an attachment; without names it records everything
     fly(RunPlan(("capture",), seconds=20), attachments=[recorder])  # or the replay of a journal
     joints = recorder.series("/joint_states")  # a `Series`; `bag_series(file)` has those of a bag
     times, positions = joints.to_numpy("position")  # seconds, and an array of shape (messages, 7)
     joints.to_pandas("position", "header.stamp")  # where pandas is installed
-    recorder.found("/joint_states.position[0]")  # the series and the field that a word means
+    recorder.found("/joint_states.position[0]")  # the series and the field of a word
 
-What is sent is kept as it is, and decoded when somebody asks for its values. Recording changes nothing in the run.
+Messages are stored undecoded, and decoded when values are requested. Recording does not change the run.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SHOWN_NAMES = 12
-HEADER_BITS, TELEMETRY_BITS = 0x1800, 0x0800  # of a MsgId: a command or not, a secondary header or not
-BYTES_OF_ONE = 8_192  # of messages that are larger fewer are kept, where not all are
+HEADER_BITS, TELEMETRY_BITS = 0x1800, 0x0800  # of a MsgId: command, secondary header
+BYTES_OF_ONE = 8_192  # fewer messages that are larger than this are kept, if not all are
 
 
 class Samples(NamedTuple):
-    """A field over time: virtual times in s, of shape (n,), and values, of shape (n,) or for arrays (n, k)."""
+    """A field over time: virtual times in s, of shape (n,), and values, of shape (n,), or (n, k) for arrays."""
 
     times: NDArray[Any]
     values: NDArray[Any]
@@ -49,16 +49,16 @@ class Series:
     """The messages on a topic, or the packets of a name, in the order in which they were sent.
 
     Args:
-        name: of the topic, or in the dictionary.
-        type: of the messages, such as "sensor_msgs/JointState"; "telemetry" or "command" of packets.
+        name: name of the topic, or name in the dictionary.
+        type: type of the messages, such as "sensor_msgs/JointState"; "telemetry" or "command" for packets.
         read: decodes one.
-        stamp: when it was sent by the clock that is told on board, in ns; None as long as there is no such time.
+        stamp: returns the on-board time at which it was sent, in ns; None if there is no such time.
 
     Attributes:
-        name, type: as given.
-        count: how many were sent.
-        most: how many are kept, fewer of large ones; None is all. When there are more, every second is dropped.
-        every: one of so many is kept.
+        count: number of messages sent.
+        most: maximum number of messages kept, fewer if they are large; None for all. Beyond it, every second one is
+            dropped.
+        every: one of this number of messages is kept.
     """
 
     def __init__(self, name: str, type: str, read: Callable[[Any], Any], stamp: Callable[[Any], int | None]) -> None:
@@ -71,7 +71,7 @@ class Series:
         self._messages: list[Any] = []
 
     def add(self, sent: TopicMessage | Seen | RecordedPacket) -> None:
-        """Take the next one."""
+        """Add a message."""
         self.count += 1
         if (self.count - 1) % self.every:
             return
@@ -88,7 +88,7 @@ class Series:
 
     @property
     def sent(self) -> Sequence[Any]:
-        """What was sent, as it is: `TopicMessage` or `Seen`."""
+        """Undecoded messages: `TopicMessage` or `Seen`."""
         return self._sent
 
     def __len__(self) -> int:
@@ -98,7 +98,7 @@ class Series:
         return f"<{self.name}: {len(self)} of {self.type}>"
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: each field with its first and its last value."""
+        """Return the display in a notebook: each field with its first and last value."""
         if not self._sent:
             return headline(self.name, f"none of {self.type}")
         ends = [self._read(self._sent[0]), self._read(self._sent[-1])]
@@ -110,10 +110,10 @@ class Series:
 
     @property
     def messages(self) -> Sequence[Any]:
-        """The messages as nodes get them, packets as mappings of their fields.
+        """The messages as nodes receive them, packets as mappings of their fields.
 
         Raises:
-            UsageError: there is one whose bytes are none.
+            UsageError: if the bytes of one are not a valid message.
         """
         self._messages += map(self._read, self._sent[len(self._messages) :])
         return self._messages
@@ -132,14 +132,15 @@ class Series:
 
     @property
     def stamps_ns(self) -> NDArray[Any]:
-        """When they were sent by the clock on board, in ns, as int64: ROS time, of a telemetry packet the spacecraft
-        time in its header. 0 where there is no such time, as in a command and before a bag's /clock."""
+        """On-board times of sending, in ns, as int64: ROS time, or for telemetry packets the spacecraft time in the
+        header. 0 if there is no such time, as in a command and before a bag's /clock.
+        """
         import numpy
 
         return numpy.array([self._stamp(sent) or 0 for sent in self._sent], numpy.int64)
 
     def to_numpy(self, field: str) -> Samples:
-        """A field over time.
+        """Return a field over time.
 
         Numbers have the type that numpy gives them. Arrays of one length are rows. Times and durations are in s. Texts
         and arrays of different lengths are objects, and a number that a message has not is NaN.
@@ -148,7 +149,7 @@ class Series:
             field: its path, see `cfepy.ground.fields`.
 
         Raises:
-            UsageError: there is no such field, or it is a whole struct.
+            UsageError: if there is no such field, or it is a whole struct.
         """
         path, values = self._values(field)
         inner = next((names_in(value) for value in values if value is not None), ())
@@ -158,27 +159,27 @@ class Series:
         return Samples(self.times, array_of(values))
 
     def columns(self, *fields: str) -> dict[str, NDArray[Any]]:
-        """Fields as columns, each number, time and text in them by its path, such as "position[0]".
+        """Return the fields as columns, each number, time and text in them by its path, such as "position[0]".
 
         Args:
-            fields: their paths; everything when there are none.
+            fields: their paths; all if empty.
 
         Raises:
-            UsageError: there is no such field.
+            UsageError: if there is no such field.
         """
         found = [self._values(field) for field in fields or ("",)]
         return {name: column for path, values in found for name, column in columns_of(values, path)}
 
     def unit(self, field: str) -> str:
-        """The unit of a field as its message type defines it; "" when that is not known, as for cFE's packets."""
+        """Return the unit of a field defined by its message type; "" if it is not known, as for cFE's packets."""
         return unit_at(self.messages[0], steps_of(field)) if len(self) else ""
 
     def to_pandas(self, *fields: str) -> Any:
-        """A `pandas.DataFrame`: a row for each message, with its virtual time in s for an index, and a column for each
-        of `columns(*fields)`.
+        """Return a `pandas.DataFrame`: a row for each message, with its virtual time in s for an index, and a column
+        for each of `columns(*fields)`.
 
         Raises:
-            UsageError: there is no such field, or pandas is not installed.
+            UsageError: if there is no such field, or pandas is not installed.
         """
         try:
             from pandas import DataFrame, Index
@@ -187,7 +188,7 @@ class Series:
         return DataFrame(self.columns(*fields), index=Index(self.times, name="time"))
 
     def _values(self, field: str) -> tuple[str, list[Any]]:
-        """The path of a field as it is shown, and its value in each message."""
+        """Return the path of a field in display form, and its value in each message."""
         messages = self.messages
         try:
             steps = steps_of(field)
@@ -209,13 +210,13 @@ class SeriesSet:
     """Series by name.
 
     Args:
-        most: how many messages of each are kept, evenly spread over the run; None is all.
+        most: maximum number of messages kept for each, evenly spread over the run; None for all.
     """
 
     def __init__(self, most: int | None = None) -> None:
         self._most = most
         self._series: dict[str, Series] = {}
-        self._silent: list[str] = []  # names of topics that are there, and on which nothing was sent or taken
+        self._silent: list[str] = []  # names of existing topics without any recorded message
         self._decoder = MessageDecoder()
 
     @property
@@ -224,28 +225,28 @@ class SeriesSet:
         return sorted(self._series)
 
     def get(self, name: str) -> Series | None:
-        """The series of a topic or a packet; None when nothing was sent under this name."""
+        """Return the series of a topic or a packet; None when nothing was sent under this name."""
         return self._series.get(name)
 
     def series(self, name: str) -> Series:
-        """The series of a topic or a packet.
+        """Return the series of a topic or a packet.
 
         Raises:
-            UsageError: nothing was sent under this name; the text has those that are there.
+            UsageError: if nothing was sent under this name; the text has the existing names.
         """
         if name in self._series:
             return self._series[name]
         raise self._unknown(name)
 
     def found(self, word: str) -> tuple[Series, str]:
-        """The series and the path of the field that a word means; the path is empty for the whole message.
+        """Return the series and the path of the field for a word; the path is empty for the whole message.
 
         Args:
             word: such as "/odom.pose.pose.position.x", "/odom/pose/pose/position/x", "CFE_ES_HK_TLM.PerfState",
                 "CFE_ES.HK_TLM.PerfState" or "0x0800.PerfState".
 
         Raises:
-            UsageError: nothing was sent that it can mean.
+            UsageError: if nothing was sent that matches.
         """
         for name, field in meanings(word):
             if name in self._series:
@@ -253,10 +254,10 @@ class SeriesSet:
         raise self._unknown(word)
 
     def matching(self, word: str) -> list[tuple[Series, str]]:
-        """What a word means as by `found`, or all topics that fit a pattern such as "/arm/*".
+        """Return the result of `found` for a word, or all topics that match a pattern such as "/arm/*".
 
         Raises:
-            UsageError: nothing was sent that it can mean.
+            UsageError: if nothing was sent that matches.
         """
         if not word.startswith("/") or "*" not in word:
             return [self.found(word)]
@@ -281,11 +282,11 @@ class SeriesSet:
         )
 
     def add(self, series: Series) -> None:
-        """Take one more, in place of one with its name."""
+        """Add a series, replacing one with its name."""
         self._series[series.name] = series
 
     def take_message(self, message: TopicMessage) -> None:
-        """Take the next message of a topic."""
+        """Add a message of a topic."""
         series = self._series.get(message.topic)
         if series is None:
             series = Series(message.topic, message.header["type"], self._decoder.decode, lambda sent: sent.stamp_ns)
@@ -295,7 +296,7 @@ class SeriesSet:
 
 
 def meanings(word: str) -> Iterator[tuple[str, str]]:
-    """(name, path of a field) that a word can mean, first the one with the longest name."""
+    """Return the possible (name, path of a field) of a word, the one with the longest name first."""
     if word.startswith("/"):
         head, dot, rest = word.partition(".")
         yield from ((name, (head.removeprefix(name) + dot + rest).strip("/.")) for name in candidates(head))
@@ -306,21 +307,21 @@ def meanings(word: str) -> Iterator[tuple[str, str]]:
 
 
 def candidates(name: str) -> list[str]:
-    """The topics that a name can mean: it, or what is before a field, as in /odom/pose/pose/position/x."""
+    """Return the possible topics in a name: itself, or the part before a field, as in /odom/pose/pose/position/x."""
     parts = name.split("[")[0].strip("/").split("/")
     return ["/" + "/".join(parts[:count]) for count in range(len(parts), 0, -1)]
 
 
 def bag_series(file: str, words: Sequence[str] = (), seconds: float | None = None) -> SeriesSet:
-    """The series of a bag, or of an MCAP file, which has packets of cFE, too.
+    """Return the series of a bag, or of an MCAP file, which may also have cFE packets.
 
     Args:
         file: the bag.
-        words: what is wanted of it, as `SeriesRecorder` takes them; everything when there are none.
-        seconds: how much of it, from its first message on a topic on; None is all.
+        words: selection, as for `SeriesRecorder`; everything if empty.
+        seconds: duration to read, from its first message on a topic on; None for all.
 
     Raises:
-        UsageError: there is no such bag, it is broken, or a word names nothing in it.
+        UsageError: if there is no such bag, it is damaged, or a word matches nothing in it.
     """
     from cfepy.ground.bag import BagReader
 
@@ -341,7 +342,7 @@ def bag_series(file: str, words: Sequence[str] = (), seconds: float | None = Non
 
 
 class RecordedPacket(NamedTuple):
-    """A packet of an MCAP file: virtual time since the file's first message on a topic, and what is in it."""
+    """A packet of an MCAP file: virtual time since the file's first message on a topic, and its contents."""
 
     at_ns: int
     packet: bytes
@@ -395,16 +396,15 @@ def _topics_of(words: Sequence[str]) -> list[str]:
 
 
 class SeriesRecorder(SeriesSet, Attachment):
-    """Records what is sent in a run.
+    """Records the messages of a run.
 
     Args:
-        words: what is wanted: topics, patterns such as "/arm/*", packets of the mission's dictionary and MsgIds, with
-            fields behind them or not (`SeriesSet.found`). Without any it takes all topics and all telemetry that is
-            declared.
-        most: as of `SeriesSet`.
+        words: selection: topics, patterns such as "/arm/*", packets of the mission's dictionary and MsgIds, optionally
+            with fields (`SeriesSet.found`). Without any, all topics and all declared telemetry.
+        most: as for `SeriesSet`.
 
     Raises:
-        UsageError: when the mission is made: it has no such packet.
+        UsageError: when the mission is created, if it has no such packet.
     """
 
     def __init__(self, words: Sequence[str] = (), most: int | None = None) -> None:
@@ -424,7 +424,7 @@ class SeriesRecorder(SeriesSet, Attachment):
             self._watches.append(PacketWatch(self._take_packet, self._names.__contains__))
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        if self._wants_all:  # one look at each packet, not one for topics and one for packets
+        if self._wants_all:  # one check of each packet, instead of one for topics and one for packets
             return PacketWatch(self._take_any, _is_telemetry).bus(self._all_topics.hearing(base))
         for each in self._watches:
             base = each.bus(base)
@@ -445,7 +445,7 @@ class SeriesRecorder(SeriesSet, Attachment):
                     self._want(packet)
 
     def conclude(self) -> None:
-        """How the nodes shut down is no part of the run's time."""
+        """Stop recording: the shutdown of the nodes is not part of the run's time."""
         self._is_over = True
         self._silent = [topic.name for topic in topics_of(self._mission)]
         self._silent += (name for names in self._names.values() for name in names.values())
@@ -487,10 +487,10 @@ def _is_telemetry(msg_id: int) -> bool:
 
 
 def packet_series(name: str, is_command: bool, dictionary: Dictionary) -> Series:
-    """An empty series of packets.
+    """Return an empty series of packets.
 
     Args:
-        name: in the dictionary.
+        name: name in the dictionary.
         is_command: whether they are commands, which have no time in their header.
         dictionary: decodes them.
     """
@@ -504,4 +504,4 @@ def _spacecraft_time(seen: Seen) -> int:
 
 
 def _no_stamp(seen: Seen) -> None:
-    """A command has no time in its header."""
+    """Return None: a command has no time in its header."""

@@ -1,11 +1,11 @@
-"""What cFE applications have for ROS outside: packets that are shown as topics, and topics that are heard for them.
+"""cFE applications for ROS outside: packets that are published as topics, and topics that are received for them.
 
-The mission file says which (`ros_bridge:`). Outside, one node stands for all applications.
+The section `ros_bridge:` of the mission file selects them. Outside, one node represents all applications.
 
-Telemetry whose layout is known has a message type made of it. A number, text, struct or array of a C struct becomes the
-like of it in ROS; an array of arrays is one array. In front stands a header (std_msgs/Header) with sequence count and
-time of the packet. The bytes need no values in between: ROS serialises numbers as they are, without the padding of C,
-and a text behind its length (wiki.ros.org/msg).
+Telemetry with a known layout gets a message type. A number, text, struct or array of a C struct becomes its equivalent
+in ROS; an array of arrays becomes one array. It starts with a header (std_msgs/Header) with sequence count and time of
+the packet. The bytes need no decoding: ROS serialises numbers as they are, without the padding of C, and a text after
+its length (wiki.ros.org/msg).
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class PacketType(NamedTuple):
     Attributes:
         name: "package/Name".
         md5sum: of its definition.
-        definition: its full text, those of the types in it too.
+        definition: its full text, including the types in it.
     """
 
     name: str
@@ -52,14 +52,14 @@ class PacketType(NamedTuple):
 
 
 class _Struct:
-    """Fields of a message in order: a number's or text's type, or another struct; and the indices of arrays."""
+    """Fields of a message in order: the type of a number or text, or another struct; and the indices of arrays."""
 
     def __init__(self) -> None:
         self.fields: dict[str, str | _Struct] = {}
         self.indices: dict[str, set[str]] = {}
 
     def add(self, parts: list[tuple[str, str]], kind: str) -> None:
-        """A number or text, by the parts of its path; an array has the shape of its first item."""
+        """Add a number or text, by the parts of its path; an array has the shape of its first item."""
         (name, index), *rest = parts
         indices = self.indices.setdefault(name, set())
         if index:
@@ -73,11 +73,11 @@ class _Struct:
 
 
 def type_of(name: str, layout: Layout) -> PacketType:
-    """The message type of a telemetry packet.
+    """Return the message type of a telemetry packet.
 
     Args:
-        name: of the packet.
-        layout: of its payload.
+        name: name of the packet.
+        layout: layout of its payload.
     """
     texts = definitions_of(name, layout)
     header = f"{RULE}\nMSG: std_msgs/Header\n{message_class('std_msgs/Header')._full_text}"
@@ -89,11 +89,12 @@ def type_of(name: str, layout: Layout) -> PacketType:
 
 
 def definitions_of(name: str, layout: Layout) -> dict[str, str]:
-    """The definitions of that message and of those in it, by their names in the package; its own is the first.
+    """Return the definitions of that message and of those in it, by their names in the package; the message itself
+    comes first.
 
     Args:
-        name: of the packet.
-        layout: of its payload.
+        name: name of the packet.
+        layout: layout of its payload.
     """
     main = re.sub(r"\W", "_", name)
     main = main if main[:1].isalpha() else f"P{main}"
@@ -119,10 +120,10 @@ def _write(name: str, shape: _Struct, texts: dict[str, str], lines: str = "") ->
 
 
 class PacketSerializer:
-    """Makes messages of packets.
+    """Creates messages from packets.
 
     Args:
-        layout: of the payload.
+        layout: layout of the payload.
     """
 
     def __init__(self, layout: Layout) -> None:
@@ -130,7 +131,7 @@ class PacketSerializer:
         self._pieces = list(_pieces(list(layout.cells())))
 
     def message(self, packet: bytes) -> bytes | None:
-        """The serialised message; None for a packet that is too short."""
+        """Return the serialised message; None for a packet that is too short."""
         if len(packet) < self._size:
             return None
         seconds, subseconds = _time(packet, 6)
@@ -146,7 +147,7 @@ class PacketSerializer:
 
 
 def _pieces(cells: list[Cell]) -> list[tuple[int, int, bool]]:
-    """Begin, end and whether it is a text, of what stands together in a packet."""
+    """Start, end and whether it is a text, of a contiguous part of a packet."""
     found: list[tuple[int, int, bool]] = []
     for cell in cells:
         start, end, is_text = (
@@ -162,12 +163,12 @@ def _pieces(cells: list[Cell]) -> list[tuple[int, int, bool]]:
 
 
 class ShownPacket(NamedTuple):
-    """A packet that is shown.
+    """A packet that is published.
 
     Attributes:
-        msg_id: of the packet.
-        type: of the messages.
-        serialize: makes a message of a packet; None of one that is too short.
+        msg_id: MsgId of the packet.
+        type: type of the messages.
+        serialize: makes a message from a packet; None for one that is too short.
     """
 
     msg_id: int
@@ -176,19 +177,19 @@ class ShownPacket(NamedTuple):
 
 
 class ShownPackets:
-    """What a mission file says.
+    """The section of a mission file.
 
     Args:
         spec: the mission.
 
     Attributes:
-        packets: those that are shown, by topic.
-        heard: topics that are heard for the applications.
-        types: the types of all topics that are published for them, and of /clock.
-        clock_ns: virtual time between two messages of /clock; 0 when it is not told.
+        packets: published packets, by topic.
+        heard: topics that are received for the applications.
+        types: types of all topics that are published for them, and of /clock.
+        clock_ns: virtual time between two messages of /clock; 0 if it is not published.
 
     Raises:
-        UsageError: there is no such packet.
+        UsageError: if there is no such packet.
     """
 
     def __init__(self, spec: MissionSpec) -> None:
@@ -220,7 +221,7 @@ class ShownPackets:
         return bool(self.types or self.heard)
 
     def header(self, topic: str) -> dict[str, str] | None:
-        """The connection header of a topic; None when nothing is shown there."""
+        """Return the connection header of a topic; None if nothing is published on it."""
         kind = self.types.get(topic)
         if kind is None:
             return None
@@ -229,11 +230,11 @@ class ShownPackets:
 
 
 def _plain_type(name: str) -> PacketType:
-    """A type that ROS knows."""
+    """A type known by ROS."""
     kind = message_class(name)
     return PacketType(name, kind._md5sum, kind._full_text)
 
 
 def _whole(packet: bytes) -> bytes:
-    """A message of the packet's bytes: an empty layout, and the data behind their length."""
+    """Return a message of the packet's bytes: an empty layout, and the data after their length."""
     return bytes(8) + len(packet).to_bytes(4, "little") + packet

@@ -1,10 +1,9 @@
-"""What a short flight shows of a mission: its MsgIds with senders and subscribers, its topics, and ids to keep.
+"""Results of a short flight of a mission: its MsgIds with senders and subscribers, its topics, and fixed ids.
 
-A mission runs for some virtual seconds with a Software Bus that notes the sender of each message. A sender that stays
-silent for that time is not seen; a ROS publisher is, since it registers. `lock` gives every topic and service a MsgId
-of its
-own: the file `topics.lock` in the mission's folder, made by `cfepy mids --lock`, belongs under version control. An id
-in it never moves; the mission file's `topics:` come before it.
+A mission runs for some virtual seconds with a Software Bus that records the sender of each message. A sender without
+messages in that time is not found, except ROS publishers, which register. `lock` gives every topic and service its own
+MsgId: the file `topics.lock` in the mission's folder, created by `cfepy mids --lock`, should be under version control.
+An id in it never changes; the mission file's `topics:` have precedence.
 """
 
 from __future__ import annotations
@@ -35,12 +34,12 @@ class MidRow:
     subscribers: list[str]
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain numbers and text."""
+        """Return plain numbers and text."""
         return asdict(self)
 
 
 class Survey(PacketWatch):
-    """Notes the senders of all messages in the mission that it is attached to.
+    """Records the senders of all messages in the mission that it is attached to.
 
     Attributes:
         senders: names of applications by MsgId.
@@ -55,7 +54,7 @@ class Survey(PacketWatch):
         self._mission = mission
 
     def rows(self) -> list[MidRow]:
-        """The MsgIds that there are by now, in order."""
+        """Return the current MsgIds, in order."""
         return rows_of(self._mission, self.senders)
 
     def _note(self, seen: Seen) -> None:
@@ -63,11 +62,11 @@ class Survey(PacketWatch):
 
 
 def rows_of(mission: Mission, senders_of: Mapping[int, set[str]]) -> list[MidRow]:
-    """The MsgIds of a mission, in order.
+    """Return the MsgIds of a mission, in order.
 
     Args:
         mission: the mission.
-        senders_of: names of the applications that were seen to send each.
+        senders_of: names of the applications that sent each.
     """
     bus = mission.cfe.sb
     names = names_in(mission)
@@ -88,10 +87,10 @@ def rows_of(mission: Mission, senders_of: Mapping[int, set[str]]) -> list[MidRow
 
 
 def surveyed_topics(spec: MissionSpec) -> list[Topic]:
-    """The topics of a mission with their types; a mission with nodes runs for 10 virtual seconds to find them.
+    """Return the topics of a mission with their types; a mission with nodes runs for 10 virtual seconds to find them.
 
     Raises:
-        CfeError: it cannot boot.
+        CfeError: if it cannot boot.
     """
     if all(entry.symbol != NODE_SYMBOL for entry in spec.entries):
         return []
@@ -101,22 +100,22 @@ def surveyed_topics(spec: MissionSpec) -> list[Topic]:
 
 
 def spread_out(spec: MissionSpec) -> MissionSpec:
-    """A mission whose topics take the next free MsgId where two want the same one."""
+    """Return a mission whose topics take the next free MsgId if two have the same one."""
     return replace(spec, ros=replace(spec.ros, spread=True))
 
 
 def locked(spec: MissionSpec, mission: Mission) -> RosConfig:
-    """Give every topic and service of a mission a MsgId of its own.
+    """Give every topic and service of a mission its own MsgId.
 
     Args:
         spec: the mission.
-        mission: the mission of `spread_out(spec)`, which has flown long enough to show its topics and services.
+        mission: the mission of `spread_out(spec)`, after a flight long enough for its topics and services to appear.
 
     Returns:
         The configuration of `spec` with `locked_topics` and `locked_services`.
 
     Raises:
-        UsageError: there are more names than MsgIds.
+        UsageError: if there are more names than MsgIds.
     """
     from rospy_shim.graph import msg_ids
 
@@ -126,12 +125,12 @@ def locked(spec: MissionSpec, mission: Mission) -> RosConfig:
 
 
 def lock_text(config: RosConfig) -> str:
-    """What stands in the lock file."""
+    """Return the contents of the lock file."""
     return _HEAD + _section("topics", config.locked_topics) + _section("services", config.locked_services)
 
 
 def lock_path(spec: MissionSpec) -> Path:
-    """Where a mission's lock file is."""
+    """Return the path of a mission's lock file."""
     return spec.folder / LOCK_FILE
 
 
@@ -142,6 +141,6 @@ def _section(title: str, ids: Mapping[str, int]) -> str:
 
 
 def _quoted(name: str) -> str:
-    """A resolved name needs no quotes in YAML; one that breaks ROS's rules may."""
+    """Return a name for YAML: a resolved name needs no quotes, but one that breaks ROS's rules may."""
     plain = all(letter.isalnum() or letter in "/_" for letter in name)
     return name if plain else '"' + name.replace("\\", "\\\\").replace('"', '\\"') + '"'

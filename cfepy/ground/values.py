@@ -1,6 +1,6 @@
-"""Field values as people write and read them: `ValU32=0x10 PacketID.AppName=HK Masks=1,2,3`.
+"""Text form of field values: `ValU32=0x10 PacketID.AppName=HK Masks=1,2,3`.
 
-A field is named by its path in the packet's layout, and a value of an enumeration by its name or its number.
+A field is named by its path in the packet's layout, an enumeration value by its name or number.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ _INDICES = re.compile(r"(\[\d+\])+")
 
 
 def packet_of(declared: Command, words: Iterable[str]) -> bytes:
-    """The bytes of a command from `field=value` words; a field that is not given is zero.
+    """Return the bytes of a command from `field=value` words; missing fields are zero.
 
     Args:
         declared: the command.
         words: numbers as in Python (0x10, -3, 2.5), texts as they are, arrays with commas between their items.
 
     Raises:
-        UsageError: no such field, or a value that does not fit it; `field` is the field's path.
+        UsageError: if there is no such field, or a value does not fit; `field` is the field's path.
     """
     payload = bytearray(declared.payload.size)
     cells = {cell.path: cell for cell in declared.payload.cells()}
@@ -44,7 +44,7 @@ def packet_of(declared: Command, words: Iterable[str]) -> bytes:
 
 
 def _targets(owner: str, cells: Mapping[str, Cell], path: str, text: str) -> Iterable[tuple[Cell, str]]:
-    """Which cells a word fills, and with what."""
+    """Return the cells and values that a word sets."""
     if path in cells:
         return [(cells[path], text)]
     items = [cell for cell in cells.values() if _is_item(cell.path, path)]
@@ -61,12 +61,12 @@ def _is_item(path: str, array: str) -> bool:
 
 
 def unknown_field(owner: str, paths: Iterable[str], path: str) -> UsageError:
-    """The error of a field that is not there; it names those that are.
+    """Return the error for a missing field, with the existing ones.
 
     Args:
-        owner: of the fields.
-        paths: all of them.
-        path: what was asked for.
+        owner: owner of the fields.
+        paths: all paths.
+        path: the missing path.
     """
     known = list(dict.fromkeys(re.sub(_INDICES, "", each) for each in paths))
     if not known:
@@ -84,14 +84,14 @@ def _packed(cell: Cell, text: str) -> bytes:
 
 
 def parse_cell(cell: Cell, text: str) -> int | float | str:
-    """The value of a field from its text, which may be the name of one.
+    """Return the value of a field from its text, which may be the name of a value.
 
     Args:
         cell: the field.
-        text: as it was written.
+        text: its text.
 
     Raises:
-        UsageError: the text is no such value.
+        UsageError: if the text is not such a value.
     """
     if cell.names is None or text[:1].isdigit() or text[:1] in ("+", "-"):
         return parse_value(cell.type, text, cell.path)
@@ -102,15 +102,15 @@ def parse_cell(cell: Cell, text: str) -> int | float | str:
 
 
 def parse_value(kind: str, text: str, path: str) -> int | float | str:
-    """A value from its text.
+    """Return a value from its text.
 
     Args:
-        kind: the type, such as "u16", "f32", "bool", "char[20]".
-        text: as it was written.
-        path: of the field, for the error.
+        kind: its type, such as "u16", "f32", "bool", "char[20]".
+        text: its text.
+        path: path of the field, for the error.
 
     Raises:
-        UsageError: the text is no such value.
+        UsageError: if the text is not such a value.
     """
     if kind.startswith("char"):
         return text
@@ -124,19 +124,19 @@ def parse_value(kind: str, text: str, path: str) -> int | float | str:
 
 
 def int_of(text: str) -> int:
-    """An integer written as 16, 0x10 or 0b10000; zeros in front of a decimal number mean nothing.
+    """Return an integer written as 16, 0x10 or 0b10000; leading zeros of a decimal number are ignored.
 
     Raises:
-        ValueError: it is none.
+        ValueError: if the text is not an integer.
     """
     return int(text, 10) if text.lstrip("+-").isdigit() else int(text, 0)
 
 
 def number_of(text: str) -> int | float:
-    """A number of any kind, or true or false.
+    """Return a number of any kind, or true or false.
 
     Raises:
-        ValueError: it is none.
+        ValueError: if the text is neither.
     """
     if text.lower() in _TRUTH:
         return _TRUTH[text.lower()]
@@ -147,7 +147,7 @@ def number_of(text: str) -> int | float:
 
 
 def flat(values: Any, path: str = "") -> dict[str, Any]:
-    """Nested values by path: {"PacketID.AppName": "HK", "Counts[0]": 1}; a text or bytes are one value."""
+    """Return nested values by path: {"PacketID.AppName": "HK", "Counts[0]": 1}; texts and bytes are one value."""
     if isinstance(values, Mapping):
         inner = [(f"{path}.{key}" if path else str(key), value) for key, value in values.items()]
     elif isinstance(values, Sequence) and not isinstance(values, str | bytes):
@@ -158,11 +158,11 @@ def flat(values: Any, path: str = "") -> dict[str, Any]:
 
 
 def line_of(values: Mapping[str, Any], layout: Layout | None = None) -> str:
-    """Values on one line: `Count=3 PacketID.AppName=HK Masks=1,2,3`, without structs of zeros that end an array.
+    """Return values on one line: `Count=3 PacketID.AppName=HK Masks=1,2,3`, without structs of zeros that end an array.
 
     Args:
-        values: nested.
-        layout: theirs, for the names of values; None shows numbers.
+        values: nested values.
+        layout: their layout, for the names of values; None shows numbers.
     """
     return " ".join(f"{path}={text}" for path, text in texts_of(values, layout).items())
 
@@ -175,16 +175,17 @@ def texts_of(values: Mapping[str, Any], layout: Layout | None = None) -> dict[st
 
 @lru_cache(maxsize=256)
 def named_fields(layout: Layout) -> Mapping[str, ValueNames]:
-    """The fields of a layout whose values have names, by path."""
+    """Return the fields of a layout with named values, by path."""
     return {cell.path: cell.names for cell in layout.cells() if cell.names is not None}
 
 
 def shown(values: Any, path: str = "") -> Iterable[tuple[str, str]]:
-    """Paths and texts of values as a person sees them: an array of numbers is one, structs of zeros at its end none.
+    """Return paths and texts of values for display: an array of numbers is one value, structs of zeros at its end are
+    left out.
 
     Args:
-        values: nested.
-        path: of them all.
+        values: nested values.
+        path: common path.
     """
     if isinstance(values, Mapping):
         for key, value in values.items():
@@ -199,13 +200,13 @@ def shown(values: Any, path: str = "") -> Iterable[tuple[str, str]]:
 
 
 def _without_zeros(items: Sequence[Any]) -> Sequence[Any]:
-    """An array up to its last item that is not all zero."""
+    """Return an array up to its last item that is not all zero."""
     end = max((number for number, item in enumerate(items, 1) if any(flat(item).values())), default=0)
     return items[:end]
 
 
 def text_of(value: Any) -> str:
-    """One value as it is shown: bytes as hexadecimal digits, a text in quotes where it would not be one word."""
+    """Return the text of a value: bytes as hexadecimal digits, a text in quotes if it is not one word."""
     if isinstance(value, bytes | bytearray):
         return value.hex()
     if isinstance(value, float):

@@ -1,14 +1,14 @@
-"""A mission's packets in XTCE 1.2 (OMG, CCSDS 660.1-G-2), the XML in which ground systems learn what packets mean.
+"""A mission's packets in XTCE 1.2 (OMG, CCSDS 660.1-G-2), the XML format in which ground systems learn packet layouts.
 
-One container for each telemetry packet, below those for the CCSDS primary header and cFE's telemetry header, told apart
-by APID; a MetaCommand for each command, with its header as fixed values and its payload as arguments. Sequence count
-and checksum of a command are zero: the sender may fill them in; cFE as it is delivered checks neither. Nested structs
-and arrays are laid flat, padding is there as binary parameters. C's numbers are little-endian, as the flight software
-stores them. Names are the dictionary's, with "_" where XTCE forbids a character: CFE_EVS_HK_TLM_AppData_0_AppID.
+There is a container for each telemetry packet, derived from those for the CCSDS primary header and cFE's telemetry
+header, distinguished by APID; and a MetaCommand for each command, with its header as fixed values and its payload as
+arguments. Sequence count and checksum of a command are zero: the sender may set them; unmodified cFE checks neither.
+Nested structs and arrays are flattened, padding is given as binary parameters. C's numbers are little-endian, as in the
+flight software. Names are the dictionary's, with "_" for characters that XTCE forbids: CFE_EVS_HK_TLM_AppData_0_AppID.
 
-Of ROS messages, numbers, texts with their length and arrays of numbers (as bytes) can be described. An array of texts
-or of messages ends what can be described: what follows it is one piece of bytes as long as its place in the packet is
-fixed, and is left out when it is not.
+In ROS messages, numbers, texts with their length and arrays of numbers (as bytes) can be described, but not arrays of
+texts or messages: the data after them is described as bytes if its place in the packet is fixed, and otherwise left
+out.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ SCHEMA = f"{NAMESPACE} {NAMESPACE}/SpaceSystem.xsd"
 ROOT, TELEMETRY = "CCSDSPacket", "CCSDSTelemetry"
 APID_MASK = 0x7FF
 COMMAND_BIT, SECONDARY_HEADER_BIT = 0x1000, 0x0800  # of a MsgId
-WHOLE = "3"  # sequence flags of a packet that is not segmented
+WHOLE = "3"  # sequence flags of an unsegmented packet
 PRIMARY_HEADER = (
     ("VERSION", 3),
     ("TYPE", 1),
@@ -42,7 +42,7 @@ PRIMARY_HEADER = (
     ("SRC_SEQ_CTR", 14),
     ("PKT_LEN", 16),
 )
-"""Names that CCSDS tools in Python expect, and bits."""
+"""Names expected by CCSDS tools in Python, and sizes in bits."""
 NUMBERS = {
     "bool": "bool", "char": "u8", "byte": "i8", "int8": "i8", "uint8": "u8", "int16": "i16", "uint16": "u16",
     "int32": "i32", "uint32": "u32", "int64": "i64", "uint64": "u64", "float32": "f32", "float64": "f64",
@@ -51,17 +51,19 @@ NUMBERS = {
 TIMES = {"time": ("u32", "u32"), "duration": ("i32", "i32")}
 BITS = {"bool": 8}
 
-LENGTH_OFFSET = 7  # PKT_LEN is the size of a packet less this
+LENGTH_OFFSET = 7  # PKT_LEN is the size of a packet minus this
 UNSEGMENTED = 0xC000
 
 
 def xtce_name(path: str) -> str:
-    """A name without what XTCE forbids: "/arm_health/samples" becomes arm_health_samples, "Counts[3]" Counts_3."""
+    """Return a name without characters that XTCE forbids: "/arm_health/samples" becomes arm_health_samples, "Counts[3]"
+    Counts_3.
+    """
     return re.sub(r"[./:\[\]\s\\]+", "_", printable(path)).strip("_")
 
 
 def cells_with_padding(layout: Layout) -> Iterator[Cell]:
-    """The cells of a layout, and one of type "padding" for every gap."""
+    """Yield the cells of a layout, and one of type "padding" for every gap."""
     at = 0
     for cell in layout.cells():
         if cell.offset > at:
@@ -73,7 +75,7 @@ def cells_with_padding(layout: Layout) -> Iterator[Cell]:
 
 
 def add(parent: Element, tag: str, **attributes: str) -> Element:
-    """A new element below another; a value of "" leaves its attribute out."""
+    """Return a new child element; attributes with value "" are left out."""
     return SubElement(parent, tag, {name: printable(value) for name, value in attributes.items() if value})
 
 
@@ -81,7 +83,7 @@ class TypeSet:
     """A ParameterTypeSet or an ArgumentTypeSet.
 
     Args:
-        parent: the element that gets the set.
+        parent: parent element of the set.
         what: "Parameter" or "Argument".
     """
 
@@ -91,11 +93,11 @@ class TypeSet:
         self._known: set[str] = set()
 
     def number(self, kind: str, big_endian: bool = False) -> str:
-        """A number or bool in C's representation, such as "u16", "i8", "f64"; the name of the type.
+        """Add a number or bool in C's representation, such as "u16", "i8", "f64"; returns the name of the type.
 
         Args:
-            kind: which.
-            big_endian: of an unsigned one, whether its first byte is the highest.
+            kind: its kind.
+            big_endian: whether an unsigned one is big-endian.
         """
         if big_endian and kind[0] == "u":
             return self.bits(int(kind[1:]))
@@ -107,7 +109,7 @@ class TypeSet:
         return self._integer(kind, bits, "unsigned" if kind[0] == "u" else "twosComplement")
 
     def named(self, kind: str, names: ValueNames) -> str:
-        """An integer whose values have names; bits of a mask are a number, which XTCE cannot name together."""
+        """Add an integer with named values; bit masks are plain numbers, because XTCE cannot name combinations."""
         if names.flags:
             return self.number(kind)
         name = "_".join([kind, *names.values])
@@ -121,18 +123,18 @@ class TypeSet:
         return name
 
     def cell(self, cell: Cell, on_the_wire: bool = False) -> str:
-        """What a cell of a layout is; the name of the type.
+        """Add the type of a cell of a layout; returns its name.
 
         Args:
             cell: the cell.
-            on_the_wire: as of its layout, whose numbers are unsigned then.
+            on_the_wire: as in its layout, whose numbers are unsigned then.
         """
         if cell.names is not None:
             return self.named(cell.type, cell.names)
         return self.text(cell.size) if cell.type.startswith("char") else self.number(cell.type, on_the_wire)
 
     def bits(self, count: int) -> str:
-        """An unsigned number of the packet header, big-endian."""
+        """Return an unsigned number of the packet header, big-endian."""
         name = f"bits{count}"
         if self._is_new(name):
             kind = add(self._set, f"Integer{self._what}Type", name=name, signed="false", sizeInBits=str(count))
@@ -150,7 +152,7 @@ class TypeSet:
         return name
 
     def padding(self, size: int) -> str:
-        """Bytes that mean nothing."""
+        """Add bytes without meaning."""
         name = f"padding{size}"
         if self._is_new(name):
             encoding = add(self._type("Binary", name), "BinaryDataEncoding")
@@ -158,7 +160,7 @@ class TypeSet:
         return name
 
     def counted_text(self, count: str) -> str:
-        """A text whose number of bytes another parameter tells."""
+        """Add a text whose number of bytes is given by another parameter."""
         name = f"text_of_{count}"
         if self._is_new(name):
             encoding = add(self._type("String", name), "StringDataEncoding", encoding="UTF-8")
@@ -167,7 +169,7 @@ class TypeSet:
         return name
 
     def counted_bytes(self, count: str, slope: int, intercept: int = 0) -> str:
-        """Bytes whose number of bits is `slope` times what another parameter tells, plus `intercept`."""
+        """Add bytes whose number of bits is `slope` times another parameter plus `intercept`."""
         name = f"bytes_of_{count}_{slope}" + (f"_{abs(intercept)}" if intercept else "")
         if self._is_new(name):
             encoding = add(self._type("Binary", name), "BinaryDataEncoding")
@@ -175,7 +177,7 @@ class TypeSet:
         return name
 
     def time(self) -> str:
-        """The 48 bits of time in a telemetry header: seconds and 65536ths since cFE's epoch."""
+        """Return the 48 bits of time in a telemetry header: seconds and 65536ths since cFE's epoch."""
         name = "spacecraft_time"
         if self._is_new(name):
             kind = self._type("AbsoluteTime", name)
@@ -213,11 +215,11 @@ def _dynamic(size: Element, count: str, slope: int, intercept: int) -> None:
 
 
 def xtce_of(name: str, dictionary: Dictionary) -> str:
-    """The XTCE document of a mission.
+    """Return the XTCE document of a mission.
 
     Args:
-        name: of the space system.
-        dictionary: its packets; topics of a type that is not known are left out.
+        name: name of the space system.
+        dictionary: its packets; topics of unknown type are left out.
     """
     system = Element("SpaceSystem", {"name": xtce_name(name), "xmlns": NAMESPACE})
     system.set("xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance")
@@ -230,7 +232,7 @@ def xtce_of(name: str, dictionary: Dictionary) -> str:
 
 
 class _Telemetry:
-    """TelemetryMetaData while it is filled."""
+    """TelemetryMetaData under construction."""
 
     def __init__(self, parent: Element) -> None:
         self._types = TypeSet(parent, "Parameter")
@@ -249,7 +251,7 @@ class _Telemetry:
         self._base(ROOT, TYPE="0", SEC_HDR_FLG="1")
 
     def add_packets(self, packets: Iterable[Telemetry | Topic]) -> None:
-        """Add a container for each packet that has a telemetry header, by which alone it can be told apart."""
+        """Add a container for each packet with a telemetry header, without which packets cannot be distinguished."""
         taken: set[int] = set()
         for packet in sorted(packets, key=lambda each: (each.msg_id, isinstance(each, Topic))):
             known = isinstance(packet, Telemetry) or packet.type or packet.raw
@@ -261,7 +263,7 @@ class _Telemetry:
                     self._add(packet)
 
     def _add_variants(self, packet: Telemetry) -> None:
-        """Packets that share a MsgId: a container of what they have in common, and one for each."""
+        """Add packets that share a MsgId: a container with their common part, and one for each."""
         common = self._unique(f"{xtce_name(packet.name)}_any")
         entries = self._container(common, "what packets of one MsgId have in common", is_abstract=True)
         first = self._unique(f"{common}_first")
@@ -295,7 +297,7 @@ class _Telemetry:
                 self._entry(entries, self._unique(f"{name}_{xtce_name(cell.path)}"), kind)
 
     def _unique(self, name: str) -> str:
-        """The name, with underscores behind it as long as another one is the same."""
+        """Return the name, with underscores appended until it is unique."""
         while name in self._names:
             name += "_"
         self._names.add(name)
@@ -307,7 +309,7 @@ class _Telemetry:
         return add(self._current, "EntryList")
 
     def _base(self, container: str, **conditions: str) -> None:
-        """What the current container builds on, and which values tell it apart."""
+        """Set the base of the current container, and the values that distinguish it."""
         criteria = add(add(self._current, "BaseContainer", containerRef=container), "RestrictionCriteria")
         comparisons = add(criteria, "ComparisonList")
         for name, value in conditions.items():
@@ -318,7 +320,7 @@ class _Telemetry:
         add(entries, "ParameterRefEntry", parameterRef=name)
 
     def _padding(self, entries: Element, size: int) -> None:
-        """Padding of each size is one parameter for all packets."""
+        """Use one padding parameter of each size for all packets."""
         kind = self._types.padding(size)
         if kind not in self._names:
             self._names.add(kind)
@@ -334,16 +336,16 @@ class XtceParameter(NamedTuple):
 
 
 class _End(Exception):
-    """What follows cannot be described."""
+    """Exception for a message whose rest cannot be described."""
 
 
 def topic_parts(topic: Topic, types: TypeSet, name: Callable[[str], str]) -> Iterator[XtceParameter]:
-    """The parameters of a topic's packets.
+    """Yield the parameters of a topic's packets.
 
     Args:
-        topic: of a known type, or of whole packets.
-        types: where their types go.
-        name: makes a parameter's name of a field's path.
+        topic: topic of known type, or of whole packets.
+        types: receives their types.
+        name: returns a parameter's name for a field's path.
     """
     if topic.raw:
         yield XtceParameter(name("data"), _rest(types, 0))
@@ -357,17 +359,17 @@ def topic_parts(topic: Topic, types: TypeSet, name: Callable[[str], str]) -> Ite
 
 
 def _rest(types: TypeSet, after: int) -> str:
-    """What follows so many bytes of payload, up to the packet's end; the name of the type."""
+    """Add the rest of a packet after a number of payload bytes; returns the name of the type."""
     return types.counted_bytes("PKT_LEN", 8, 8 * (LENGTH_OFFSET - TLM_HEADER_SIZE - after))
 
 
 def _has_time(msg_id: int) -> bool:
-    """Whether a MsgId is that of telemetry with its time."""
+    """Return whether a MsgId is that of telemetry with its time."""
     return msg_id & (COMMAND_BIT | SECONDARY_HEADER_BIT) == SECONDARY_HEADER_BIT
 
 
 class _Message:
-    """The way through a message; `fixed_bytes` is how far it is into it, None behind something of variable length."""
+    """Position in a message; `fixed_bytes` is the offset, None after something of variable length."""
 
     def __init__(self, library: Any, types: TypeSet, name: Callable[[str], str]) -> None:
         self.fixed_bytes: int | None = 0
@@ -376,7 +378,7 @@ class _Message:
         self._name = name
 
     def fields(self, kind: str, path: str) -> Iterator[XtceParameter]:
-        """The parameters of a message type."""
+        """Yield the parameters of a message type."""
         for field in self._library.spec(kind).fields:
             inner = f"{path}.{field.name}" if path else field.name
             if field.is_array and field.length is None:
@@ -407,7 +409,7 @@ class _Message:
         return XtceParameter(self._name(path), self._types.number(kind))
 
     def _array(self, kind: str, path: str) -> Iterator[XtceParameter]:
-        """An array of any length: its count, and its items as bytes."""
+        """Yield an array of any length: its count, and its items as bytes."""
         count = self._number("u32", f"{path}.count")
         yield count
         if kind not in NUMBERS:

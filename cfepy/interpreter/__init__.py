@@ -1,5 +1,5 @@
-"""What cfepy asks of Python and of the process it runs in: signals, child processes, garbage, sources, lazy names.
+"""Services of Python and of the host process: signals, child processes, garbage collection, sources, lazy names.
 
-What belongs here would serve any program. The clock and the threads of the host do not: `cfepy.rtos` has them. The
-central file is `cfepy/interpreter/host_system.py`.
+Code that could serve any program belongs here. The host's clock and threads are in `cfepy.rtos`. The central file is
+`cfepy/interpreter/host_system.py`.
 """

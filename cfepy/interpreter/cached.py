@@ -1,7 +1,7 @@
-"""A value of an object that is made when it is first asked for, and kept, without a lock of the host.
+"""A cached property that takes no lock of the host.
 
-`functools.cached_property` of Python 3.11 holds one real lock for all objects of a class while it makes the value. A
-task that waits in there would stop the whole simulated computer, and a process that is forked meanwhile never gets it.
+`functools.cached_property` of Python 3.11 holds one real lock for all objects of a class while it computes the value. A
+task that waits inside would stop the whole simulated computer, and a process forked meanwhile would never get the lock.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 
 class CachedProperty(Generic[T]):
-    """`functools.cached_property` as it is from Python 3.12 on: it takes no lock."""
+    """`functools.cached_property` as of Python 3.12, without a lock."""
 
     def __init__(self, function: Callable[[Any], T]) -> None:
         self.func = function

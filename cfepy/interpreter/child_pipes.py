@@ -1,7 +1,7 @@
-"""Ends of pipes that a process hands to one that it starts: by descriptor, and on Windows by handle.
+"""Pipe ends that a process passes to a child: by descriptor, and on Windows by handle.
 
-The number of an end goes to the other process as an argument, and `popen_options` to `subprocess.Popen`; there the end
-is taken over by its number.
+The parent passes the number of an end as an argument and gives `popen_options` to `subprocess.Popen`. The child takes
+over the end by its number.
 """
 
 from __future__ import annotations
@@ -15,7 +15,11 @@ from typing import Any
 
 
 def popen_options(number: int) -> dict[str, Any]:
-    """What `subprocess.Popen` needs to hand over an end, whose `fileno()` this is; see `number_of` for a descriptor."""
+    """Return the options of `subprocess.Popen` that pass an end to the child.
+
+    Args:
+        number: the end's `fileno()`, or the result of `number_of` for a descriptor.
+    """
     if sys.platform != "win32":
         return {"pass_fds": [number]}
     os.set_handle_inheritable(number, True)
@@ -23,7 +27,7 @@ def popen_options(number: int) -> dict[str, Any]:
 
 
 def number_of(descriptor: int) -> int:
-    """The number by which another process knows a descriptor of this one."""
+    """Return the number of a descriptor of this process for use in another process."""
     if sys.platform != "win32":
         return descriptor
     import msvcrt
@@ -32,7 +36,7 @@ def number_of(descriptor: int) -> int:
 
 
 def descriptor_of(number: int) -> int:
-    """In the other process: the descriptor of an end."""
+    """Return the descriptor of an end; called in the child."""
     if sys.platform != "win32":
         return number
     import msvcrt
@@ -41,7 +45,7 @@ def descriptor_of(number: int) -> int:
 
 
 def connection_of(number: int) -> Connection[Any, Any]:
-    """In the other process: the end of a `multiprocessing.Pipe`; processes that this one starts do not inherit it."""
+    """Return the end of a `multiprocessing.Pipe`; called in the child, whose own children do not inherit it."""
     if sys.platform != "win32":
         os.set_inheritable(number, False)
         return Connection(number)

@@ -1,7 +1,7 @@
-"""The kernel and the bus, compiled to C by mypyc from these very sources: which modules, and whether they are in use.
+"""Which modules of the kernel and the bus mypyc compiles to C from these sources, and whether they are in use.
 
-A wheel that was built with CFEPY_ENGINE has them (`hatch_build.py`), each beside its source, which Python then leaves
-aside. What they do is the same; they are never needed.
+A wheel built with CFEPY_ENGINE has the compiled modules (`hatch_build.py`), each next to its source, which Python then
+ignores. They behave the same and are never required.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 else:
 
     def mypyc_attr(**_: Any) -> Any:
-        """What mypyc is told of a class; nothing where Python reads the source."""
+        """Pass attributes of a class to mypyc; it does nothing in plain Python."""
         return lambda decorated: decorated
 
 
@@ -37,10 +37,11 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def library_name(root: Path) -> str:
-    """The name of the library that all compiled modules share, without mypyc's ending; other sources have another.
+    """Return the name of the library that all compiled modules share, without mypyc's suffix. It depends on the
+    sources.
 
     Args:
-        root: the folder that has `cfepy` in it.
+        root: the folder that contains `cfepy`.
     """
     digest = hashlib.sha256()
     for module in MODULES:
@@ -49,7 +50,7 @@ def library_name(root: Path) -> str:
 
 
 def state() -> str:
-    """How the kernel and the bus run here, in words for `cfepy --version`."""
+    """Return how the kernel and the bus run here, as text for `cfepy --version`."""
     compiled = [(ROOT / module).with_suffix(suffix) for module in MODULES for suffix in EXTENSION_SUFFIXES]
     if not any(path.exists() for path in compiled):
         return "kernel and bus interpreted"

@@ -1,12 +1,12 @@
-"""Faces of packages: names that a package offers and that are loaded when they are first used (PEP 562).
+"""Lazy names of packages: they are loaded at their first use (PEP 562).
 
     if TYPE_CHECKING:
         from cfepy.ground.bag import BagReader, is_bag
     else:
         __getattr__, __dir__ = face(__name__, {".bag": ("BagReader", "is_bag")})
 
-A package says in its `__all__` what it offers, and under `TYPE_CHECKING` where a type checker finds it. The functions
-stay out of a type checker's sight: it would take any name for one that is there.
+A package lists the names that it offers in `__all__`, and imports them under `TYPE_CHECKING` for type checkers. A type
+checker must not see the functions, because it would accept any name then.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from typing import Any
 
 
 def face(package: str, modules: Mapping[str, tuple[str, ...]]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """The functions `__getattr__` and `__dir__` of a package.
+    """Return the functions `__getattr__` and `__dir__` of a package.
 
     Args:
         package: its name.
-        modules: the names to be loaded later, by the module that has them: `.bag` is one of the package itself.
+        modules: the lazy names of each module; `.bag` is a module of the package itself.
     """
     places = {name: module for module, names in modules.items() for name in names}
 

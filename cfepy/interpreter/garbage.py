@@ -1,7 +1,7 @@
-"""When Python looks for garbage: not where nobody expects a finalizer to run, and at the end of a flight.
+"""Control of garbage collection: off where a finalizer must not run, and a collection at the end of a flight.
 
-Whether garbage is collected is a property of the whole interpreter, so what holds it up is counted here, over all
-threads: a mission that ends in one thread must not bring the collector back into a mission of another.
+Collection is switched for the whole interpreter, so this module counts its users over all threads. A mission that ends
+in one thread must not switch the collector on again for a mission in another thread.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from cfepy.interpreter.host_system import in_forked_process
 
 
 class _NoCollection:
-    """Use it as a context manager: garbage is not collected before the last thread has left it."""
+    """A context manager: the collector is off until the last thread has left it."""
 
     def __init__(self) -> None:
-        self._lock = threading.RLock()  # a finalizer may come here while its thread is in the middle of it
+        self._lock = threading.RLock()  # a finalizer can enter this in a thread that is already inside
         self._holders: dict[int, int] = {}
         self._resumes = False
         in_forked_process(self._in_child)
@@ -42,7 +42,7 @@ class _NoCollection:
             gc.enable()
 
     def _in_child(self) -> None:
-        """The other threads have not come along into a forked process."""
+        """Drop the other threads, which do not exist in a forked process."""
         self._lock = threading.RLock()
         me = threading.get_ident()
         self._holders = {me: self._holders[me]} if me in self._holders else {}
@@ -52,45 +52,45 @@ class _NoCollection:
 no_collection = _NoCollection()
 
 
-CAN_FREEZE = hasattr(gc, "freeze")  # PyPy, which has generations of its own, cannot
-MOST_OBJECTS = 20_000  # more objects are frozen: looking for garbage in them takes milliseconds
-LOOKS = 64  # of so many looks for garbage at the end of a run one goes through everything,
-OBJECTS = 100_000  # or of several times as many, when it has several times so many objects
-_every = 1  # garbage is looked for at the end of each so-many-th run
+CAN_FREEZE = hasattr(gc, "freeze")  # PyPy cannot: it has its own generations
+MOST_OBJECTS = 20_000  # freeze more objects than this: a collection over them takes milliseconds
+LOOKS = 64  # one of this many collections at the end of a run goes through all objects,
+OBJECTS = 100_000  # or one of several times as many, if there are several times this many objects
+_every = 1  # `collect_leftovers` collects at the end of each so-many-th run
 _runs = 0
 
 
 def freeze() -> None:
-    """Leave out all objects that there are when garbage is looked for, where the interpreter can."""
+    """Exclude all present objects from collections, if the interpreter can."""
     if CAN_FREEZE:
         gc.freeze()
 
 
 def freeze_many() -> None:
-    """Freeze all objects when there are so many that looking for garbage in them takes long.
+    """Freeze all objects if there are so many that a collection takes long.
 
-    They stay frozen, for to count many objects at each run takes as long.
+    They stay frozen, because counting many objects at each run takes just as long.
     """
     if CAN_FREEZE and len(gc.get_objects()) > MOST_OBJECTS:
         gc.freeze()
 
 
 def collect_every(runs: int) -> None:
-    """Have `collect_leftovers` look for garbage at the end of every `runs`-th run only.
+    """Let `collect_leftovers` collect garbage at the end of every `runs`-th run only.
 
-    A suite of thousands of short missions spends a tenth of its time on it otherwise. As many missions may then be in
-    memory at once.
+    Otherwise a suite of thousands of short missions spends a tenth of its time on it. In return, this many missions may
+    be in memory at once.
     """
     global _every
     _every = runs
 
 
 def collect_leftovers() -> None:
-    """Look for garbage in all objects that are not frozen; every `LOOKS` times in all objects.
+    """Collect garbage among the objects that are not frozen, and from time to time among all objects.
 
-    A run leaves classes, whose circles reference counting cannot free; the simulation itself is still
-    referenced, and is found the next time. What was there before the first run stays frozen: to go through it takes
-    longer than all the rest.
+    A run leaves classes in reference cycles. The simulation itself is still referenced, and the next collection finds
+    it. The objects that existed before the first run stay frozen, because going through them takes longer than all the
+    rest.
     """
     global _runs
     _runs += 1

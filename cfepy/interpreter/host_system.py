@@ -1,6 +1,7 @@
-"""What of the computer's system not every system has; without it, cfepy goes on where it can.
+"""Facilities that not every operating system has; cfepy works without them where it can.
 
-Modules that only POSIX has (`fcntl`, `termios`, `resource`) are imported where they are used, and never at the top.
+Modules that only POSIX has (`fcntl`, `termios`, `resource`) are imported in the functions that use them, never at the
+top.
 """
 
 from __future__ import annotations
@@ -18,7 +19,9 @@ _LOCKED_BYTE = 1 << 40
 
 
 def in_forked_process(call: Callable[[], object]) -> None:
-    """Call something in each child that this process forks; where no process is forked, never."""
+    """Register a function to be called in each child that this process forks; it is never called on systems without
+    fork.
+    """
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(after_in_child=call)
 
@@ -27,16 +30,16 @@ _BEFORE_END: list[Callable[[], object]] = []
 
 
 def before_end(call: Callable[[], object]) -> None:
-    """Have `end_process` call something first.
+    """Register a function that `end_process` calls first.
 
     Args:
-        call: removes what this process has on the computer's disks.
+        call: removes the files of this process from the computer's disks.
     """
     _BEFORE_END.append(call)
 
 
 def end_process(status: int) -> NoReturn:
-    """End this forked process at once, as `os._exit` does, and remove the folders of its runs before.
+    """End this forked process at once, like `os._exit`, after removing the folders of its runs.
 
     Args:
         status: the exit status.
@@ -49,14 +52,16 @@ def end_process(status: int) -> NoReturn:
 
 
 def ending_signals() -> list[signal.Signals]:
-    """The signals by which a user ends a program: Ctrl-C, SIGTERM, and SIGHUP where it is not ignored (`nohup`)."""
+    """Return the signals with which a user ends a program: Ctrl-C, SIGTERM, and SIGHUP unless it is ignored
+    (`nohup`).
+    """
     hangup = signal_number("SIGHUP")
     listens = hangup and signal.getsignal(hangup) != signal.SIG_IGN
     return [signal.SIGINT, signal.SIGTERM, *([signal.Signals(hangup)] if listens else [])]
 
 
 def interrupt_once(number: int, _: object) -> None:
-    """An answer to SIGHUP, which a terminal that is closed sends twice: a KeyboardInterrupt, and no other.
+    """Handle SIGHUP, which a closing terminal sends twice, with exactly one KeyboardInterrupt.
 
     Raises:
         KeyboardInterrupt: always.
@@ -67,7 +72,7 @@ def interrupt_once(number: int, _: object) -> None:
 
 
 def leave_dead_terminal() -> bool:
-    """Let what goes to a terminal that was closed go nowhere, so that writing to it does not fail.
+    """Redirect output to a closed terminal to the null device, so that writing to it does not fail.
 
     Returns:
         Whether standard output or standard error was such a terminal.
@@ -86,15 +91,17 @@ def leave_dead_terminal() -> bool:
 
 
 def signal_number(name: str) -> int:
-    """The number of a signal, such as SIGBUS; 0, which no signal has, where the system does not know it."""
+    """Return the number of a signal, such as SIGBUS, or 0 if the system does not know it. No signal has the
+    number 0.
+    """
     return int(getattr(signal, name, 0))
 
 
 def lock_file(descriptor: int) -> None:
-    """Keep other processes from locking an open file too, for as long as it is open.
+    """Keep other processes from locking an open file, for as long as it is open.
 
     Raises:
-        OSError: another one has locked it.
+        OSError: if another process has locked it.
     """
     if sys.platform != "win32":
         import fcntl
@@ -104,19 +111,19 @@ def lock_file(descriptor: int) -> None:
     import msvcrt
 
     at = os.lseek(descriptor, 0, os.SEEK_CUR)
-    os.lseek(descriptor, _LOCKED_BYTE, os.SEEK_SET)  # behind all data: nobody can read what is locked
+    os.lseek(descriptor, _LOCKED_BYTE, os.SEEK_SET)  # past all data, because other processes cannot read locked bytes
     msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
     os.lseek(descriptor, at, os.SEEK_SET)
 
 
 def is_absent(program: str, error: OSError) -> bool:
-    """Check whether a program could not be started because there is none of that name.
+    """Check whether a program could not be started because it does not exist.
 
-    Linux answers "permission denied" for a missing program if one folder of PATH may not be searched.
+    Linux reports "permission denied" for a missing program if it may not search one folder of PATH.
 
     Args:
         program: its name or path, the first word of a command.
-        error: raised when the command was started.
+        error: the error from starting the command.
     """
     from shutil import which
 
@@ -126,9 +133,9 @@ def is_absent(program: str, error: OSError) -> bool:
 
 
 def command_line(words: Sequence[str]) -> str:
-    """A command as it is typed into the shell of this system."""
+    """Return a command as typed into the shell of this system."""
     if os.name == "nt":
-        from subprocess import list2cmdline  # starting with it would cost every boot its import
+        from subprocess import list2cmdline  # imported here because a boot would pay for it otherwise
 
         return list2cmdline(words)
     from shlex import join
@@ -137,15 +144,15 @@ def command_line(words: Sequence[str]) -> str:
 
 
 def has_own_builtins() -> bool:
-    """Whether `__builtins__` of a module's own count in this Python; PyPy leaves them aside."""
+    """Return whether this Python honours a module's own `__builtins__`; PyPy ignores them."""
     return eval("len", {"__builtins__": {"len": None}}) is None
 
 
 def check_own_builtins() -> None:
-    """That nodes, and applications of a mission's own, can have functions of their own in place of Python's.
+    """Check that nodes and a mission's own applications can have their own functions in place of Python's.
 
     Raises:
-        UsageError: this Python gives them those of the computer.
+        UsageError: if this Python gives them the real functions.
     """
     if not has_own_builtins():
         raise UsageError(

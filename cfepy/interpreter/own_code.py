@@ -1,6 +1,6 @@
-"""Whose code a source file is: the mission's own, a library's, the standard library's, or the simulator's.
+"""Whether a source file belongs to the mission, to a library, to the standard library, or to the simulator.
 
-What is told of a run (tracebacks, timelines, the places of moves) is told by lines and functions of the mission.
+Reports about a run (tracebacks, timelines, the places of deviations) name lines and functions of the mission.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from types import FunctionType
 from typing import Any, TypeVar, cast
 
 F = TypeVar("F", bound=Callable[..., Any])
-FILES = 4096  # of which it is remembered whose they are
+FILES = 4096  # number of files whose owner is cached
 PACKAGE = str(Path(__file__).resolve().parents[1])
 _CFEPY = os.path.join(PACKAGE, "")
 _COMPILED = "cfepy/"
@@ -25,38 +25,41 @@ _INSTALLED = ("site-packages", "dist-packages")
 
 
 def source_file(file: str) -> str:
-    """The whole name of a source file as a frame of a traceback has it.
+    """Return the full path of a source file from the file name in a traceback's frame.
 
-    A module that mypyc has compiled names its source from the folder that has cfepy in it.
+    A module compiled by mypyc names its source relative to the folder that contains cfepy.
     """
     return _CFEPY + file.removeprefix(_COMPILED) if file.startswith(_COMPILED) else file
 
 
 @functools.lru_cache(maxsize=FILES)
 def is_shown(file: str) -> bool:
-    """Whether code is the mission's or a library's, not the simulator's."""
+    """Return whether code is from the mission or a library, not from the simulator."""
     return not source_file(file).startswith((_CFEPY, _ROSPY, "<"))
 
 
 @functools.lru_cache(maxsize=FILES)
 def is_library(file: str) -> bool:
-    """Whether a source file is the standard library's or that of an installed package."""
+    """Return whether a source file belongs to the standard library or to an installed package."""
     parts = Path(file).parts
     return file.startswith((_STANDARD_LIBRARY, _LIBRARIES)) or any(name in parts for name in _INSTALLED)
 
 
 @functools.lru_cache(maxsize=FILES)
 def is_standard(file: str) -> bool:
-    """Whether a source file is the standard library's."""
+    """Return whether a source file belongs to the standard library."""
     return file.startswith(_STANDARD_LIBRARY) and not any(name in Path(file).parts for name in _INSTALLED)
 
 
 def called_as(function: F, name: str) -> F:
-    """A function that stands for another one, as profiles, tracebacks and the places of moves are to show it.
+    """Rename a function, so that profiles, tracebacks and the places of deviations show it as another one.
 
     Args:
-        function: which gets a name of its own; made for this.
-        name: that of the other one.
+        function: the function to rename, made for this purpose.
+        name: the name to show.
+
+    Returns:
+        The same function.
     """
     made = cast("FunctionType", function)
     made.__code__ = made.__code__.replace(co_name=name, co_qualname=name)
@@ -64,5 +67,5 @@ def called_as(function: F, name: str) -> F:
 
 
 def is_own_code(file: str) -> bool:
-    """Whether a source file is the mission's own, neither the simulator's nor a library's."""
+    """Return whether a source file is the mission's own code, not the simulator's or a library's."""
     return is_shown(file) and not is_library(file)

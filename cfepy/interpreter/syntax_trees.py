@@ -1,12 +1,12 @@
-"""Syntax trees of Python source, made without a collection of garbage on the way.
+"""Syntax trees of Python source, built without a garbage collection in between.
 
-CPython before 3.11.8 and 3.12.2 counts the depth of a tree for the whole interpreter. A collection in the middle of
-one may run a finalizer that makes another, such as one that logs a traceback, and then `ast.parse` raises SystemError.
+CPython before 3.11.8 and 3.12.2 counts the depth of a tree for the whole interpreter. A collection during `ast.parse`
+can run a finalizer that builds another tree, such as one that logs a traceback. `ast.parse` then raises SystemError.
 
-`NameScopes` says which variable a name in a tree means, and which variables several tasks may share. These are Python's
-own rules (The Python Language Reference, 4.2): a name that a block binds is its own, unless it is declared global or
-nonlocal; other names are looked for in the functions around, then in the module. Comprehensions are blocks of their
-own, blocks of classes are looked into by nobody.
+`NameScopes` determines which variable a name in a tree refers to, and which variables several tasks can share. It
+follows Python's own rules (The Python Language Reference, 4.2). A name that a block binds is local to it, unless it is
+declared global or nonlocal. Other names are looked up in the enclosing functions, then in the module. Comprehensions
+are blocks of their own. Names of a class block are not visible in the blocks inside it.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from cfepy.reading.input_limits import PYTHON_DEPTH, PYTHON_WORDS
 MODULE, FUNCTION, CLASS, COMPREHENSION = "module", "function", "class", "comprehension"
 _WORD = re.compile(rb"\w+|[^\w\s]")
 _TOO_DEEP = "is nested too deeply"
-_AGAIN = 2  # what is bound in a loop is bound more than once
+_AGAIN = 2  # a name bound in a loop is bound more than once
 
 
 class TooDeepError(SyntaxError):
-    """A source has expressions or blocks inside each other, more than can be followed."""
+    """Exception for a source whose expressions or blocks are nested too deeply."""
 
 
 @overload
@@ -36,21 +36,21 @@ def parsed(source: str | bytes, file: str = ...) -> ast.Module: ...
 @overload
 def parsed(source: str | bytes, file: str = ..., *, mode: Literal["eval"]) -> ast.Expression: ...
 def parsed(source: str | bytes, file: str = "<unknown>", *, mode: Literal["exec", "eval"] = "exec") -> ast.AST:
-    """The tree of a module or, with the mode "eval", of one expression.
+    """Return the tree of a module or, with the mode "eval", of one expression.
 
     Args:
         source: its text.
         file: its name, for errors.
-        mode: as of `ast.parse`.
+        mode: the mode of `ast.parse`.
 
     Raises:
-        SyntaxError: it is not Python; `TooDeepError` if it is nested more deeply than Python's own parser goes.
-        ValueError: it has a NUL byte.
+        SyntaxError: if the source is not Python; `TooDeepError` if it is nested too deeply for Python's own parser.
+        ValueError: if it has a NUL byte.
     """
     try:
         with no_collection:
             return ast.parse(source, file, mode)
-    except (RecursionError, MemoryError):  # the latter is what the parser makes of thousands of brackets
+    except (RecursionError, MemoryError):  # the parser raises MemoryError for thousands of brackets
         raise TooDeepError(f"{_TOO_DEEP} for Python; take it apart", (file, 1, 1, None)) from None
 
 
@@ -64,8 +64,8 @@ def compiled(source: str | bytes | ast.Module, file: str) -> CodeType:
         file: its name, for tracebacks.
 
     Raises:
-        SyntaxError: it is not Python.
-        ValueError: it has a NUL byte.
+        SyntaxError: if the source is not Python.
+        ValueError: if it has a NUL byte.
     """
     code: CodeType = compile(source, file, "exec", dont_inherit=True, optimize=0)
     return code
@@ -84,23 +84,23 @@ def parsed_input(
     mode: Literal["exec", "eval"] = "exec",
     depth: int = PYTHON_DEPTH,
 ) -> ast.AST:
-    """Parse a source that is looked into and not executed, within the limits of all inputs.
+    """Parse a source for inspection, not for execution, within the limits that all inputs have.
 
-    A tree takes a thousand times the memory of its text, and what walks through it goes as deep as it is nested.
+    A tree takes a thousand times the memory of its text. Code that walks a tree recurses as deeply as it is nested.
 
     Args:
         source: its text.
         file: its name, for errors.
-        mode: as of `ast.parse`.
-        depth: expressions and blocks inside each other that it may have; less than the usual number where what looks
-            into the tree goes down by calls.
+        mode: the mode of `ast.parse`.
+        depth: maximum nesting of expressions and blocks; less than the default if the caller walks the tree
+            recursively.
 
     Returns:
         The tree.
 
     Raises:
-        SyntaxError: it is not Python, or is too much.
-        ValueError: it has a NUL byte.
+        SyntaxError: if the source is not Python or exceeds a limit.
+        ValueError: if it has a NUL byte.
     """
     if len(source) > PYTHON_WORDS:
         words = (
@@ -115,7 +115,7 @@ def parsed_input(
 
 
 def _inside(nodes: list[ast.AST]) -> list[ast.AST]:
-    """The parts of nodes; `ast.iter_child_nodes` takes three times as long."""
+    """Return the children of several nodes, in a third of the time of `ast.iter_child_nodes`."""
     found: list[ast.AST] = []
     for node in nodes:
         for name in node._fields:
@@ -138,17 +138,17 @@ def _check_depth(tree: ast.AST, file: str, depth: int) -> None:
 
 
 class NameScope:
-    """A block.
+    """A block of Python source.
 
     Args:
         kind: MODULE, FUNCTION, CLASS or COMPREHENSION.
-        parent: the block around it; None for a module.
+        parent: the enclosing block; None for a module.
 
     Attributes:
-        bound: how often it binds each name, at least.
-        globals, nonlocals: names that it declares so.
+        bound: the minimum number of times that it binds each name.
+        globals, nonlocals: the names that it declares as such.
         captured: its names that functions inside use.
-        rebound: its names that functions inside bind, as they declare.
+        rebound: its names that functions inside bind, after a nonlocal or global declaration.
     """
 
     def __init__(self, kind: str, parent: NameScope | None = None) -> None:
@@ -161,7 +161,7 @@ class NameScope:
         self.rebound: set[str] = set()
 
     def owner(self, name: str) -> NameScope:
-        """The block that a name in this one belongs to; the module's, where nobody binds it."""
+        """Return the block that a name in this block belongs to; the module's if no block binds it."""
         if name in self.globals:
             return self.module
         if name in self.bound and name not in self.nonlocals:
@@ -177,7 +177,7 @@ class NameScope:
 
     @property
     def module(self) -> NameScope:
-        """The outermost one."""
+        """The block of the module."""
         scope = self
         while scope.parent is not None:
             scope = scope.parent
@@ -185,15 +185,15 @@ class NameScope:
 
     @property
     def function(self) -> NameScope:
-        """The innermost block around, itself included, that is no comprehension."""
+        """The innermost block that is not a comprehension, starting with this one."""
         scope = self
         while scope.kind == COMPREHENSION and scope.parent is not None:
             scope = scope.parent
         return scope
 
     def is_shared(self, name: str) -> bool:
-        """Whether a name in this block is a variable that changes, and that functions other than its own get at."""
-        if name.startswith("__"):  # a class may give it another name
+        """Return whether a name in this block is a changing variable that other functions can access."""
+        if name.startswith("__"):  # a class mangles such a name
             return False
         owner = self.owner(name)
         changes = owner.bound[name] > 1 or name in owner.rebound
@@ -206,10 +206,10 @@ class NameScopes(ast.NodeVisitor):
     """The blocks of a module.
 
     Args:
-        tree: it.
+        tree: the tree of the module.
 
     Attributes:
-        of: the block that a function, class or comprehension, or the module, makes.
+        of: the block of each function, class and comprehension, and of the module.
     """
 
     def __init__(self, tree: ast.Module) -> None:
@@ -240,7 +240,7 @@ class NameScopes(ast.NodeVisitor):
             (scope or self._scope).bound[name] += _AGAIN if self._loops else 1
 
     def _define(self, name: str) -> None:
-        """A function, class or module is no variable that changes, though there may be several of the name."""
+        """Define a function, class or module, which is not a changing variable even if several have the same name."""
         self._scope.bound[name] += 0
 
     # -- blocks --------------------------------------------------------------------------------------------------------
@@ -337,6 +337,6 @@ class NameScopes(ast.NodeVisitor):
 
 
 def _names(arguments: ast.arguments) -> list[str]:
-    """The parameters of a function."""
+    """Return the parameters of a function."""
     given = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, arguments.vararg, arguments.kwarg]
     return [each.arg for each in given if each is not None]

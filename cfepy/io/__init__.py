@@ -1,11 +1,11 @@
-"""Real sockets of this computer, through which a run and a ground system reach the world outside.
+"""Real sockets of this computer, with which a run and a ground system reach other programs.
 
-What belongs here opens a real socket, or waits for somebody outside: the bridge of a paced run to the loopback
-interface (`host_network`), the datagrams that a ground system sends and receives (`udp`), lines that are typed
-(`typed_lines`), and connections with programs that neither side waits for (`peer_socket`), with their counts
-(`peer_counts`) and bounds (`peer_places`), and the names by which they call this computer (`own_names`). The simulation
-does not know of this package; the command that runs a mission joins the bridge to it. When input from outside comes in
-is decided in `cfepy.mission`. The central file is `cfepy/io/host_network.py`.
+Code that opens a real socket, or waits for input from outside, belongs here: the bridge of a paced run to the loopback
+interface (`host_network`), datagrams of a ground system (`udp`), typed lines (`typed_lines`), non-blocking connections
+with programs (`peer_socket`), their counts (`peer_counts`) and limits (`peer_places`), and the names by which they
+address this computer (`own_names`). The simulation does not know this package; the command that runs a mission connects
+the bridge to it. When input from outside comes in is decided in `cfepy.mission`. The central file is
+`cfepy/io/host_network.py`.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ __all__ = [
     "send",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

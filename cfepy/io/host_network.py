@@ -1,9 +1,10 @@
 """The bridge between a mission's virtual network and this computer's loopback interface.
 
-A port that an application binds opens on 127.0.0.1 too; what arrives there enters the mission at the virtual instant at
-which the run stands, with a note in the trace. A datagram for which no socket in the mission is bound goes out to
-127.0.0.1. No other interface is touched. The pacer sleeps in `wait`, which input ends; after every piece of the run
-`exchange` moves all bytes that wait. Each TCP connection is a `HostConnection`: a real socket joined to a virtual one.
+A port that an application binds is opened on 127.0.0.1 too; data that arrives there enters the mission at its current
+virtual time, with a record in the trace. A datagram for a port that no socket in the mission has bound is sent to
+127.0.0.1. No other interface is used. The pacer sleeps in `wait`, which input ends; after every part of the run
+`exchange` transfers all waiting bytes. Each TCP connection is a `HostConnection`: a real socket connected to a virtual
+one.
 """
 
 from __future__ import annotations
@@ -22,19 +23,19 @@ from cfepy.status import UsageError
 
 LOOPBACK = "127.0.0.1"
 DIAL_S = 1.0  # wall time; a program on the same computer answers at once
-MOST_AT_ONCE = 256  # datagrams of a port that are brought in between two pieces of a run
+MOST_AT_ONCE = 256  # datagrams of a port that are brought in between two parts of a run
 UDP, TCP = "UDP", "TCP"
 CHUNK = 65_536
 
 
 class Guest(Protocol):
-    """What else brings something into a run from outside, at the same occasions."""
+    """Other input from outside, brought in at the same times."""
 
     def fileno(self) -> int:
-        """What can be read when there is something to bring in."""
+        """Return the files that become readable when there is input."""
 
     def exchange(self) -> None:
-        """Bring it in."""
+        """Bring in the input."""
 
 
 class HostNetwork:
@@ -44,8 +45,8 @@ class HostNetwork:
 
     Args:
         mission: the mission.
-        ports: ports of the mission that are to have another number on this computer; 0 takes any free one.
-        tell: gets a line about each port that was opened, and about what cannot be delivered.
+        ports: ports of the mission with another number on this computer; 0 for any free one.
+        tell: receives a line about each port that was opened, and about failed deliveries.
     """
 
     def __init__(
@@ -77,16 +78,16 @@ class HostNetwork:
         self.close()
 
     def host_port(self, port: int, protocol: str = UDP) -> int | None:
-        """The port on this computer that stands for a port of the mission; None when it is not open."""
+        """Return the port on this computer for a port of the mission; None if it is not open."""
         opened = self._open.get((protocol, port))
         return None if opened is None else int(opened.getsockname()[1])
 
     def join(self, guest: Guest) -> None:
-        """Let something else bring in what it has, too."""
+        """Add another source of input."""
         self._guests.append(guest)
 
     def wait(self, seconds: float) -> None:
-        """Sleep, at most until there is something to bring in or to send on."""
+        """Sleep, at most until there is something to receive or to send."""
         readers: list[Any] = [
             opened for (protocol, port), opened in self._open.items() if protocol == UDP or self._has_room(port)
         ]
@@ -99,14 +100,14 @@ class HostNetwork:
             return
         try:
             select.select(readers, writers, [], seconds)
-        except ValueError:  # a program with 1024 files open: select has no room for their numbers
+        except ValueError:  # a program with 1024 open files: select does not support their numbers
             _poll(readers, writers, seconds)
 
     def exchange(self) -> None:
-        """Open what was bound meanwhile, bring in what arrived, send out what is to leave.
+        """Open newly bound ports, bring in received data, and send waiting data.
 
         Raises:
-            UsageError: a port is taken on this computer.
+            UsageError: if a port is taken on this computer.
         """
         self._mirror()
         for (protocol, port), opened in list(self._open.items()):
@@ -125,7 +126,7 @@ class HostNetwork:
             guest.exchange()
 
     def close(self) -> None:
-        """Send out what is left, and close everything."""
+        """Send the remaining data, and close everything."""
         while self._outbox:
             self._send_out(self._outbox.pop(0))
         for connection in self._connections:
@@ -166,7 +167,7 @@ class HostNetwork:
         for _ in range(MOST_AT_ONCE):
             try:
                 data, (host, source) = opened.recvfrom(LONGEST_DATAGRAM)
-            except OSError:  # nothing more there
+            except OSError:  # nothing more to receive
                 return
             self._link.send(data, port, Place(host, source))
 
@@ -182,10 +183,7 @@ class HostNetwork:
             self._tell(f"a datagram for port {target.port} could not be sent: {error.strerror}")
 
     def _for_replies(self, port: int) -> socket.socket:
-        """What sends for a port that is not open on this computer: a socket to which the answers come, while it lives.
-
-        For a port that has been given back meanwhile, the socket's answers are not read.
-        """
+        """Return the sender for a port that is not open on this computer: a socket that also receives the answers."""
         if (False, port) not in self._mission.network.datagrams.bound:
             return self._anonymous
         opened = self._replies.get(port)
@@ -203,7 +201,7 @@ class HostNetwork:
     # -- connections -------------------------------------------------------------------------------------------------
 
     def _dial(self, source: Place, target: Place) -> Stream | None:
-        """Connect a program of the mission with one on this computer; None when none listens there."""
+        """Connect a program of the mission with one on this computer; None if there is no listener."""
         if target.is_ip6:
             return self._joined(source, target, None)
         host = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
@@ -216,7 +214,7 @@ class HostNetwork:
         return self._joined(source, target, host)
 
     def _joined(self, source: Place, target: Place, host: socket.socket | None) -> Stream | None:
-        """The mission's end of a connection with a real socket; without one, the connection is refused."""
+        """Return the mission's end of a connection with a real socket; without a socket, the connection is refused."""
         ends = self._mission.outside.answer(source, target, host is not None)
         if ends is None or host is None:
             return None
@@ -237,12 +235,12 @@ class HostNetwork:
                 self._connections.append(HostConnection(host, stream))
 
     def _listener(self, port: int) -> Listener | None:
-        """The listener at a port of the mission; None when it is gone."""
+        """Return the listener at a port of the mission; None if it is closed."""
         listener = self._mission.network.streams.find(Place(LOOPBACK, port))
         return listener if listener is not None and listener.listening else None
 
     def _has_room(self, port: int) -> bool:
-        """Whether a connection that waits on this computer can be brought in, or turned away."""
+        """Return whether a waiting connection on this computer can be brought in or refused."""
         listener = self._listener(port)
         return listener is None or listener.has_room
 
@@ -257,16 +255,16 @@ def _poll(readers: list[Any], writers: list[Any], seconds: float) -> None:
 
 
 def _is_public(endpoint: Endpoint) -> bool:
-    """Whether a program outside could want to reach an endpoint."""
+    """Return whether a program outside could want to reach an endpoint."""
     return endpoint.listening if isinstance(endpoint, Listener) else not endpoint.anonymous
 
 
 class HostConnection:
-    """Moves bytes both ways; each side holds the other back when it does not read.
+    """Transfers bytes in both directions, with flow control.
 
     Args:
         host: the real socket, connected.
-        stream: the end of the virtual connection that stands for it.
+        stream: the end of the virtual connection for it.
 
     Attributes:
         host: the real socket.
@@ -275,28 +273,28 @@ class HostConnection:
     def __init__(self, host: socket.socket, stream: OutsideStream) -> None:
         self.host = host
         self._stream = stream
-        self._pending = b""  # left the virtual side, not yet taken by the real one
+        self._pending = b""  # sent by the virtual side, not yet taken by the real one
         self._host_ended = self._stream_ended = False
         host.setblocking(False)
 
     @property
     def wants_to_read(self) -> bool:
-        """Whether bytes of the real side would find room."""
+        """Whether there is room for bytes of the real side."""
         return not self._host_ended and self._stream.room > 0
 
     @property
     def wants_to_write(self) -> bool:
-        """Whether there are bytes that the real side did not take yet."""
+        """Whether there are bytes that the real side has not taken yet."""
         return bool(self._pending)
 
     def move(self) -> bool:
-        """Move what can be moved; False when the connection is over and closed."""
+        """Transfer as much as possible; returns False if the connection has ended and is closed."""
         try:
             self._bring_in()
             self._send_out()
         except BlockingIOError:
             return True
-        except OSError:  # the other program is gone
+        except OSError:  # the other program has ended
             self.close()
             return False
         if self._stream_ended and (self._host_ended or self._stream.alone):

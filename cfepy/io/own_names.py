@@ -1,8 +1,8 @@
-"""The names of this computer, by which a server tells its own clients from pages of other sites.
+"""The names of this computer, by which a server distinguishes its own clients from pages of other sites.
 
 A browser lets every page send requests to 127.0.0.1, and a site can give its own name the address 127.0.0.1 (DNS
-rebinding). The browser says both: Origin is the site of the page (RFC 6454), Host is the name by which the page calls
-the server (RFC 9110, 7.2).
+rebinding). The browser sends both: Origin is the site of the page (RFC 6454), Host is the name of the server used by
+the page (RFC 9110, 7.2).
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ _HOST = re.compile(r"(\[[0-9a-f:.]+\]|[^\[\]:/@\s]+)(:[0-9]{1,5})?", re.IGNORECA
 
 
 def is_this_computer(host: str) -> bool:
-    """Whether a host is a name or an address of the loopback interface."""
+    """Return whether a host is a name or an address of the loopback interface."""
     return host == LOCALHOST or is_loopback(host)
 
 
 def is_loopback(host: str) -> bool:
-    """Whether a text is an address of the loopback interface."""
+    """Return whether a text is an address of the loopback interface."""
     try:
         return host.isascii() and ip_address(host).is_loopback
     except ValueError:
@@ -32,10 +32,10 @@ def is_loopback(host: str) -> bool:
 
 
 class OwnNames:
-    """Names and addresses by which clients may call a server.
+    """Names and addresses by which clients may address a server.
 
     Args:
-        more: names or addresses besides those of the computer, as ROS_HOSTNAME and ROS_IP give them.
+        more: additional names or addresses, such as ROS_HOSTNAME and ROS_IP.
     """
 
     def __init__(self, more: Iterable[str] = ()) -> None:
@@ -44,11 +44,11 @@ class OwnNames:
         self._names = {name, label, f"{label}.local", *map(_plain, more), *_aliases(name)} - {"", ".local"}
 
     def has(self, host: str, here: str) -> bool:
-        """Whether the field Host of a request names this computer.
+        """Return whether the field Host of a request names this computer.
 
         Args:
             host: the field, with or without a port.
-            here: the address of this computer to which the client has connected.
+            here: address of this computer to which the client has connected.
         """
         parts = _HOST.fullmatch(host.strip())
         if parts is None:
@@ -62,7 +62,7 @@ def _plain(name: str) -> str:
 
 
 def _aliases(name: str) -> set[str]:
-    """Other names of this computer in its file of hosts."""
+    """Return other names of this computer in its hosts file."""
     try:
         lines = HOSTS.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:

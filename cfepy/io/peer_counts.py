@@ -1,11 +1,12 @@
-"""What passed between the mission and each outside peer, and what was lost on the way: rows of the run's report."""
+"""Messages between the mission and each outside peer, and losses: rows of the run's report."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from typing import Any
 
-MOST_ROWS = 200  # peers that are told apart; tools with a new name for each start would make more and more
+# maximum number of peers counted separately; tools with a new name at each start would add more and more
+MOST_ROWS = 200
 OTHERS = "(others)"
 INTO, OUT_OF = "in", "out"
 
@@ -15,15 +16,14 @@ class PeerCount:
     """One peer at one topic or service.
 
     Attributes:
-        name: of the topic or service.
-        peer: name of the outside node, or its URI as long as nothing else is known.
-        direction: "in" or "out", of messages; of a service that of the requests.
-        messages, size: that passed, and their bytes.
-        dropped: messages that did not pass: the peer was too slow, or the bus did not take them.
-        connections: how often they were connected.
-        ended: connections that the other side has ended, or that broke.
-        refused: connections that could not be, such as for another md5sum.
-        why: what went wrong last.
+        name: name of the topic or service.
+        peer: name of the outside node, or its URI if the name is not known yet.
+        direction: "in" or "out", of messages or of a service's requests.
+        dropped: messages lost because the peer was too slow, or the bus did not take them.
+        connections: number of connections.
+        ended: connections that the other side ended, or that broke.
+        refused: refused connections, such as for another md5sum.
+        why: last error.
     """
 
     name: str
@@ -45,7 +45,7 @@ class PeerCounts:
         self._counts: dict[tuple[str, str, str], PeerCount] = {}
 
     def of(self, name: str, peer: str, direction: str) -> PeerCount:
-        """The count of a peer; those beyond a bound share one."""
+        """Return the count of a peer; those beyond a limit share one."""
         key = (name, peer, direction)
         found = self._counts.get(key)
         if found is None:
@@ -55,5 +55,5 @@ class PeerCounts:
         return found
 
     def rows(self) -> list[dict[str, Any]]:
-        """A row for each peer, by topic or service."""
+        """Return a row for each peer, by topic or service."""
         return [asdict(self._counts[key]) for key in sorted(self._counts)]

@@ -1,8 +1,8 @@
-"""Bounds for what all connections of a server take together: places, memory, and time between two pieces of a run.
+"""Limits for all connections of a server together: number, memory, and time between two parts of a run.
 
-A client that opens connections and leaves them, or begins large messages and never ends them, takes nothing from the
-others: a connection that has not said yet what it is for gives way to a new one, and the largest unfinished message
-ends its connection.
+A client that opens connections and leaves them, or starts large messages and never completes them, does not affect the
+others: a connection that has not stated its purpose is closed for a new one, and the connection with the largest
+incomplete message is closed.
 """
 
 from __future__ import annotations
@@ -13,39 +13,36 @@ from typing import Protocol
 
 from cfepy.reading.input_limits import PEER_CONNECTIONS, UNFINISHED_BYTES
 
-HEAD_S = 10.0  # wall time in which a connection has to say what it is for
-TURN_S = 0.05  # wall time for requests between two pieces of a run; the others wait for the next
+HEAD_S = 10.0  # wall time within which a connection must state its purpose
+TURN_S = 0.05  # wall time for requests between two parts of a run; the others wait for the next
 TOO_MUCH = f"messages that are not whole have more than {UNFINISHED_BYTES:,} bytes, and this is the largest"
 
 
 class Guarded(Protocol):
-    """A connection, as these bounds see it."""
+    """A connection, as seen by these limits."""
 
     def fail(self, why: str) -> None:
-        """End it, and say why to its owner."""
+        """Close it, with a reason for its owner."""
 
 
 class PeerPlaces:
-    """The places for connections.
+    """Limit of the number of connections.
 
     Args:
-        most: how many there are.
+        most: maximum number.
     """
 
     def __init__(self, most: int = PEER_CONNECTIONS) -> None:
         self._most = min(most, _files_allowed() // 4)
-        self._new: dict[Guarded, float] = {}  # with the wall time of their beginning
-        self._idle: dict[Guarded, None] = {}  # the longest first
+        self._new: dict[Guarded, float] = {}  # with the wall time of their start
+        self._idle: dict[Guarded, None] = {}  # longest idle first
         self._kept: set[Guarded] = set()
 
     def __len__(self) -> int:
         return len(self._new) + len(self._idle) + len(self._kept)
 
     def take(self, peer: Guarded, now_s: float) -> None:
-        """A new connection. When all places are taken, the oldest of those that may give way ends.
-
-        It is the new one itself if none may.
-        """
+        """Add a connection. If the limit is reached, the oldest that may be closed is closed."""
         while len(self) >= self._most:
             other = next(iter(self._new), None) or next(iter(self._idle), None)
             if other is None:
@@ -56,25 +53,25 @@ class PeerPlaces:
         self._new[peer] = now_s
 
     def keep(self, peer: Guarded) -> None:
-        """A connection has said what it is for, and stays."""
+        """Keep a connection that has stated its purpose."""
         if self._is_there(peer):
             self.leave(peer)
             self._kept.add(peer)
 
     def rest(self, peer: Guarded) -> None:
-        """A connection has got its answer, and stays as long as there are places enough."""
+        """Keep a connection that has got its answer, as long as there is room."""
         if self._is_there(peer):
             self.leave(peer)
             self._idle[peer] = None
 
     def leave(self, peer: Guarded) -> None:
-        """A connection is over."""
+        """Remove a closed connection."""
         self._new.pop(peer, None)
         self._idle.pop(peer, None)
         self._kept.discard(peer)
 
     def look(self, now_s: float) -> None:
-        """End connections that have not said what they are for in time."""
+        """Close connections that have not stated their purpose in time."""
         for peer in [each for each, since_s in self._new.items() if now_s - since_s > HEAD_S]:
             self.leave(peer)
             peer.fail("nothing was asked for")
@@ -84,10 +81,10 @@ class PeerPlaces:
 
 
 class InputRoom:
-    """The memory for messages that are not whole, or wait to be taken.
+    """Limit of the memory for messages that are incomplete, or wait to be taken.
 
     Args:
-        most: bytes.
+        most: number of bytes.
     """
 
     def __init__(self, most: int = UNFINISHED_BYTES) -> None:
@@ -96,7 +93,7 @@ class InputRoom:
         self.size = 0
 
     def hold(self, peer: Guarded, size: int) -> None:
-        """A connection holds so many bytes now; if all hold too many, the one that holds most ends."""
+        """Set the bytes of a connection; if all together have too many, the one with the most is closed."""
         self.release(peer)
         if size:
             self._held[peer] = size
@@ -107,16 +104,16 @@ class InputRoom:
             largest.fail(TOO_MUCH)
 
     def release(self, peer: Guarded) -> None:
-        """A connection is over, or holds nothing."""
+        """Remove a connection that is closed or has no bytes."""
         self.size -= self._held.pop(peer, 0)
 
 
 class InputTurn:
-    """The wall time for what clients ask for between two pieces of a run.
+    """Limit of the wall time for clients' requests between two parts of a run.
 
     Args:
-        seconds: of a turn.
-        clock: gives wall time in s.
+        seconds: length of a turn.
+        clock: returns wall time in s.
     """
 
     def __init__(self, seconds: float = TURN_S, clock: Callable[[], float] = time.monotonic) -> None:
@@ -125,20 +122,20 @@ class InputTurn:
         self._until_s = clock() + seconds
 
     def begin(self) -> None:
-        """A piece of the run is over: the next turn."""
+        """Start the next turn, after a part of the run."""
         self._until_s = self._clock() + self._seconds
 
     @property
     def is_over(self) -> bool:
-        """Whether the rest has to wait for the next turn."""
+        """Whether the rest must wait for the next turn."""
         return self._clock() >= self._until_s
 
 
 def _files_allowed() -> int:
-    """How many files this process may have open."""
+    """Return the maximum number of open files of this process."""
     try:
         import resource
-    except ImportError:  # no POSIX system
+    except ImportError:  # not a POSIX system
         return 2048
     soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
     return soft if soft != resource.RLIM_INFINITY else 1 << 20

@@ -1,7 +1,7 @@
-"""A TCP connection with a program on this computer that neither waits nor makes anybody wait.
+"""A non-blocking TCP connection with a program on this computer.
 
-What is to go out and finds no room waits in a queue with a bound; beyond it the oldest message is dropped and counted,
-as ROS's publishers do it. What came in is handed on when the host looks.
+Output that cannot be sent waits in a queue with a limit; beyond it the oldest message is dropped and counted, as in ROS
+publishers. Input is passed on when the host polls.
 """
 
 from __future__ import annotations
@@ -13,20 +13,21 @@ from selectors import EVENT_READ, EVENT_WRITE, BaseSelector
 from typing import Any
 
 CHUNK = 1 << 16
-MOST_AT_ONCE = 1 << 20  # bytes that are taken between two pieces of a run; the rest waits in the other program
+# maximum number of bytes received between two parts of a run; the rest waits in the other program
+MOST_AT_ONCE = 1 << 20
 MOST_WAITING = 1000  # messages
 ENDED = "the other side has closed the connection"
-MOST_BYTES = 1 << 26  # that wait; one message may be longer
+MOST_BYTES = 1 << 26  # maximum number of waiting bytes; one message may be longer
 
 
 class PeerSocket:
     """A connection.
 
     Args:
-        selector: of the host; its entries' data are functions that take the events.
+        selector: selector of the host; its entries' data are functions that take the events.
         connected: the socket.
-        take: gets bytes that came; may close the channel.
-        lost: called once, when the other side is gone or what it sent could not be read; takes why.
+        take: receives bytes; may close the channel.
+        lost: called once with the reason, if the other side has closed or its data could not be read.
     """
 
     def __init__(
@@ -44,25 +45,25 @@ class PeerSocket:
         self._lost = lost
         self._waiting: deque[bytes] = deque()
         self._size = 0
-        self._under_way = b""  # the rest of a message whose beginning is out
+        self._under_way = b""  # rest of a partly sent message
         self._ends_when_sent = self._is_paused = False
-        self._watched = 0  # events, as the selector has them
+        self._watched = 0  # events, as in the selector
         connected.setblocking(False)
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._watch()
 
     @property
     def is_full(self) -> bool:
-        """Whether a message would have to wait for the other side to read."""
+        """Whether a message would have to wait for the other side."""
         return bool(self._under_way or self._waiting)
 
     @property
     def waiting(self) -> int:
-        """Messages that have not begun to go out."""
+        """Number of messages that have not been started."""
         return len(self._waiting)
 
     def send(self, data: bytes) -> None:
-        """Send a message, now or as soon as there is room."""
+        """Send a message, at once or as soon as there is room."""
         if not self.is_open:
             return
         if self._under_way or self._waiting:
@@ -72,7 +73,7 @@ class PeerSocket:
             sent = self.socket.send(data)
         except BlockingIOError:
             sent = 0
-        except OSError:  # the other side is gone, which reading tells
+        except OSError:  # the other side has closed, which reading will show
             self.resume()
             return
         if sent < len(data):
@@ -88,7 +89,7 @@ class PeerSocket:
             self.dropped += 1
 
     def flush(self) -> None:
-        """Send of what waits as much as there is room for."""
+        """Send as much waiting data as possible."""
         while self.is_open and (self._under_way or self._waiting):
             if not self._under_way:
                 self._under_way = self._waiting.popleft()
@@ -108,17 +109,17 @@ class PeerSocket:
             self._watch()
 
     def pause(self) -> None:
-        """Leave what comes in the other program, for now."""
+        """Pause receiving."""
         self._is_paused = True
         self._watch()
 
     def resume(self) -> None:
-        """Take it again."""
+        """Resume receiving."""
         self._is_paused = False
         self._watch()
 
     def finish(self) -> None:
-        """Close it as soon as everything is out."""
+        """Close it as soon as everything is sent."""
         if self._under_way or self._waiting:
             self._ends_when_sent = True
         else:
@@ -133,7 +134,7 @@ class PeerSocket:
             self._waiting.clear()
 
     def handle(self, events: int) -> None:
-        """The socket can be read or written."""
+        """Handle a socket that is ready."""
         if events & EVENT_WRITE:
             self.flush()
         if events & EVENT_READ and self.is_open:
@@ -155,20 +156,20 @@ class PeerSocket:
             left -= len(data)
             try:
                 self._take(data)
-            except Exception as error:  # whatever a stranger's bytes lead to ends this connection alone
+            except Exception as error:  # an error caused by received bytes ends only this connection
                 self.fail(f"{error}")
                 return
             if len(data) < CHUNK:
                 return
 
     def fail(self, why: str) -> None:
-        """It is of no use any more."""
+        """Close the connection after an error."""
         if self.is_open:
             self.close()
             self._lost(why)
 
     def _watch(self) -> None:
-        """Have the selector look for what is to be done next."""
+        """Update the events in the selector."""
         reads = 0 if self._is_paused else EVENT_READ
         writes = EVENT_WRITE if self._under_way or self._waiting else 0
         wanted, watched = reads | writes if self.is_open else 0, self._watched
@@ -205,25 +206,25 @@ class Listening:
     def _handle(self, events: Any) -> None:
         try:
             connected, _ = self._socket.accept()
-        except OSError:  # it is gone again, or this process has no more files to open
+        except OSError:  # it has closed again, or this process has too many open files
             return
         self._accept(connected)
 
     def close(self) -> None:
-        """Take no more."""
+        """Stop accepting connections."""
         self._selector.unregister(self._socket)
         self._socket.close()
 
 
 def listening_socket(address: str, port: int = 0) -> socket.socket:
-    """A socket that listens.
+    """Return a socket that listens.
 
     Args:
-        address: of this computer's interface, of IPv6 if it has colons; "" for all of IPv4.
-        port: 0 takes any free one.
+        address: address of this computer, IPv6 if it has colons; "" for all of IPv4.
+        port: 0 for any free one.
 
     Raises:
-        OSError: the port is taken.
+        OSError: if the port is taken.
     """
     opened = socket.socket(socket.AF_INET6 if ":" in address else socket.AF_INET, socket.SOCK_STREAM)
     try:

@@ -1,4 +1,4 @@
-"""Lines that somebody types or pipes in, for a loop that has other things to do than to wait for them."""
+"""Lines that are typed or piped in, read without blocking the caller."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ class TypedLines:
     """Reads a stream in a thread of its own, which ends with the process.
 
     Args:
-        stream: of lines.
+        stream: stream of lines.
 
     Attributes:
-        at_end: all lines have been taken, and no more will come.
+        at_end: whether all lines have been taken, and no more will come.
     """
 
     def __init__(self, stream: TextIO) -> None:
@@ -24,7 +24,7 @@ class TypedLines:
         threading.Thread(target=self._read, name="cfepy typed lines", daemon=True).start()
 
     def next(self, timeout_s: float) -> str | None:
-        """The next line without its newline; None when none came in so many s of wall time, or none will come."""
+        """Return the next line without its newline; None if none came in so many s of wall time, or none will come."""
         if self.at_end:
             return None
         try:

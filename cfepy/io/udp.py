@@ -9,7 +9,7 @@ from types import TracebackType
 from cfepy.status import UsageError
 
 LARGEST = 65535
-REFUSAL_S = 0.02  # in which a computer nearby answers that no program listens
+REFUSAL_S = 0.02  # time within which a nearby computer reports that there is no listener
 
 
 def send(host: str, port: int, data: bytes) -> bool:
@@ -21,10 +21,10 @@ def send(host: str, port: int, data: bytes) -> bool:
         data: its bytes.
 
     Returns:
-        False when the host answers that no program listens at the port. True does not say that it arrived.
+        False if the host answers that there is no listener at the port. True does not mean that the datagram arrived.
 
     Raises:
-        UsageError: there is no such host, or no way to it.
+        UsageError: if there is no such host, or no way to it.
     """
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as plug:
         try:
@@ -42,14 +42,14 @@ def send(host: str, port: int, data: bytes) -> bool:
 
 
 def own_address(host: str) -> str:
-    """The address that a host sees this computer under.
+    """Return the address of this computer as seen by a host.
 
     Raises:
-        UsageError: there is no such host, or no way to it.
+        UsageError: if there is no such host, or no route to it.
     """
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as plug:
         try:
-            plug.connect((host, 1))  # sends nothing, but finds the way
+            plug.connect((host, 1))  # sends nothing, but finds the route
         except OSError as error:
             raise UsageError(f"there is no way there: {error.strerror or error}", file=host) from None
         address: str = plug.getsockname()[0]
@@ -57,17 +57,17 @@ def own_address(host: str) -> str:
 
 
 class UdpListener:
-    """A port that datagrams arrive at; use as a context manager.
+    """A port that receives datagrams; use as a context manager.
 
     Args:
         host: address of this computer to listen at, "0.0.0.0" for any.
-        port: 1 to 65535, or 0 for one that is free.
+        port: 1 to 65535, or 0 for a free one.
 
     Attributes:
         port: the port.
 
     Raises:
-        UsageError: the port is taken, or the address is not one of this computer's.
+        UsageError: if the port is taken, or the address is not one of this computer's.
     """
 
     def __init__(self, host: str, port: int) -> None:
@@ -82,7 +82,7 @@ class UdpListener:
         self.port: int = self._socket.getsockname()[1]
 
     def receive(self, timeout_s: float | None = None) -> bytes | None:
-        """The next datagram; None when none came in time.
+        """Return the next datagram; None if none came in time.
 
         Args:
             timeout_s: longest time to wait in wall-clock s; None for no limit.

@@ -1,8 +1,8 @@
-"""Journals: a run written down so that it can be done again, on this computer or another, and compared with others.
+"""Journals: recorded runs that can be repeated, on this computer or another, and compared with others.
 
-What belongs here defines what a journal holds and its file (`journal`), writes it while a run goes on (`recorder`), or
-does the run again and compares (`replay_files`, `replay`, `header_diff`). How a run is flown belongs to `cfepy.pilot`;
-input from outside belongs to `cfepy.mission`. Commands that show journals are in `cfepy.cli`. The central file is
+Code that defines the contents and file of a journal (`journal`), writes it during a run (`recorder`), or repeats the
+run and compares it (`replay_files`, `replay`, `header_diff`) belongs here. Flying a run belongs to `cfepy.pilot`; input
+from outside belongs to `cfepy.mission`. Commands that show journals are in `cfepy.cli`. The central file is
 `cfepy/journal/journal.py`.
 """
 

@@ -1,4 +1,4 @@
-"""What a mission can find out about the computer and the user: versions, environment, operating system."""
+"""Facts about the computer and the user that a mission can see: versions, environment, operating system."""
 
 from __future__ import annotations
 
@@ -19,13 +19,15 @@ _SECRET = re.compile(r"TOKEN|SECRET|PASSW|PASSPHRASE|CREDENTIAL|API_?KEY|PRIVATE
 
 
 def versions() -> dict[str, str]:
-    """Of cfepy, cFE and Python; `source` stands for cfepy's own files, which may change between two versions."""
+    """Return the versions of cfepy, cFE and Python; `source` identifies cfepy's own files, which may differ for one
+    version.
+    """
     python = platform.python_version()
     return {"cfepy": __version__, "cfe": ", ".join(RELEASES), "python": python, "source": _source()}
 
 
 def own_places() -> tuple[str, ...]:
-    """The folders of cfepy's own files, shipped applications and boards among them."""
+    """Return the folders of cfepy's own files, including its applications and boards."""
     package = Path(__file__).resolve().parents[1]
     beside = (package.parent / each for each in ("rospy_shim", "ros_libraries"))
     return tuple(map(str, (package, *beside, shipped("apps"), shipped("boards"))))
@@ -33,7 +35,9 @@ def own_places() -> tuple[str, ...]:
 
 @cache
 def _source() -> str:
-    """A digest of names and sizes of cfepy's own files, made once a process; to read them all would take too long."""
+    """Return a digest of names and sizes of cfepy's own files, computed once per process; reading them would take too
+    long.
+    """
     whole = blake2b(digest_size=8)
     for place in own_places():
         for folder, folders, names in os.walk(place):
@@ -45,7 +49,7 @@ def _source() -> str:
 
 
 def host_facts() -> dict[str, str]:
-    """Of the computer: what `os.uname` and `sys` tell a node."""
+    """Return the facts about the computer that `os.uname` and `sys` give a node."""
     return {
         "system": platform.system(),
         "release": platform.release(),
@@ -55,10 +59,7 @@ def host_facts() -> dict[str, str]:
 
 
 def environ_of(spec: MissionSpec) -> dict[str, str]:
-    """The variables that a mission can see, but for those whose names sound like a secret.
-
-    A mission with a startup script sees few; a launch file or a single node sees all.
-    """
+    """Return the variables that a mission can see, without those whose names suggest a secret."""
     sees_all = spec.startup is not None and spec.mission_file is None
     names = sorted(os.environ) if sees_all else KEPT_ENVIRONMENT
     return {name: os.environ[name] for name in names if name in os.environ and not _SECRET.search(name)}

@@ -1,4 +1,4 @@
-"""The decisions of a run's policy: noted while it runs, given again when it is replayed."""
+"""The decisions of a run's policy: recorded during the run and repeated in its replay."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from cfepy.rtos import AskingPolicy, Decision, Policy
 
 
 def settings_of(policy: Policy) -> dict[str, Any]:
-    """The settings of a policy that the kernel reads besides its answers, such as `any_priority`."""
+    """Return the settings of a policy that the kernel reads apart from its answers, such as `any_priority`."""
     return {name: value for name, value in vars(policy).items() if not name.startswith("_")}
 
 
 class JournalPolicy(AskingPolicy):
-    """Asks another policy, and keeps what is not fifo's answer.
+    """Asks another policy, and records answers that differ from fifo's.
 
     Args:
         inner: the policy that decides.
 
     Attributes:
-        count: how many decisions there were.
+        count: number of decisions.
     """
 
     def __init__(self, inner: Policy) -> None:
@@ -28,7 +28,7 @@ class JournalPolicy(AskingPolicy):
         vars(self).update(settings_of(inner))
         self.count = 0
         self._last = -1
-        self._pending: list[int] = []  # the distance from one such decision to the next, and the answer, in turn
+        self._pending: list[int] = []  # distance from one such decision to the next, and the answer, alternating
 
     def choose(self, decision: Decision) -> int:
         choice = self._inner.choose(decision)
@@ -39,18 +39,18 @@ class JournalPolicy(AskingPolicy):
         return choice
 
     def taken(self) -> list[int]:
-        """What there is since the last call: gaps and answers, in turn."""
+        """Return the new entries since the last call: distances and answers, alternating."""
         pending, self._pending = self._pending, []
         self._last = self.count - 1
         return pending
 
 
 class RetoldPolicy(AskingPolicy):
-    """Gives the recorded answers again; asks the schedule's own policy for those that the journal does not have.
+    """Repeats the recorded answers; asks the schedule's own policy for later ones.
 
     Args:
-        answers: those that were not fifo's, by number of the decision.
-        known: how many decisions they cover.
+        answers: answers that differ from fifo's, by number of the decision.
+        known: number of decisions that they cover.
         own: the schedule's own policy.
     """
 

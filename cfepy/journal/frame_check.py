@@ -1,6 +1,6 @@
-"""Whether the frames of a journal hold what a recorder writes: kinds of values, sizes, paths that stay in a folder.
+"""Validation of a journal's frames: kinds of values, sizes, and paths that stay inside a folder.
 
-A journal may come from somebody else. What passes here can be taken without a second look.
+A journal may come from another person. Frames that pass need no further checks.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from cfepy.reading.input_limits import JOURNAL_FILE_BYTES, JOURNAL_VALUES
 
 FORMAT = 1  # of a journal
 Check = Callable[[Any], bool]
-_SMALL = 1 << 16  # bytes of a frame that cannot become much
-_MOST = 1 << 62  # of a number; virtual times in ns fit
+_SMALL = 1 << 16  # size in bytes of a frame that cannot expand much
+_MOST = 1 << 62  # largest number; virtual times in ns fit
 
 
 def _whole(value: Any) -> bool:
@@ -82,7 +82,7 @@ def _gaps(value: Any) -> bool:
 
 
 def _instant(value: Any) -> bool:
-    """-1 is before the first piece of the run (`Outside.until_ns`)."""
+    """Return whether a value is a time; -1 is before the first part of the run (`Outside.until_ns`)."""
     return _whole(value) or (value == -1 and isinstance(value, int))
 
 
@@ -156,14 +156,14 @@ _LATER = {"outcome", "mode", "cpp_nodes", "races", "settings", "play_options", "
 
 
 def problem_of(kind: str, body: Any) -> str | None:
-    """What is wrong with a frame; None when nothing is. Kinds and fields that are not known are a later version's."""
+    """Return the error in a frame; None if it is valid. Unknown kinds and fields are from a later version."""
     wanted = FRAMES.get(kind)
     if wanted is None:
         return None
     if not isinstance(body, Mapping):
         return f"a frame {kind!r} is no mapping"
     if kind == "header" and _whole(body.get("format")) and body["format"] != FORMAT:
-        return None  # whose fields are others
+        return None  # it has other fields
     found = _problem(kind, body, wanted)
     if found is None and kind == "file" and body["packed"] is not None and not _size(body["size"]):
         return f"the file {body['path']} has {body['size']:,} bytes, a journal carries at most {JOURNAL_FILE_BYTES:,}"
@@ -190,18 +190,18 @@ def _problem(
 # -- before a frame is unpacked (github.com/msgpack/msgpack/blob/master/spec.md) ---------------------------------------
 
 _PLAIN = dict(zip(range(0xCA, 0xD9), (4, 8, 1, 2, 4, 8, 1, 2, 4, 8, 2, 3, 5, 9, 17), strict=True))
-"""Bytes that follow, by the first one: floating-point and whole numbers, short extensions."""
+"""Number of bytes that follow, by first byte: floating-point numbers, integers, short extensions."""
 _SIZED = {0xC4: 1, 0xC5: 2, 0xC6: 4, 0xC7: 1, 0xC8: 2, 0xC9: 4, 0xD9: 1, 0xDA: 2, 0xDB: 4}
-"""Bytes of the length that follows: data, extensions and texts."""
+"""Number of bytes of the length that follows: data, extensions and texts."""
 _COUNTED = {0xDC: (2, 1), 0xDD: (4, 1), 0xDE: (2, 2), 0xDF: (4, 2)}
-"""Bytes of the count that follows, and values for each: lists and mappings."""
+"""Number of bytes of the count that follows, and values per item: lists and mappings."""
 
 
 def check_values(data: bytes) -> None:
-    """Refuse packed data that would become far larger: an empty list is one byte there and sixty here.
+    """Refuse packed data that would expand too much: an empty list takes one byte packed and sixty in memory.
 
     Raises:
-        ValueError: it has too many values, or is cut off.
+        ValueError: if it has too many values, or is cut off.
     """
     if len(data) <= _SMALL:
         return
@@ -218,7 +218,7 @@ def check_values(data: bytes) -> None:
 
 
 def _value_at(data: bytes, at: int) -> tuple[int, int]:
-    """Of the value at a place: how many bytes it takes, and how many values are inside it."""
+    """Return the size of a packed value in bytes, and the number of values in it."""
     first = data[at]
     if 0x80 <= first < 0xA0:
         return 1, (first & 15) * (2 if first < 0x90 else 1)

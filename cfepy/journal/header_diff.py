@@ -1,4 +1,4 @@
-"""How two journals differ apart from their records, as lines of text: plan, board, schedule, versions, files."""
+"""Differences of two journals apart from their records, as lines of text: plan, board, schedule, versions, files."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Any
 from cfepy.journal.journal import Journal
 from cfepy.journal.mission_files import MissionFile
 
-_INNOCENT = ("words", "launch_args")  # how the user named the mission; its files say what it is
+_INNOCENT = ("words", "launch_args")  # how the user named the mission; its files identify it
 
 
 def differences(one: Journal, other: Journal) -> Iterator[str]:
-    """A line for each thing in which the runs differ from the start."""
+    """Yield a line for each difference in the starting conditions of the runs."""
     plans = one.plan.to_dict(), other.plan.to_dict()
     yield from _changes("", plans[0], plans[1], _INNOCENT)
     yield from _changes("", _machine(one), _machine(other))
@@ -45,7 +45,7 @@ def _changes(
 
 
 def _by_name(journal: Journal) -> dict[str, MissionFile]:
-    """Files of the mission's folder by their path in it, others by their whole path."""
+    """Return files of the mission's folder by relative path, others by absolute path."""
     folder = f"{journal.header.folder}/"
     return {path.removeprefix(folder): each for path, each in journal.files.items()}
 
@@ -60,7 +60,7 @@ def _files(one: Mapping[str, MissionFile], other: Mapping[str, MissionFile]) -> 
 
 
 def _place(one: MissionFile, other: MissionFile) -> str:
-    """The first line that differs, if both are text and the journals carry them."""
+    """Return the first line that differs, if both are text and contained in the journals."""
     if one.data is None or other.data is None:
         return ""
     try:

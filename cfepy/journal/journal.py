@@ -1,8 +1,8 @@
-"""`Journal`: everything that decided a run, and its results, as plain values; and the file that it is kept in.
+"""`Journal`: everything that determined a run, and its results, as plain values; and the file format.
 
-The file is a mark, then frames, each with its length and checksum, so that a broken file is recognised. A frame is
-written in one go and handed to the operating system at once: a process that is killed leaves all frames but at most the
-last one. A frame is `<II` (bytes that follow, their CRC-32) and a msgpack array: its kind, and a mapping.
+The file is a mark and frames, each with length and checksum, so that a damaged file is detected. A frame is written and
+passed to the operating system at once: if the process is killed, at most the last frame is lost. A frame is `<II`
+(number of bytes that follow, their CRC-32) and a msgpack array of its kind and a mapping.
 """
 
 from __future__ import annotations
@@ -45,18 +45,18 @@ _NOT_OF_THE_RUN = (
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """What was known when the run began.
+    """Facts known at the start of the run.
 
     Attributes:
-        plan: what was run, and on what.
-        paced: times real time, when it was joined to the network of its computer; None for one that was not.
-        policy: the settings of the policy, besides its answers (`cfepy.rtos.policy`); None for plain fifo.
-        mission: its name; `folder` is what shows as /cf, `startup` what it was read from, as paths of the computer.
-        cwd: the working directory.
+        plan: plan of the run.
+        paced: factor of real time, if it was connected to the network of its computer; None otherwise.
+        policy: settings of the policy, apart from its answers (`cfepy.rtos.policy`); None for plain fifo.
+        mission: its name; `folder` is shown as /cf, `startup` is the file it was read from, as paths of the computer.
+        cwd: working directory.
         environ: environment variables that the mission could see.
-        versions: of cfepy, cFE and Python.
-        host: of the computer: what a node can find out about it.
-        format: of the journal.
+        versions: versions of cfepy, cFE and Python.
+        host: facts about the computer that a node can see.
+        format: format of the journal.
     """
 
     plan: RunPlan
@@ -72,12 +72,12 @@ class Header:
     format: int = FORMAT
 
     def to_dict(self) -> dict[str, Any]:
-        """Itself as plain values."""
+        """Return it as plain values."""
         return {each.name: getattr(self, each.name) for each in fields(self)} | {"plan": self.plan.to_dict()}
 
     @classmethod
     def from_dict(cls, plain: Mapping[str, Any]) -> Header:
-        """The other way round; values that a later version may have added are left out."""
+        """Return a header from plain values; values added by later versions are ignored."""
         known = {each.name: plain[each.name] for each in fields(cls) if each.name in plain}
         plan = {each.name: plain["plan"][each.name] for each in fields(RunPlan) if each.name in plain["plan"]}
         return cls(**{**known, "plan": RunPlan.from_dict(plan)})
@@ -85,12 +85,12 @@ class Header:
 
 @dataclass(frozen=True, slots=True)
 class Pause:
-    """Where the run stood still and something came from outside.
+    """Where the run stopped and input came from outside.
 
     Attributes:
-        until_ns: the virtual time until which the run had been let go on.
-        visits: the how manyeth time in a row that was until this very time, from 1.
-        events: what came, in order.
+        until_ns: virtual time to which the run had advanced.
+        visits: number of consecutive stops at this time, from 1.
+        events: the input, in order.
     """
 
     until_ns: int
@@ -99,7 +99,7 @@ class Pause:
 
 
 class Checkpoint(NamedTuple):
-    """How far the run had come: virtual ns, number of records, the digest of them."""
+    """Progress of a run: virtual ns, number of records, and their digest."""
 
     now_ns: int
     records: int
@@ -108,18 +108,18 @@ class Checkpoint(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """The end of a run.
+    """End of a run.
 
     Attributes:
         reason: OVER, INTERRUPTED, BROKEN_OFF or STALLED (`cfepy.pilot.run_loop`).
-        until_ns: the virtual time until which it was let go on at last.
-        visits: the how manyeth time in a row that was until this very time, from 1.
+        until_ns: virtual time to which it last advanced.
+        visits: number of consecutive stops at this time, from 1.
         now_ns: virtual time at the end, after the nodes have shut down.
-        records: of the trace.
-        trace: the digest of the trace.
-        results: the digest of the numbers of its report.
-        outcome: how many steps of its script have passed and failed; empty without one.
-        beside: what went wrong in the missions that flew beside it, which a replay does without.
+        records: number of records of the trace.
+        trace: digest of the trace.
+        results: digest of the numbers of its report.
+        outcome: how many steps of its script passed and failed; empty without a script.
+        beside: problems of the missions that flew together with it, which are not replayed.
     """
 
     reason: str
@@ -135,20 +135,20 @@ class End:
 
 @dataclass(slots=True)
 class Journal:
-    """A run that was written down.
+    """A recorded run.
 
     Attributes:
         path: its file.
-        header: what was known when it began.
-        files: the files that make the mission, by path on the computer of the run.
-        folders: what nodes saw in folders that they looked into: by path, names and whether they are folders.
-        looks: what nodes and applications were told of paths that they asked for, by path.
-        pauses: what came from outside.
-        answers: which calls of the mission's to the outside were answered, in order.
-        decisions: the answers of the policy that were not fifo's, by number of the decision.
-        decided: how many decisions that covers.
-        checkpoints: how far it had come, in order.
-        end: None when the process of the run came to a sudden end.
+        header: facts known at the start.
+        files: files of the mission, by path on the computer of the run.
+        folders: contents of listed folders: by path, names and whether they are folders.
+        looks: facts about paths that nodes and applications checked, by path.
+        pauses: input from outside.
+        answers: which calls of the mission to the outside were answered, in order.
+        decisions: answers of the policy that differ from fifo's, by number of the decision.
+        decided: number of decisions that these cover.
+        checkpoints: progress, in order.
+        end: None if the process of the run ended suddenly.
     """
 
     path: str
@@ -165,26 +165,26 @@ class Journal:
 
     @property
     def plan(self) -> RunPlan:
-        """What was run, and on what."""
+        """The plan of the run."""
         return self.header.plan
 
     @property
     def mission_hash(self) -> str:
-        """SHA-256 over names and contents of all files that make the mission, 64 hexadecimal digits."""
+        """SHA-256 over names and contents of all files of the mission, 64 hexadecimal digits."""
         return hash_of(self.files.values())
 
     @property
     def known_until_ns(self) -> int:
-        """The virtual time until which the journal knows the run."""
+        """The virtual time until which the journal covers the run."""
         if self.end is not None:
             if self.end.reason == STALLED:
-                return self.end.now_ns  # where the task spins again
-            is_broken = self.end.reason in SUDDEN  # in the middle of what happened at its last instant
+                return self.end.now_ns  # the task would be stuck there again
+            is_broken = self.end.reason in SUDDEN  # in the middle of its last instant
             return self.end.now_ns - 1 if is_broken else self.end.until_ns
         return max((0, *(each.until_ns for each in self.pauses[-1:]), *(each.now_ns for each in self.checkpoints[-1:])))
 
     def _take(self, kind: str, body: dict[str, Any]) -> None:
-        """What a frame says; frames of an unknown kind are a later version's."""
+        """Add the contents of a frame; frames of an unknown kind are from a later version."""
         if kind == FILE:
             self.files[body["path"]] = MissionFile(**body)
         elif kind == FOLDER:
@@ -219,8 +219,8 @@ def read_journal(path: str | Path) -> Journal:
     """Read a journal.
 
     Raises:
-        JournalError: it is none, it is damaged, or its format is another one.
-        UsageError: there is no such file.
+        JournalError: if it is not a journal, is damaged, or has another format.
+        UsageError: if there is no such file.
     """
     try:
         return _read(str(path))
@@ -233,10 +233,10 @@ def read_journal(path: str | Path) -> Journal:
 
 
 def check_paths(path: str | Path) -> None:
-    """Refuse a journal on a computer whose paths have drives, since journals name files by the paths of POSIX.
+    """Refuse journals on a computer whose paths have drives, since journals contain POSIX paths.
 
     Raises:
-        UsageError: this is such a computer.
+        UsageError: if this is such a computer.
     """
     if os.name == "nt":
         text = "journals name files as Linux and macOS do; record and replay there, or in WSL"
@@ -260,27 +260,27 @@ def _read(path: str) -> Journal:
 
 
 def is_journal(path: str | Path) -> bool:
-    """Whether a file begins as a journal does.
+    """Return whether a file begins as a journal does.
 
     Raises:
-        OSError: it cannot be read.
+        OSError: if it cannot be read.
     """
     with open_input(path, handed=True) as file:
         return file.read(len(MARK)) == MARK
 
 
 class JournalError(UsageError):
-    """A file that is no journal, is broken, or is of a kind that cannot be read here."""
+    """Error for a file that is not a journal, is damaged, or cannot be read here."""
 
 
 class FrameWriter:
-    """Writes a journal's frames.
+    """Writes the frames of a journal.
 
     Args:
-        path: the file; what was in it is lost.
+        path: the file; it is overwritten.
 
     Raises:
-        OSError: it cannot be written.
+        OSError: if it cannot be written.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -294,7 +294,7 @@ class FrameWriter:
         """Write a frame.
 
         Raises:
-            OSError: the disk is full.
+            OSError: if the disk is full.
         """
         data = self._pack([kind, body])
         frame = memoryview(_head.pack(len(data), zlib.crc32(data)) + data)
@@ -302,16 +302,16 @@ class FrameWriter:
             frame = frame[self._file.write(frame) :]
 
     def close(self) -> None:
-        """No more frames."""
+        """Close the file."""
         self._file.close()
 
 
 def read_frames(path: str | Path) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The frames of a journal, kind and body; a last one that was cut off is left out.
+    """Yield the frames of a journal, kind and body; an incomplete last one is left out.
 
     Raises:
-        JournalError: it is no journal, or it is damaged.
-        OSError: it cannot be read.
+        JournalError: if it is not a journal, or is damaged.
+        OSError: if it cannot be read.
     """
     import msgpack
 
@@ -338,19 +338,19 @@ def read_frames(path: str | Path) -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def beside_problems(results: Results) -> list[str]:
-    """What went wrong in the missions that flew beside it, as its problems tell it."""
+    """Return the problems of the missions that flew together with it, as in its report."""
     return [f"{row['mission']}: {line}" for row in results.beside for line in row["problems"]]
 
 
 def digest_of(results: Results, root: str = "") -> str:
-    """32 hexadecimal digits that stand for the numbers of a report, wall-clock time aside.
+    """Return 32 hexadecimal digits, a digest of the numbers of a report without wall-clock time.
 
     Args:
         results: the numbers.
-        root: folder that paths begin with, and that does not count.
+        root: folder at the start of paths, which is ignored.
     """
     plain = results.to_dict()
-    elsewhere = (*beside_problems(results), *results.missed_steps)  # steps are told with the path of their script
+    elsewhere = (*beside_problems(results), *results.missed_steps)  # steps are reported with the path of their script
     plain["problems"] = [line for line in results.problems if line not in elsewhere]
     for name in _NOT_OF_THE_RUN:
         del plain[name]

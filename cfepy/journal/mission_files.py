@@ -1,9 +1,9 @@
-"""The files that make a mission, as they were when it ran: found, hashed, and kept for a journal.
+"""The files of a mission, as they were during the run: found, hashed, and stored for a journal.
 
-What a mission with a startup script can use is in its folder, which is taken as a whole. What else is read on the way,
-by nodes, applications, launch files or their libraries, is seen when it is opened, and so are the folders that nodes
-look into: an audit hook of Python reports it. A process has one hook for all runs, since hooks cannot be taken away.
-What belongs to Python, to installed packages or to cfepy itself is left out: the versions stand for it.
+A mission with a startup script uses its folder, which is taken as a whole. Other files that nodes, applications, launch
+files or their libraries read, and folders that nodes list, are reported by a Python audit hook. A process has one hook
+for all runs, since hooks cannot be removed. Files of Python, installed packages and cfepy itself are left out, since
+the versions identify them.
 """
 
 from __future__ import annotations
@@ -29,22 +29,21 @@ from cfepy.nodes.node_sources import AGAIN
 from cfepy.reading.input_files import open_input, read_limited
 from cfepy.status import UsageError
 
-CARRIED = 32 << 20  # bytes of files that a journal carries, before they are compressed
-MOST_FILES = 5_000  # of a folder
+CARRIED = 32 << 20  # maximum number of bytes of files in a journal, before compression
+MOST_FILES = 5_000  # maximum number of files of a folder
 _SKIPPED = ("__pycache__",)
 _BYTE_CODE = ".pyc"
-_VOLATILE = ("/proc/", "/sys/", "/dev/")  # no files, but questions to the operating system
+_VOLATILE = ("/proc/", "/sys/", "/dev/")  # not files, but queries to the operating system
 
 
 @dataclass(frozen=True, slots=True)
 class MissionFile:
-    """A file of the computer that a run had.
+    """A file used by a run.
 
     Attributes:
-        path: absolute.
-        size: in bytes.
-        sha256: of its content, hexadecimal; empty when it could not be had.
-        packed: its content, compressed; None when the journal does not carry it.
+        path: absolute path.
+        size: size in bytes.
+        packed: compressed contents; None if the journal does not contain them.
         mode: its permissions.
     """
 
@@ -56,10 +55,10 @@ class MissionFile:
 
     @property
     def data(self) -> bytes | None:
-        """Its content, if the journal carries it.
+        """Return its contents, if the journal contains them.
 
         Raises:
-            UsageError: what is packed is not the file.
+            UsageError: if the packed data is not the file.
         """
         if self.packed is None:
             return None
@@ -73,7 +72,7 @@ class MissionFile:
         return content
 
     def same_on_disk(self) -> bool:
-        """Whether the file at its path has this content now."""
+        """Return whether the file at its path has this content now."""
         try:
             if not self.sha256:
                 return not (os.path.isfile(self.path) and os.access(self.path, os.R_OK))
@@ -88,17 +87,17 @@ class MissionFile:
 
 
 class Carrier:
-    """Reads files, and says which contents are still to be carried.
+    """Reads files, and decides which contents are still stored.
 
     Args:
-        limit: bytes of contents that are carried altogether; 0 for none.
+        limit: maximum number of bytes of all stored contents; 0 for none.
     """
 
     def __init__(self, limit: int) -> None:
         self._left = limit
 
     def take(self, path: str) -> MissionFile:
-        """A file as it is now."""
+        """Return a file as it is now."""
         try:
             content = read_limited(path, sys.maxsize)
         except (OSError, UsageError):
@@ -112,9 +111,11 @@ class Carrier:
 
 
 def files_of(spec: MissionSpec) -> list[str]:
-    """The files that a mission can use by itself, sorted: its folder's, if it has a startup script."""
+    """Return the files that a mission can use by itself, sorted: the files of its folder, if it has a startup
+    script.
+    """
     if spec.startup is not None and spec.mission_file is None:
-        return []  # made from a launch file or a node script, which may lie anywhere; what it uses is seen
+        return []  # made from a launch file or a node script, which may be anywhere; files that it uses are observed
     found = [str(path) for path in _below(spec.folder)]
     return sorted({*found, str(spec.script)})
 
@@ -133,7 +134,7 @@ def _below(folder: Path) -> Iterator[Path]:
 
 
 def hash_of(files: Iterable[MissionFile]) -> str:
-    """SHA-256 over names and contents."""
+    """Return the SHA-256 over names and contents."""
     whole = sha256()
     for each in sorted(files, key=lambda file: file.path):
         whole.update(f"{each.path}\0{each.size}\0{each.sha256}\n".encode())
@@ -141,14 +142,14 @@ def hash_of(files: Iterable[MissionFile]) -> str:
 
 
 class ReadFiles:
-    """Tells of each file that is opened for reading, once; use as a context manager.
+    """Reports each file that is opened for reading, once; use as a context manager.
 
     Args:
-        seen: gets the absolute path. It may open files, which are not told.
-        listed: gets the absolute path of a folder that a node looks into for the first time, and the names in it but
-            for those of files that the run has written.
-        asked: gets the absolute path, without links but for its last part, of what the run looks for, whether it is
-            there or not.
+        seen: receives the absolute path. Files that it opens are not reported.
+        listed: receives the absolute path of a folder at its first listing by a node, and the names in it without files
+            that the run has written.
+        asked: receives the absolute path of each file or folder that the run checks, whether it exists or not, with
+            links resolved except in the last part.
     """
 
     def __init__(
@@ -163,7 +164,7 @@ class ReadFiles:
         self._known: set[str] = set()
         self._written: set[str] = set()
         self._own: list[str] = []
-        self._needed: set[str] = set()  # folders of which only that is known
+        self._needed: set[str] = set()  # folders that are only known to be needed
         self._busy = False
 
     def __enter__(self) -> ReadFiles:
@@ -174,16 +175,16 @@ class ReadFiles:
         _listeners().remove(self)
 
     def forget(self, path: str) -> None:
-        """A file that is none of the run's."""
+        """Report a file that does not belong to the run."""
         self._known.add(os.path.abspath(path))
         self._written.add(os.path.abspath(path))
 
     def forget_below(self, folder: str) -> None:
-        """What the run itself has written is there, and no file of the computer."""
+        """Files that the run has written exist, but are not files of the computer."""
         self._own.append(os.path.join(folder, ""))
 
     def is_product(self, path: str) -> bool:
-        """Whether the run, or an attachment, has written a file."""
+        """Return whether the run, or an attachment, has written a file."""
         return path in self._written
 
     def opened(self, path: Any, flags: int) -> None:
@@ -196,7 +197,7 @@ class ReadFiles:
         self._known.add(name)
         if flags & (os.O_WRONLY | os.O_RDWR | os.O_CREAT):
             self._written.add(name)
-            return  # what a run writes is its own product, also when it reads it again
+            return  # a file written by the run is its own product, even if the run reads it again
         source = _source_of(name)
         if (source in self._known and source != name) or source.startswith((*_VOLATILE, *_left_out())):
             return
@@ -204,7 +205,7 @@ class ReadFiles:
         self._told(source)
 
     def looked_into(self, path: Any, names: Sequence[Any]) -> None:
-        """A node looks into a folder."""
+        """A node lists a folder."""
         if self._busy or isinstance(path, int):
             return
         folder = os.path.abspath(os.fsdecode(path))
@@ -217,7 +218,7 @@ class ReadFiles:
             self._listed(folder, [name for name in found if os.path.join(folder, name) not in self._written])
 
     def looked_for(self, path: str) -> None:
-        """The run looks whether something is at a path."""
+        """The run checks whether a path exists."""
         if self._busy or path in self._written or path.startswith((*_VOLATILE, *_left_out(), *self._own)):
             return
         self._asked(path)
@@ -233,7 +234,7 @@ class ReadFiles:
 
 @cache
 def _listeners() -> list[ReadFiles]:
-    """The listeners of the one hook of this process."""
+    """Return the listeners of the one hook of this process."""
     found: list[ReadFiles] = []
 
     def hook(event: str, values: tuple[Any, ...]) -> None:
@@ -251,13 +252,13 @@ def _listeners() -> list[ReadFiles]:
             elif event == LISTED:
                 each.looked_into(*values)
 
-    _left_out()  # now: it asks sysconfig, which may be in the middle of its own files when the hook is called
+    _left_out()  # at once: it asks sysconfig, which may be in use when the hook is called
     sys.addaudithook(hook)
     return found
 
 
 def _source_of(name: str) -> str:
-    """What a file of byte code was made of."""
+    """Return the source of a byte code file."""
     if not name.endswith(_BYTE_CODE):
         return name
     try:
@@ -268,7 +269,7 @@ def _source_of(name: str) -> str:
 
 @cache
 def _left_out() -> tuple[str, ...]:
-    """Where Python, installed packages and cfepy itself lie."""
+    """Return the folders of Python, installed packages and cfepy itself."""
     places = {sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")}
     places |= {*site.getsitepackages(), site.getusersitepackages(), *own_places()}
     names = {name for place in places if place for name in (place, os.path.realpath(place))}

@@ -1,7 +1,7 @@
-"""`JournalRecorder`: writes down a run while it goes on.
+"""`JournalRecorder`: writes the journal during a run.
 
-A message costs nothing: what is written are files, what comes from outside, and how far the run has come, each time
-that some thousands of records were hashed anyway.
+Messages are not written, so they have no cost. Written are files, input from outside, and the progress, whenever some
+thousands of records have been hashed.
 """
 
 from __future__ import annotations
@@ -40,24 +40,24 @@ from cfepy.rtos import Policy
 from cfepy.status import UsageError
 
 FILE_FIELDS = ("path", "size", "sha256", "packed", "mode")
-CHECK_NS = 100_000_000  # virtual time between two marks of how far a run has come, when it stops more often
+CHECK_NS = 100_000_000  # virtual time between two progress marks, if a run stops more often
 
 
 class JournalRecorder(Attachment):
-    """Writes a journal; use as a context manager around reading the mission, and the run.
+    """Writes a journal; use as a context manager around reading the mission and the run.
 
     Args:
         path: the file.
-        plan: what is run.
-        carried: bytes of the mission's files that the journal carries; 0 for none.
-        paced: times real time, for a run that is joined to the computer's network.
-        policy: decides which task goes first, in place of the plan's schedule.
+        plan: plan of the run.
+        carried: maximum number of bytes of the mission's files in the journal; 0 for none.
+        paced: factor of real time, for a run that is connected to the computer's network.
+        policy: decides which task goes first, instead of the plan's schedule.
 
     Attributes:
-        policy: for the mission: it decides as the given one does, and its decisions are written down; None for fifo.
+        policy: policy for the mission, which records the decisions of the given one; None for fifo.
 
     Raises:
-        UsageError: the file cannot be written.
+        UsageError: if the file cannot be written.
     """
 
     def __init__(
@@ -108,7 +108,7 @@ class JournalRecorder(Attachment):
     # -- the run -----------------------------------------------------------------------------------------------------
 
     def begin(self, mission: Mission) -> None:
-        """Write down what is known."""
+        """Write the header."""
         self._mission = mission
         self._write(HEADER, self._header(mission).to_dict())
         self._begun = True
@@ -118,13 +118,13 @@ class JournalRecorder(Attachment):
         mission.trace.also(self._hashed)
 
     def mark(self) -> None:
-        """The run stands still: write down how far it has come, unless that was done a short time ago."""
+        """Write the progress when the run stops, unless that was done a short time ago."""
         mission = self._mission
         if mission is not None and mission.kernel.now - self._checked_ns >= CHECK_NS:
             mission.trace.flush()
 
     def finish(self) -> None:
-        """The digest of the run was taken."""
+        """The digest of the run was computed."""
         mission = self._mission
         assert mission is not None
         self._check(mission.kernel.now)
@@ -132,7 +132,7 @@ class JournalRecorder(Attachment):
         self._finished = True
 
     def end(self, flown: Flown) -> None:
-        """Write down what the run came to, after all."""
+        """Write the end of the run."""
         mission = self._mission
         if mission is None or not self._finished:
             return
@@ -164,10 +164,10 @@ class JournalRecorder(Attachment):
             host=host_facts(),
         )
 
-    # -- what is written ---------------------------------------------------------------------------------------------
+    # -- writing -------------------------------------------------------------------------------------------------------
 
     def _file(self, path: str) -> None:
-        """A file of the mission's."""
+        """A file of the mission was read."""
         if not self._begun:
             self._files.append(path)
         elif path not in self._known and not self._is_left_out(path):
@@ -176,25 +176,25 @@ class JournalRecorder(Attachment):
             self._write(FILE, {name: getattr(file, name) for name in FILE_FIELDS})
 
     def _is_left_out(self, path: str) -> bool:
-        """Whether a file in the folder of a mission is a journal, or what this run has written."""
+        """Return whether a file in the folder of a mission is a journal, or written by this run."""
         try:
             return self._reading.is_product(path) or is_journal(path)
         except OSError:
             return False
 
     def _folder(self, path: str, names: list[str]) -> None:
-        """A node looks into a folder."""
+        """A node lists a folder."""
         kinds = {name: os.path.isdir(os.path.join(path, name)) for name in names[:MOST_FILES]}
         self._write(FOLDER, {"path": path, "names": kinds})
 
     def _look(self, path: str) -> None:
-        """A node or an application looks for something."""
+        """A node or an application checks a path."""
         if self._begun and path not in self._looks and len(self._looks) < MOST_LOOKS:
             self._looks.add(path)
             self._write(LOOK, asdict(look_at(path)))
 
     def _from_outside(self, event: outside.Arrival) -> None:
-        """Something comes in; it is written at once, since the run may crash of it."""
+        """Record input; it is written at once, because the run may crash because of it."""
         mission = self._mission
         assert mission is not None
         if event.kind == outside.ANSWER:
@@ -210,7 +210,7 @@ class JournalRecorder(Attachment):
         assert mission is not None
         if self._finished:
             return
-        self._count += len(records) - records.count(b"")  # the host's empty marks are no records
+        self._count += len(records) - records.count(b"")  # the host's empty marks are not records
         self._digest = mission.trace.hashed
         self._check(mission.kernel.now)
 
@@ -225,7 +225,7 @@ class JournalRecorder(Attachment):
         self._write(CHECK, body)
 
     def _write(self, kind: str, body: dict[str, Any]) -> None:
-        """Write a frame; that the disk is full is told at the end, for it must not change the run."""
+        """Write a frame; a full disk is reported at the end, because it must not change the run."""
         if self._error is None:
             try:
                 self._writer.write(kind, body)
@@ -237,14 +237,14 @@ def record(plan: RunPlan, path: str | Path, attachments: Sequence[Attachment] = 
     """Fly a plan to its end, and write its journal.
 
     Args:
-        plan: what to run.
-        path: of the journal.
-        attachments: what watches the run.
-        options: of `cfepy.pilot.pilot.fly`, such as console and trace.
+        plan: plan of the run.
+        path: path of the journal.
+        attachments: observe the run.
+        options: as for `cfepy.pilot.pilot.fly`, such as console and trace.
 
     Raises:
-        UsageError: something in the plan is wrong, or the journal cannot be written.
-        BootError: the mission cannot boot.
+        UsageError: if there is a mistake in the plan, or the journal cannot be written.
+        BootError: if the mission cannot boot.
     """
     with JournalRecorder(path, plan) as recorder:
         flown = fly(plan, attachments=[*attachments, recorder], policy=recorder.policy, **options)

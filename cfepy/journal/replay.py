@@ -1,7 +1,7 @@
-"""Doing a journal's run again: what came from outside comes at the same instants, and the records are compared.
+"""Repeating a journal's run: input from outside comes at the same instants, and the records are compared.
 
-`Replay` has what makes a run a replay, for a caller that flies the mission piece by piece; `replay` flies it in one go.
-A `Checker` compares the records with the checkpoints of the journal while the replay goes on.
+`Replay` holds everything for a replay, for a caller that flies the mission in parts; `replay` flies it at once. A
+`Checker` compares the records with the checkpoints of the journal during the replay.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ from cfepy.trace import ONLY_COMPARED, TimedRecords, Trace
 from cfepy.writing.console import Console
 
 Describe = Callable[[TimedRecords], list[str]]
-"""Makes lines of text of records."""
+"""Describes records as lines of text."""
 
 
 class ReplayCourse(Course):
-    """The course of a journal's run: it stops where something came from outside, and lets it come again.
+    """The course of a journal's run: it stops where input came from outside, and repeats the input.
 
     Args:
         mission: the mission.
-        seconds: as of `Course`.
-        script: as of `Course`.
+        seconds: as for `Course`.
+        script: as for `Course`.
         journal: the run.
-        until_ns: virtual time at which to end, if that is earlier; None for the end of the run.
+        until_ns: virtual time at which to end earlier; None for the end of the run.
     """
 
     takes_company = False
@@ -55,38 +55,39 @@ class ReplayCourse(Course):
         has_end = end is not None and end.reason not in SUDDEN
         self._visits = end.visits if end is not None and has_end else 1
         if until_ns is not None and (until_ns < known or not has_end):
-            known, self._visits = until_ns, 1  # the journal has nothing after a sudden end, but the run may go on
+            known, self._visits = until_ns, 1  # the journal has nothing after a sudden end, but the run may continue
         if not has_end and (seconds is not None or journal.header.paced is None):
-            known = min(known, self.until_ns)  # the sudden end came later, while the nodes shut down
+            known = min(known, self.until_ns)  # the sudden end came later, during the shutdown of the nodes
         self.until_ns = known
         self._pauses = [pause for pause in reversed(journal.pauses) if pause.until_ns <= known]
 
     def end_here(self) -> None:
-        """The run does not go on."""
+        """The run does not continue."""
         self.until_ns, self._visits = -1, 0
         self._pauses.clear()
 
     @property
     def goes_on(self) -> bool:
-        """The recorded run may have stood still at its last instant several times."""
+        """The recorded run may have stopped at its last instant several times."""
         if self.is_over:
             return False
         outside = self.mission.outside
         return outside.until_ns < self.until_ns or outside.visits < self._visits
 
     def next_stop(self) -> int:
-        """What came here from outside comes first."""
+        """Repeat the input at this stop first."""
         outside, pauses = self.mission.outside, self._pauses
         while pauses and (pauses[-1].until_ns, pauses[-1].visits) <= (outside.until_ns, outside.visits):
             for event in pauses.pop().events:
-                with suppress(Exception):  # what failed then fails again, and a run that has parted may lack its target
+                # it may have failed in the recorded run too, and a run that differs may lack its target
+                with suppress(Exception):
                     outside.repeat(event)
         stop_ns = super().next_stop()
         return min(stop_ns, pauses[-1].until_ns) if pauses else stop_ns
 
 
 class _Answers(Attachment):
-    """Lets the mission's own calls to the outside be answered as they were."""
+    """Answers the mission's own calls to the outside as recorded."""
 
     def __init__(self, answers: Sequence[Arrival]) -> None:
         self._answers = list(reversed(answers))
@@ -101,23 +102,22 @@ class _Answers(Attachment):
 
 
 class Replay:
-    """What makes a run the replay of a journal.
+    """The plan, policy and attachments that make a run the replay of a journal.
 
     Args:
         journal: the run.
-        stage: where its files are; it must last as long as the replay.
-        tasks: what tasks run on; None as in the journal.
+        stage: files of the replay; it must last as long as the replay.
+        tasks: implementation of tasks; None as in the journal.
         until_ns: virtual time at which to end; None for the end of the run.
-        describe: makes text of what differs; None when nobody reads it.
+        describe: describes differences as text; None for no descriptions.
 
     Attributes:
-        journal, stage: as given.
-        plan: what to run.
+        plan: plan of the run.
         policy: decides which task goes first; None for fifo.
         checker: compares the records.
-        attachments: what a mission needs to be a replay.
+        attachments: attachments that a mission needs to be a replay.
         verdict: whether it was the same run; set by `compare`.
-        problems: what went wrong in it, as `Results.problems`; steps of a script count at the end of the run only.
+        problems: its problems, as `Results.problems`; steps of a script count only at the end of the run.
     """
 
     verdict: ReplayVerdict
@@ -146,7 +146,7 @@ class Replay:
         self._course: ReplayCourse
 
     def anew(self) -> Replay:
-        """Another replay of the same, as this one was made."""
+        """Return another replay with the same arguments."""
         tasks, until_ns, describe = self._given
         return Replay(self.journal, self.stage, tasks=tasks, until_ns=until_ns, describe=describe)
 
@@ -171,14 +171,14 @@ class Replay:
         """Fly to the end, and compare.
 
         Args:
-            attachments: what watches the run.
-            console: takes the lines; None drops them.
-            trace: takes the records; their times are known where its list is `TimedRecords`.
-            host: the host's side; None lets it go on by itself.
+            attachments: observe the run.
+            console: receives the lines; None drops them.
+            trace: receives the records; with `TimedRecords` as list their times are known.
+            host: the host's side; None lets the run continue without it.
 
         Raises:
-            UsageError: something in the mission is wrong.
-            BootError: it cannot boot.
+            UsageError: if there is a mistake in the mission.
+            BootError: if it cannot boot.
         """
         flown = fly(
             self.plan,
@@ -196,16 +196,16 @@ class Replay:
         return flown
 
     def _beside(self) -> list[str]:
-        """What went wrong in the missions that flew beside the recorded run."""
+        """The problems of the missions that flew together with the recorded run."""
         return self.journal.end.beside if self.is_whole and self.journal.end is not None else []
 
     def make_course(self, mission: Mission, seconds: float | None, script: ScriptRun | None) -> ReplayCourse:
-        """The course to fly."""
+        """Return the course to fly."""
         self._course = ReplayCourse(mission, seconds, script, self.journal, self.until_ns)
         return self._course
 
     def end_here(self) -> None:
-        """End the run as soon as the task that runs waits."""
+        """End the run as soon as the running task waits."""
         kernel = self._course.mission.kernel
         self.until_ns, self._is_cut_off = kernel.now, True
         self.checker.end_early()
@@ -213,10 +213,10 @@ class Replay:
         kernel.stop()
 
     def compare(self, results: Results) -> ReplayVerdict:
-        """Whether it was the same run, now that it is over.
+        """Return whether it was the same run, after its end.
 
         Args:
-            results: those of the replay.
+            results: results of the replay.
         """
         end, difference = self.journal.end, self.checker.difference
         is_other = False
@@ -227,7 +227,7 @@ class Replay:
 
     @property
     def is_whole(self) -> bool:
-        """Whether it goes to the end of the run, and that is known."""
+        """Return whether it reaches the end of the run, and the end is known."""
         end = self.journal.end
         if end is None or end.reason in SUDDEN or self._is_cut_off:
             return False
@@ -235,7 +235,7 @@ class Replay:
 
     @property
     def why_over(self) -> str:
-        """Why the run does not go on, for the user."""
+        """Return why the run does not continue, for the user."""
         if self.is_whole:
             return "there the recorded run ended"
         return "there the journal ends, --until SECONDS goes on" if self.until_ns is None else "the replay ended there"
@@ -246,11 +246,11 @@ class ReplayVerdict:
     """Whether a replay was the run of its journal.
 
     Attributes:
-        difference: where it parts; None when it does not.
-        agreed: how far the records are known to agree.
-        whole: the run was compared to its end.
-        other_results: the trace is the same, and yet the report's numbers are not.
-        cut_off: the journal has no end, so what it does not have cannot be compared.
+        difference: where it differs; None if it does not.
+        agreed: up to where the records are known to agree.
+        whole: whether the run was compared to its end.
+        other_results: whether the trace is the same but the report's numbers differ.
+        cut_off: whether the journal has no end, so that the rest cannot be compared.
     """
 
     difference: Difference | None
@@ -261,23 +261,25 @@ class ReplayVerdict:
 
     @property
     def compared(self) -> bool:
-        """Whether anything of the run was compared at all."""
+        """Whether anything was compared."""
         return self.whole or self.agreed.records > 0
 
     @property
     def same(self) -> bool:
-        """Whether nothing differs of what was compared."""
+        """Whether nothing that was compared differs."""
         return self.difference is None and not self.other_results
 
     @property
     def proven(self) -> bool:
-        """Whether it is known to be the run: nothing differs, something was compared, and the journal has an end."""
+        """Whether it is known to be the same run: nothing differs, something was compared, and the journal has
+        an end.
+        """
         return self.same and self.compared and not self.cut_off
 
 
 @dataclass(frozen=True, slots=True)
 class Replayed:
-    """A replay that is over: the run, and how it compares."""
+    """A finished replay: the run, and the comparison."""
 
     flown: Flown
     verdict: ReplayVerdict
@@ -293,20 +295,20 @@ def replay(
     console: Console | None = None,
     trace: Trace | None = None,
 ) -> Replayed:
-    """Fly a journal's run again to its end.
+    """Repeat a journal's run to its end.
 
     Args:
         journal: the run.
-        attachments: what else watches the run, besides the comparison.
-        tasks: what tasks run on; None as in the journal.
+        attachments: observe the run, in addition to the comparison.
+        tasks: implementation of tasks; None as in the journal.
         until_ns: virtual time at which to end; None for the end of the run.
-        from_disk: take the mission's files as they are on this computer, not those of the journal.
-        console: takes the lines; None drops them.
-        trace: takes the records.
+        from_disk: use the mission's files on this computer instead of those in the journal.
+        console: receives the lines; None drops them.
+        trace: receives the records.
 
     Raises:
-        UsageError: something in it is wrong.
-        BootError: the mission cannot boot.
+        UsageError: if there is a mistake in it.
+        BootError: if the mission cannot boot.
     """
     with staged(journal, from_disk) as stage:
         again = Replay(journal, stage, tasks=tasks, until_ns=until_ns)
@@ -315,12 +317,12 @@ def replay(
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """Where a replay parts from its journal.
+    """Where a replay starts to differ from its journal.
 
     Attributes:
-        after: until there the records agree.
-        before: there they do not agree any more; its numbers are those of the journal.
-        lines: what the replay did between the two, as text.
+        after: the records agree up to there.
+        before: they differ there; its numbers are those of the journal.
+        lines: the replay's records between the two, as text.
     """
 
     after: Checkpoint
@@ -329,16 +331,16 @@ class Difference:
 
 
 class Checker(Attachment):
-    """Compares while the replay goes on.
+    """Compares during the replay.
 
     Args:
-        checkpoints: of the journal.
-        end: of the journal; None when the replay does not go that far.
-        describe: makes text of what differs, of a trace whose records know their times; None: nobody reads it.
+        checkpoints: checkpoints of the journal.
+        end: end of the journal; None if the replay does not reach it.
+        describe: describes differences as text, for a trace whose records know their times; None for no descriptions.
 
     Attributes:
-        agreed: how far the records are known to agree.
-        difference: where they part; None as long as they do not.
+        agreed: up to where the records are known to agree.
+        difference: where they differ; None if they do not.
     """
 
     def __init__(self, checkpoints: Sequence[Checkpoint], end: End | None, describe: Describe | None) -> None:
@@ -358,24 +360,24 @@ class Checker(Attachment):
         self._trace.also(self._take)
 
     def end_early(self) -> None:
-        """The replay does not go to the end of the journal after all."""
+        """The replay does not reach the end of the journal after all."""
         self._end = None
 
     def conclude(self) -> None:
-        """How the nodes shut down is the run's own only at the run's own end."""
+        """The shutdown of the nodes is the same only at the run's own end."""
         if self._end is None:
             self._trace.flush()
             self._finished = True
 
     def finish(self) -> None:
-        """Two runs may agree at all checkpoints, and yet not end alike."""
+        """Compare the ends: two runs may agree at all checkpoints but end differently."""
         self._finished = True
         end = self._end
         if end is not None and self.difference is None and self._hash.hexdigest() != end.trace:
             self._part(Checkpoint(end.now_ns, end.records, end.trace))
 
     def _take(self, records: list[bytes]) -> None:
-        is_over = not self._coming and self._end is None  # the replay goes on where the journal has ended
+        is_over = not self._coming and self._end is None  # the replay continues after the end of the journal
         if self._finished or is_over or self.difference is not None:
             return
         times: Iterable[int] = records.times if isinstance(records, TimedRecords) else repeat(0)

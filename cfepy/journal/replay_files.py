@@ -1,8 +1,8 @@
-"""Where a replay finds the files of its mission, and what has changed since the run was recorded.
+"""Files of a replayed mission, and their changes since the run was recorded.
 
-Files come from the journal, if it carries them: they are unpacked into a folder that stands for the root of the
-computer, so the mission sees them at the paths that they had, and what it writes there is harmless. The mission must
-not see that folder, so its parameters, arguments and environment have the paths of the recorded computer.
+Files in the journal are unpacked into a folder that replaces the root of the computer: the mission sees them at their
+old paths, and can write there without harm. The mission must not see that folder, so its parameters, arguments and
+environment contain the paths of the recorded computer.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ MOST_NAMED = 8
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """What a replay stands on.
+    """Files and plan of a replay.
 
     Attributes:
-        plan: what to run, with paths of this computer.
-        root: folder that stands for the root of the recorded computer; empty for this computer's own.
-        absent: paths at which there was nothing.
-        notes: what the user should know before.
-        reasons: why the run may be another one.
+        plan: plan of the run, with paths of this computer.
+        root: folder that replaces the root of the recorded computer; empty for this computer's own.
+        absent: paths that did not exist.
+        notes: hints for the user, before the run.
+        reasons: why the run may differ.
     """
 
     plan: RunPlan
@@ -52,21 +52,21 @@ class Stage:
     absent: Collection[str] = frozenset()
 
     def spec(self) -> MissionSpec:
-        """The mission.
+        """Return the mission.
 
         Raises:
-            UsageError: it is not there, or something in it is wrong.
+            UsageError: if it does not exist, or has a mistake.
         """
         return settled(self.plan.spec(), self.root, self.absent)
 
 
 @contextlib.contextmanager
 def staged(journal: Journal, from_disk: bool = False) -> Iterator[Stage]:
-    """Around a replay: the working directory and the environment are those of the recorded run.
+    """Context of a replay: working directory and environment of the recorded run.
 
     Args:
         journal: the run.
-        from_disk: take the mission's files as they are on this computer.
+        from_disk: use the mission's files on this computer instead of those in the journal.
     """
     changed = [each for each in journal.files.values() if not each.same_on_disk()]
     left_out = [each for each in changed if each.packed is None and each.sha256]
@@ -88,7 +88,9 @@ def staged(journal: Journal, from_disk: bool = False) -> Iterator[Stage]:
 
 
 def _on_tasks_here(plan: RunPlan) -> tuple[RunPlan, tuple[str, ...]]:
-    """The plan with tasks that this Python has, since all kinds make the same run; what to say of the change."""
+    """Return the plan with an implementation of tasks that this Python has, since all give the same run, and a note on
+    it.
+    """
     if plan.tasks != GREENLET or has_greenlets():
         return plan, ()
     note = "recorded on greenlets, and greenlet is not installed here: replayed on threads, which make the same run"
@@ -96,7 +98,7 @@ def _on_tasks_here(plan: RunPlan) -> tuple[RunPlan, tuple[str, ...]]:
 
 
 def _note(changed: Sequence[MissionFile], from_disk: bool, left_out: Sequence[MissionFile]) -> str:
-    """What to know about a replay with the files on this computer."""
+    """Return notes on a replay with the files of this computer."""
     if not changed:
         return "with the files on this computer, which are those of the run"
     if from_disk:
@@ -107,10 +109,7 @@ def _note(changed: Sequence[MissionFile], from_disk: bool, left_out: Sequence[Mi
 
 @contextlib.contextmanager
 def _unpacked(journal: Journal) -> Iterator[tuple[str, Collection[str]]]:
-    """A folder with files at the paths that they had, and paths at which there was nothing.
-
-    Tracebacks show the lines of these files, not those of others there.
-    """
+    """A folder with files at their old paths, and paths that did not exist."""
     with tempfile.TemporaryDirectory(prefix="cfepy-replay-") as folder:
         root = os.path.realpath(folder)
         try:
@@ -121,7 +120,7 @@ def _unpacked(journal: Journal) -> Iterator[tuple[str, Collection[str]]]:
                 _unpack(each, Path(root))
             for path, names in journal.folders.items():
                 _fill(Path(root), path, names)
-            make_folder(Path(root), journal.header.cwd)  # before a folder is closed to writers
+            make_folder(Path(root), journal.header.cwd)  # before a folder is made read-only
             absent = put_in_place(Path(root), journal.looks.values())
         except (OSError, UsageError) as error:
             why = error.strerror if isinstance(error, OSError) else error
@@ -135,7 +134,7 @@ def _unpacked(journal: Journal) -> Iterator[tuple[str, Collection[str]]]:
 
 
 def _unpack(file: MissionFile, root: Path) -> None:
-    """Put a file where it is expected; what the journal does not carry is on this computer, as it was."""
+    """Put a file at its path; if the journal does not contain it, it comes from this computer if unchanged."""
     data = file.data
     if data is None:
         link_contained(root, file.path)
@@ -145,7 +144,7 @@ def _unpack(file: MissionFile, root: Path) -> None:
 
 
 def _fill(root: Path, path: str, names: Mapping[str, bool]) -> None:
-    """Give a folder the names that it had; a file that is missing here was never opened, so it may be empty."""
+    """Create the names of a folder; a file that is not in the journal was never opened, so it may be empty."""
     folder = make_folder(root, path)
     for name, is_folder in names.items():
         if is_folder:
@@ -155,7 +154,7 @@ def _fill(root: Path, path: str, names: Mapping[str, bool]) -> None:
 
 
 def _show_lines(files: Iterable[MissionFile]) -> list[str]:
-    """Have tracebacks show the lines of these files; their paths."""
+    """Make tracebacks show the lines of these files; returns their paths."""
     shown = []
     for each in files:
         data = each.data if each.path.endswith(".py") else None
@@ -184,7 +183,7 @@ def _in_place_of(header: Header, root: str) -> Iterator[None]:
 
 
 def _warnings(journal: Journal) -> Iterator[str]:
-    """How this cfepy and this Python differ from those of the run."""
+    """Yield the differences between cfepy and Python now and in the run."""
     then, now = journal.header.versions, versions()
     for name in ("cfepy", "cfe"):
         if then.get(name) != now[name]:
@@ -212,7 +211,7 @@ def _host_changes(journal: Journal) -> Iterator[str]:
 
 
 def moved_plan(header: Header, root: str) -> RunPlan:
-    """The plan of a run, with the paths that its files have below a root."""
+    """Return the plan of a run, with the paths of its files below a root."""
     plan = header.plan
     files: dict[str, Any] = {
         name: _moved(getattr(plan, name), header.cwd, root)
@@ -223,14 +222,16 @@ def moved_plan(header: Header, root: str) -> RunPlan:
 
 
 def _moved_mission(text: str, cwd: str, root: str) -> str:
-    """Where a mission is now that flew beside the one of the journal; one that cfepy brings along stays."""
+    """Return the current place of a mission that flew together with that of the journal; one included in cfepy
+    stays.
+    """
     mission, _ = boot_of(text)
     place = root + os.path.normpath(os.path.join(cwd, mission))
     return place + text[len(mission) :] if os.path.exists(place) else text
 
 
 def _arguments(header: Header) -> tuple[str, ...]:
-    """What follows the mission, launch file or script on the command line."""
+    """Return the arguments that follow the mission, launch file or script on the command line."""
     words = header.plan.words
     if header.plan.command == LAUNCH:
         return tuple(word for word in words if ":=" in word)
@@ -241,7 +242,7 @@ def _arguments(header: Header) -> tuple[str, ...]:
 
 
 def _moved(path: str | None, cwd: str, root: str) -> str | None:
-    """Where a file is now that a command line names; what is no file stays."""
+    """Return the current path of a file on a command line; other arguments stay."""
     if path is None:
         return None
     whole = os.path.normpath(os.path.join(cwd, path))
@@ -249,7 +250,7 @@ def _moved(path: str | None, cwd: str, root: str) -> str | None:
 
 
 def moved_environ(environ: Mapping[str, str], root: str) -> dict[str, str]:
-    """Environment variables in which folders that are below the root are those."""
+    """Return environment variables with folders replaced by those below the root."""
     return {name: os.pathsep.join(map(_folder_in(root), value.split(os.pathsep))) for name, value in environ.items()}
 
 
@@ -258,12 +259,12 @@ def _folder_in(root: str) -> Any:
 
 
 def settled(spec: MissionSpec, root: str, absent: Collection[str] = frozenset()) -> MissionSpec:
-    """A mission that was read below a root, and does not see it.
+    """Return a mission that was read below a root, without that root.
 
     Args:
         spec: the mission.
         root: the folder; empty for none.
-        absent: paths at which it finds nothing.
+        absent: paths that do not exist.
     """
     if not root:
         return spec
@@ -279,7 +280,7 @@ def _settled_node(node: NodeConfig, root: str) -> NodeConfig:
 
 
 def _without(value: Any, root: str) -> Any:
-    """A value in which no text has the root."""
+    """Return a value with the root removed from all texts."""
     if isinstance(value, str):
         return value.replace(root, "")
     if isinstance(value, Mapping):
@@ -290,7 +291,7 @@ def _without(value: Any, root: str) -> Any:
 
 
 class HiddenRoot(Attachment):
-    """Takes the root out of what the console shows, such as tracebacks.
+    """Removes the root from console output, such as tracebacks.
 
     Args:
         root: the folder.

@@ -1,7 +1,7 @@
-"""What a run was told of paths without opening them: whether something is there, of which kind, how large, how old.
+"""Facts about paths that a run checked without opening them: existence, kind, size, age.
 
-A program that only asks whether a file exists gets the same answer in a replay, where that file may be missing, and one
-that is there now may not have been then.
+A program that only checks whether a file exists gets the same answer in a replay, where the file may be missing or
+newly created.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from pathlib import Path
 from cfepy.reading.contained_files import make_folder, write_contained
 
 ABSENT, REGULAR, FOLDER, LINK, OTHER = KINDS = ("absent", "file", "folder", "link", "other")
-MOST_LOOKS = 100_000  # that a journal keeps
-_LARGEST = 1 << 40  # bytes of a file that is put in place; it takes no room on the disk
+MOST_LOOKS = 100_000  # maximum number in a journal
+_LARGEST = 1 << 40  # largest size in bytes of a file that is created; it takes no space on the disk
 
 
 @dataclass(frozen=True, slots=True)
 class PathLook:
-    """What was at a path when a run first asked for it.
+    """State of a path when a run first checked it.
 
     Attributes:
-        path: absolute, without links but for its last part.
+        path: absolute path, with links resolved except in the last part.
         kind: one of `KINDS`; "other" is a pipe, a device or the like.
-        size: of a file, in bytes.
+        size: size of a file in bytes.
         mode: permissions of a file or folder.
-        time_ns: of the last change of its content, ns since 1970.
-        target: where a link leads, as it says.
+        time_ns: time of the last change of its contents, ns since 1970.
+        target: target of a link, as written in it.
     """
 
     path: str
@@ -42,7 +42,7 @@ class PathLook:
 
 
 def look_at(path: str) -> PathLook:
-    """What is at a path now."""
+    """Return the current state of a path."""
     try:
         found = os.lstat(path)
         target = os.readlink(path) if stat.S_ISLNK(found.st_mode) else ""
@@ -57,20 +57,20 @@ def look_at(path: str) -> PathLook:
 
 
 def put_in_place(root: Path, looks: Iterable[PathLook]) -> frozenset[str]:
-    """Make files, folders and links below a root that answer as those did which a run asked for.
+    """Create files, folders and links below a root that look like those that a run checked.
 
-    What is there already stays, with its content: it was opened, too. What was no file, such as a device, is left out.
+    Existing files keep their contents, because they were opened too. Other kinds, such as devices, are left out.
 
     Args:
-        root: stands for the root of the computer.
-        looks: what the run was told.
+        root: folder that replaces the root of the computer.
+        looks: states of the checked paths.
 
     Returns:
         The paths at which there was nothing.
 
     Raises:
-        UsageError: a path leaves the root.
-        OSError: something cannot be made.
+        UsageError: if a path leaves the root.
+        OSError: if something cannot be created.
     """
     found = sorted(looks, key=lambda look: look.path)
     for look in found:
@@ -84,13 +84,13 @@ def put_in_place(root: Path, looks: Iterable[PathLook]) -> frozenset[str]:
         if look.kind == LINK and not os.path.lexists(f"{root}{look.path}"):
             place = make_folder(root, os.path.dirname(look.path)) / os.path.basename(look.path)
             place.symlink_to(look.target)
-    for look in reversed(found):  # what is in a folder before the folder, which may be closed then
+    for look in reversed(found):  # contents of a folder before the folder, which may become read-only
         _dress(root, look)
     return frozenset(look.path for look in found if look.kind == ABSENT and not os.path.lexists(f"{root}{look.path}"))
 
 
 def _dress(root: Path, look: PathLook) -> None:
-    """Give a file or folder the permissions and the time that it had; its owner can always read it here."""
+    """Set the permissions and time of a file or folder; its owner can always read it here."""
     place = f"{root}{look.path}"
     if look.kind not in (REGULAR, FOLDER) or look.path == "/" or os.path.islink(place):
         return

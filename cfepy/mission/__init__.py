@@ -1,9 +1,8 @@
-"""One mission on one simulated computer: reading what it is made of, wiring it, running and resetting it.
+"""One mission on one simulated computer: reading its files, wiring it, running and resetting it.
 
-What belongs here is the computer through all its resets, the loader of its applications, the one door through which
-anything comes in from outside, and the record of what happened. What the ground knows of a mission is in
-`cfepy.ground`, what must hold of a run in `cfepy.monitors`, and how a run is flown in `cfepy.pilot`. The central file
-is `cfepy/mission/mission.py`.
+The computer through all its resets belongs here, with the loader of its applications, the single entry point for
+external input, and the record of the run. The ground's view of a mission is in `cfepy.ground`, rules for runs in
+`cfepy.monitors`, and flying a run in `cfepy.pilot`. The central file is `cfepy/mission/mission.py`.
 """
 
 from __future__ import annotations
@@ -152,7 +151,7 @@ __all__ = [
     "with_settings",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

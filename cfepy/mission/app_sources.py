@@ -1,6 +1,7 @@
-"""Python sources read without running them: are they Python, and do they define what a startup script asks for?
+"""Checks of Python sources without running them: whether they are valid, and whether they define a startup script's
+names.
 
-Reading a syntax tree cannot answer everything: what a star import or a module's `__getattr__` brings counts as there.
+A syntax tree cannot answer everything. Names from a star import or a module's `__getattr__` count as defined.
 """
 
 from __future__ import annotations
@@ -17,13 +18,13 @@ from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import PYTHON_BYTES
 from cfepy.status import UsageError
 
-_MOST_MODULES = 100  # that are followed, one from the other
+_MOST_MODULES = 100  # maximum number of modules to follow
 _STAR_IMPORT = re.compile(rb"import\s*\\?\s*\*")
 PACKAGE_FILE = "__init__.py"
 
 
 def source_of(code: Path | str) -> Path | None:
-    """The file behind what `find_code` found; None when it is not Python source (an extension module)."""
+    """Return the file behind a result of `find_code`; None if it is not Python source (an extension module)."""
     if isinstance(code, Path):
         return code
     spec = importlib.util.find_spec(code)
@@ -32,12 +33,12 @@ def source_of(code: Path | str) -> Path | None:
 
 
 def files_of(source: Path) -> list[Path]:
-    """The sources that belong to a module: itself, or all of its package."""
+    """Return the sources that belong to a module: the file itself, or all files of its package."""
     return sorted(source.parent.rglob("*.py")) if source.name == PACKAGE_FILE else [source]
 
 
 def syntax_error(source: Path) -> tuple[int, str] | None:
-    """(line, what is wrong) of a file that is not Python; None when it is."""
+    """Return (line, error) of a file that is not valid Python, or None."""
     try:
         parsed_input(read_limited(source, PYTHON_BYTES), str(source))
     except SyntaxError as error:
@@ -50,22 +51,22 @@ def syntax_error(source: Path) -> tuple[int, str] | None:
 
 
 def functions_of(source: Path) -> list[str]:
-    """Functions that a module defines itself, for suggestions."""
+    """Return the functions defined in a module, for suggestions."""
     return [node.name for node in tree_of(source).body if isinstance(node, ast.FunctionDef)]
 
 
 def functions_and_classes_of(source: Path) -> list[str]:
-    """Functions and classes that a module defines itself, for suggestions."""
+    """Return the functions and classes defined in a module, for suggestions."""
     return [node.name for node in tree_of(source).body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
 
 
 def defines(source: Path, name: str) -> bool:
-    """Whether a module that can be parsed has a name at its top level, or may have it."""
+    """Return whether a module without syntax errors has, or may have, a name at its top level."""
     return _defines(source, name, set())
 
 
 def _defines(source: Path, name: str, seen: set[Path]) -> bool:
-    """As `defines`; modules that were seen before, which import each other in a circle, bring nothing new."""
+    """Return whether a module defines a name; modules in `seen` were searched before, and may import each other."""
     seen.add(source)
     text = _text_of(source)
     if not _may_define(text, name):
@@ -74,9 +75,9 @@ def _defines(source: Path, name: str, seen: set[Path]) -> bool:
 
 
 def _may_define(text: bytes, name: str) -> bool:
-    """Whether it is worth parsing a text for a name: most sources do not have its letters at all.
+    """Return whether a text must be parsed to look for a name; most sources do not contain the name at all.
 
-    Python takes other letters for those of ASCII in names, hence a text with other characters is parsed always.
+    Python converts some other letters in names to ASCII, so a text with other characters is always parsed.
     """
     return (
         not text.isascii() or name.encode() in text or b"__getattr__" in text or _STAR_IMPORT.search(text) is not None
@@ -84,7 +85,7 @@ def _may_define(text: bytes, name: str) -> bool:
 
 
 def tree_of(source: Path) -> ast.Module:
-    """The syntax of a file; an empty module when it is not Python, which `syntax_error` tells."""
+    """Return the syntax tree of a file; an empty module if it is not valid Python, which `syntax_error` reports."""
     return _parsed(_text_of(source))
 
 
@@ -103,7 +104,7 @@ def _parsed(text: bytes) -> ast.Module:
 
 
 def _statements(body: Iterable[ast.stmt]) -> Iterator[ast.stmt]:
-    """The statements that run when a module is imported, those within `if`, `try`, `with` and loops too."""
+    """Yield the statements that run when a module is imported, including those within `if`, `try`, `with` and loops."""
     waiting = list(body)[::-1]
     while waiting:
         statement = waiting.pop()
@@ -131,7 +132,7 @@ def _binds(statement: ast.stmt, source: Path, name: str, seen: set[Path]) -> boo
 
 
 def _imports(statement: ast.ImportFrom, alias: ast.alias, source: Path, name: str, seen: set[Path]) -> bool:
-    """Whether `from x import alias` gives `name`; a module of the same package is looked into."""
+    """Return whether `from x import alias` defines `name`; modules of the same package are searched."""
     if alias.name != "*" and (alias.asname or alias.name) != name:
         return False
     sibling = source.parent / f"{statement.module}.py" if statement.level == 1 and statement.module else None

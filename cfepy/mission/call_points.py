@@ -1,10 +1,8 @@
-"""The handle that apps get while schedules are explored: other tasks may run before every call of a service.
+"""The handle for apps while schedules are explored: other tasks may run before every call of a service.
 
-They may also run after a call that gives something away, before the app goes on: so an app is found out that still uses
-what it gave away.
-
-Only calls that come in through the handle are scheduling points, not those that services make among themselves: what a
-service does is one step, as in NASA's code, which guards its tables with locks.
+They may also run after a call that gives something away, before the app continues. This reveals an app that still uses
+what it gave away. Only calls through the handle are scheduling points. Calls between services are not: a service call
+is one step, because NASA's code protects its tables with locks.
 """
 
 from __future__ import annotations
@@ -37,13 +35,13 @@ GIVING = frozenset(
         "transmit_msg",
     }
 )
-"""Calls that let go of a lock, a table or a message."""
+"""Calls that release a lock, a table or a message."""
 RECORDS = frozenset({"unsent"})
-"""What only writes into the trace, and is no call of an application."""
+"""Methods that only write to the trace and are not calls of an application."""
 
 
 class _Pointed:
-    """A service, with scheduling points around its methods. What was called once is kept."""
+    """A service with scheduling points around its methods; each wrapped method is cached."""
 
     def __init__(self, service: Any, kernel: ExploringKernel) -> None:
         vars(self).update(_service=service, _kernel=kernel)
@@ -93,7 +91,7 @@ def _giving(service: Any, name: str, kernel: ExploringKernel) -> Callable[..., A
 
 
 def with_call_points(cfe: Cfe, kernel: Kernel) -> Cfe:
-    """The services as apps call them under a kernel with a policy."""
+    """Return the services as apps call them, under a kernel with a policy."""
     assert isinstance(kernel, ExploringKernel)
     services: dict[str, Any] = {
         field.name: _Pointed(getattr(cfe, field.name), kernel) for field in fields(cfe) if field.name != "msg"

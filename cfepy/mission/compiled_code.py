@@ -1,7 +1,7 @@
-"""Compiled code of applications and libraries: ELF files where a startup script names them.
+"""Compiled code of applications and libraries: the ELF files named in a startup script.
 
-An ELF file is never taken for anything else: when it cannot be loaded, the application fails, and no Python file of the
-same name stands in for it. What loads it comes from an add-on, and is imported when there is one.
+An ELF file is never taken for another kind of file. If it cannot be loaded, the application fails, and no Python file
+of the same name replaces it. The loader comes from an add-on, which is loaded when there is an ELF file.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ FILES = "/cf/"
 
 
 def find_compiled(file: str, folder: Path) -> Path | None:
-    """The ELF file on the host behind a virtual path below /cf, for tools that look at a mission from outside.
+    """Return the ELF file on the host behind a virtual path below /cf, for tools that examine a mission from outside.
 
     Args:
         file: the virtual path.
@@ -35,16 +35,16 @@ def find_compiled(file: str, folder: Path) -> Path | None:
 
 
 class CompiledRuntime(Protocol):
-    """The C side of a processor, as missions and debuggers use it."""
+    """The C side of a processor, for missions and debuggers."""
 
     def images(self) -> Iterable[Any]:
-        """What is loaded: each has its `base` address, and its `source` with `name` and `data`."""
+        """Return the loaded images: each has a `base` address, and a `source` with `name` and `data`."""
 
     def unload(self, app_name: str) -> object:
-        """Let go of the code of an application that has ended."""
+        """Unload the code of an ended application."""
 
     def close(self) -> object:
-        """Let go of everything: the processor is over."""
+        """Release everything at the end of the processor."""
 
 
 class CodeLoader(Protocol):
@@ -55,7 +55,7 @@ class CodeLoader(Protocol):
         """The C side of the processor."""
 
     def code(self, file: str, data: bytes) -> Code:
-        """The code in a shared object, not loaded yet.
+        """Return the code in a shared object, not loaded yet.
 
         Args:
             file: its virtual path.
@@ -67,9 +67,9 @@ class CompiledFiles(Finder):
     """Finds shared objects in the mission's folder, and those that the mission itself wrote.
 
     Args:
-        files: of the mission.
-        make_loader: makes what loads them, for the first one.
-        built: those that are elsewhere on the host, by their virtual paths.
+        files: the mission's files.
+        make_loader: makes the loader for the first one.
+        built: shared objects elsewhere on the host, by their virtual paths.
     """
 
     def __init__(
@@ -81,7 +81,9 @@ class CompiledFiles(Finder):
         self._loader: CodeLoader | None = None
 
     def prepare(self, entries: Iterable[StartupEntry]) -> None:
-        """Make what loads them before a boot whose startup script names one: the core's memory is then in its reach."""
+        """Make the loader before a boot whose startup script names compiled code, so that it can reach the core's
+        memory.
+        """
         if any(entry.symbol != NODE_SYMBOL and self.exists(entry.path) for entry in entries):
             self._loader_made()
 
@@ -96,7 +98,7 @@ class CompiledFiles(Finder):
 
     @property
     def runtime(self) -> CompiledRuntime | None:
-        """The C side of the processor; None when nothing compiled was loaded."""
+        """The C side of the processor; None if no compiled code was loaded."""
         return None if self._loader is None else self._loader.runtime
 
     def exists(self, file: str) -> bool:
@@ -114,7 +116,7 @@ class CompiledFiles(Finder):
     def _data(self, file: str) -> bytes | None:
         try:
             node = self._files.find(file)
-        except OsalError:  # a path that no file can have, such as one that is too long
+        except OsalError:  # an illegal path, such as one that is too long
             return None
         if node is None and file in self._built:
             return read_limited(self._built[file], OBJECT_BYTES)

@@ -1,7 +1,7 @@
-"""The section `cpp_nodes:` of a mission file: how ROS nodes in C++ are built, and how much their messages can hold.
+"""The section `cpp_nodes:` of a mission file: how ROS nodes in C++ are built, and the capacities of their messages.
 
-Types and fields are held against their definitions when a node is built or checked (`cfepy.extra.convert.capacities`):
-where the definitions are is known by then.
+Types and fields are checked against their definitions when a node is built or checked
+(`cfepy.extra.convert.capacities`), because the definitions are known by then.
 """
 
 from __future__ import annotations
@@ -16,29 +16,30 @@ from cfepy.status import UsageError
 
 PROFILES = ("host", "pool", "strict")
 ARENA_BYTES = 262_144
-"""The heap of a node in the profiles pool and strict, where nothing else is said."""
+"""The default heap size of a node in the profiles pool and strict."""
 SMALLEST_ARENA, LARGEST_ARENA = 4096, 1 << 30
 TEXT, ARRAY = 64, 16
-"""Characters of a text and items of an array of which nothing else is said, in the profile strict."""
+"""The default capacities in the profile strict: characters of a text and items of an array."""
 MOST_ITEMS = (1 << 24) - 1
 _DEFAULTS = ("text", "array")
 
 
 class CppNodesError(UsageError):
-    """A mistake in the section, with which no node can be built: a run ends with it."""
+    """Exception for an error in the section that prevents the build of any node and ends the run."""
 
 
 @dataclass(frozen=True, slots=True)
 class CppNodesConfig:
-    """What the section says.
+    """The content of the section.
 
     Attributes:
-        profile: that nodes are built for: "host", "pool" or "strict".
+        profile: the profile of the nodes: "host", "pool" or "strict".
         arena_bytes: size of a node's heap in the profiles pool and strict.
-        capacities: items by "package/Type.field", characters of a text; those of the texts in an array: "...field[]".
-        text: characters of a text that is not among them.
-        array: items of an array of numbers or texts that is not among them.
-        places: where each capacity was said, and "arena_bytes", for errors.
+        capacities: items, or characters of a text, by "package/Type.field"; those of the texts in an array:
+            "...field[]".
+        text: characters of any other text.
+        array: items of any other array of numbers or texts.
+        places: the position in the file of each capacity and of "arena_bytes", for errors.
     """
 
     profile: str = "host"
@@ -50,11 +51,11 @@ class CppNodesConfig:
 
 
 def read_cpp_nodes(section: Marked, mistakes: Mistakes) -> CppNodesConfig:
-    """The section `cpp_nodes:`.
+    """Return the section `cpp_nodes:`.
 
     Args:
         section: its value.
-        mistakes: takes unknown keys, a profile that is none, and numbers that are no size.
+        mistakes: collects unknown keys, unknown profiles and invalid sizes.
     """
     said: dict[str, Any] = {}
     places: dict[str, Marked] = {}
@@ -76,7 +77,7 @@ def _profile(entry: Marked) -> str:
 
 
 def _read_capacities(section: Marked, places: dict[str, Marked], mistakes: Mistakes) -> dict[str, Any]:
-    """Capacities by type and field, and the two for all that is not named."""
+    """Return the capacities by type and field, with the two defaults."""
     said: dict[str, Any] = {}
     capacities: dict[str, int] = {}
     for name, entry in mistakes.mapping(section).items():

@@ -1,10 +1,10 @@
-"""The waits of a mission that will never end, whoever goes first from here on.
+"""The waits of a mission that can never end, in any schedule from here on.
 
-Who could end a wait is known for locks (who holds them), for calls of services (who works on them), for the semaphores
-and condition variables of OSAL (the applications that made them or asked for their ids), and for what a node makes of
-Python's locks: conditions, events, queues, the ends of threads. There it is whoever can still get hold of the lock
-(`cfepy.nodes.reachable_objects`), a callback for messages included. A wait for a pipe, a queue of OSAL's, a socket or a
-time is ended from outside.
+cfepy knows which tasks can end a wait. For locks these are their holders, and for service calls the tasks that work on
+them. For OSAL's semaphores and condition variables they are the applications that created them or looked up their ids.
+For objects that a node makes from Python's locks (conditions, events, queues, ends of threads), they are all tasks that
+can still reach the lock (`cfepy.nodes.reachable_objects`), including callbacks for messages. A wait for a pipe, an OSAL
+queue, a socket or a time can be ended from outside.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
 
 
 class EndlessWait(NamedTuple):
-    """A task that waits for ever.
+    """A task that waits forever.
 
     Attributes:
-        app: whose task it is.
+        app: the application of the task.
         task: its name.
-        what: for what, such as `lock 3 of ARM` or `the end of Queue.get()`.
-        place: the line of its own source, such as `arm.py:12`; empty where that is not known.
+        what: the object that it waits for, such as `lock 3 of ARM` or `the end of Queue.get()`.
+        place: the line of its own source, such as `arm.py:12`; empty if unknown.
         since_ns: virtual time at which it began to wait.
-        holder: the task that has what it waits for, and whether that has ended; empty where nobody has it.
+        holder: the task that holds the object, and whether that task has ended; empty if no task holds it.
     """
 
     app: str
@@ -45,19 +45,19 @@ class EndlessWait(NamedTuple):
 
     @property
     def text(self) -> str:
-        """One line for a person."""
+        """A one-line description."""
         where = f" at {self.place}" if self.place else ""
         why = f"held by {self.holder}" if self.holder else "nobody is left who could end that"
         return f"{self.task} waits for ever for {self.what}{where}, since {self.since_ns / NS_PER_S:.6f} s; {why}"
 
 
 class EndlessWaits(NamedTuple):
-    """The waits of a mission that will never end.
+    """The waits of a mission that can never end.
 
     Attributes:
-        circles: tasks that wait for each other, or one that waits for another that has ended.
-        alone: tasks for which nobody is left, where that matters: main tasks, and those for which others wait. A
-            worker that idles is none. Those that only wait for one of the others are not told.
+        circles: tasks that wait for each other, or a task that waits for an ended task.
+        alone: tasks that no task is left to wake, if it matters: main tasks, and tasks that others wait for. An idle
+            worker does not count. Tasks that only wait for one of the others are not listed.
     """
 
     circles: list[tuple[EndlessWait, ...]]
@@ -65,7 +65,7 @@ class EndlessWaits(NamedTuple):
 
 
 def endless_waits(mission: Mission) -> EndlessWaits:
-    """Look for them, while no task runs."""
+    """Find the waits, while no task runs."""
     kernel = mission.kernel
     found = endless(kernel.tasks, _Wakers(mission).could_end)
     rings = [tuple(_told(kernel, wait) for wait in circle) for circle in circles(found)]
@@ -89,7 +89,7 @@ def _told(kernel: Kernel, wait: Wait) -> EndlessWait:
 
 
 def _place(frame: FrameType | None) -> tuple[str, str]:
-    """The innermost line of a task's own source, and the function of a library that it called there."""
+    """Return the innermost line of a task's own source, and the library function that it called there."""
     call = ""
     while frame is not None:
         file = frame.f_code.co_filename
@@ -102,14 +102,13 @@ def _place(frame: FrameType | None) -> tuple[str, str]:
 
 
 class _Wakers:
-    """Who could end the wait of a task."""
+    """Determines which tasks could end the wait of a task."""
 
     def __init__(self, mission: Mission) -> None:
         self._mission = mission
         self._kernel = mission.kernel
 
     def could_end(self, task: Task, lost: Collection[Task]) -> bool:
-        """See `cfepy.rtos.wait_graph.Wakers`."""
         subject = None if task.waits is None or task.awaits is not None else task.waits.subject
         if subject is None or task.owner is None:
             return True
@@ -119,7 +118,7 @@ class _Wakers:
         return node is None or self._is_known(node, task, subject, lost)
 
     def _is_used(self, record: OsObject, lost: Collection[Task]) -> bool:
-        """Whether an application that knows the id of an object has a task that may go on, or a timer."""
+        """Return whether an application that knows the id of an object has a task that can continue, or a timer."""
         users = {record.owner, *record.users}
         has_timer = self._mission.cfe.os.has_timer
         return (
@@ -129,7 +128,9 @@ class _Wakers:
         )
 
     def _is_known(self, node: Node, task: Task, lock: object, lost: Collection[Task]) -> bool:
-        """Whether anything that a node may still execute leads to a lock, or its main program rests there for good."""
+        """Return whether code that a node may still execute can reach a lock, or its main program waits there
+        for good.
+        """
         from cfepy.nodes import held_by, reaches
 
         roots: list[object] = [node, *node.universe.exit_hooks, *node.universe.signals.handlers()]
@@ -140,7 +141,7 @@ class _Wakers:
         return reaches(roots, lock, closed) or (task is node.universe.main_task and self._is_at_rest(node, task, lock))
 
     def _is_at_rest(self, node: Node, task: Task, lock: object) -> bool:
-        """Whether a main program waits for what it has told nobody of: until Ctrl-C."""
+        """Return whether a main program waits on an object that no other code can reach, that is, until Ctrl-C."""
         from cfepy.nodes import is_private
 
         own = self._kernel.context.frame_of(task)
@@ -150,7 +151,7 @@ class _Wakers:
 
 
 def _functions(node: Node) -> list[object]:
-    """The functions and classes of a node's own modules."""
+    """Return the functions and classes of a node's own modules."""
     modules = node.universe.importer.modules.values()
     own = [module for module in modules if is_own_code(getattr(module, "__file__", None) or "<")]
     return [each for module in own for each in vars(module).values() if isinstance(each, (FunctionType, type))]

@@ -1,7 +1,7 @@
-"""What shows in the mission's own code that it failed: exceptions out of tasks, and tracebacks on the console.
+"""Failures in the mission's own code: exceptions from tasks, and tracebacks on the console.
 
-What kills one thread of a node, or is swallowed by rospy after a callback, shows only as a traceback that the node
-prints: a `TracebackReader` finds it on the console.
+An error that ends one thread of a node, or that rospy swallows after a callback, appears only as a traceback that the
+node prints. A `TracebackReader` finds it on the console.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ _LINE = re.compile(r"\[(?P<node>[^\]\s]+)\] ?(?P<text>.*)")
 _FRAME = re.compile(r'\s+File "(?P<file>.+)", line (?P<line>\d+)')
 _PLACE_AT_END = re.compile(r"\([^\s()]+:\d+\)$")
 _BEGIN = "Traceback (most recent call last):"
-_ASKED_TO_END = "KeyboardInterrupt"  # Ctrl-C, by which nodes are ended; it is no error
+_ASKED_TO_END = "KeyboardInterrupt"  # Ctrl-C, which ends nodes and is not an error
 _CHAINED = ("During handling of the above exception", "The above exception was the direct cause")
 
 
 class RaisedError(NamedTuple):
-    """An exception that came out of a task, or whose traceback a node printed.
+    """An exception from a task, or one whose traceback a node printed.
 
     Attributes:
         who: the application, or the node that printed it.
-        text: type, text and place, one line: `ValueError: no such joint (arm.py:12)`.
-        at_ns: virtual time.
+        text: type, text and place in one line: `ValueError: no such joint (arm.py:12)`.
+        at_ns: virtual time in ns.
         detail: the traceback.
-        task: in which it was raised.
-        cause: what tells exceptions apart: the type and the place, `ValueError (arm.py:12)`; empty without a place.
-        circle: of a mutex that was not given since tasks would have waited for each other: their waits, as text.
-        circle_apps: whose tasks those are.
+        task: the task that raised it.
+        cause: identifies the exception by its type and place, `ValueError (arm.py:12)`; empty without a place.
+        circle: for a mutex that was refused to prevent a deadlock: the waits of the tasks, as text.
+        circle_apps: the applications of these tasks.
     """
 
     who: str
@@ -47,7 +47,7 @@ class RaisedError(NamedTuple):
 
 
 def raised_in(task: Task, error: BaseException, at_ns: int) -> RaisedError:
-    """An exception that came out of a task of an application."""
+    """Return the record of an exception from a task of an application."""
     from cfepy.mission.tracebacks import app_traceback, reason
 
     detail, text = app_traceback(error), reason(error)
@@ -60,7 +60,7 @@ def raised_in(task: Task, error: BaseException, at_ns: int) -> RaisedError:
 
 
 def cause_of(kind: str, text: str) -> str:
-    """What tells exceptions apart: the type, and the line where one came out, `KeyError (arm.py:12)`."""
+    """Return the type of an exception and the line that raised it, which identify it: `KeyError (arm.py:12)`."""
     place = _PLACE_AT_END.search(text)
     return f"{kind} {place[0]}" if place is not None else ""
 
@@ -77,7 +77,7 @@ class TracebackReader:
     """Reads the console of a mission.
 
     Attributes:
-        found: an error for each traceback so far; of a chain of exceptions, the last.
+        found: an error for each traceback so far; for a chain of exceptions, the last one.
     """
 
     def __init__(self) -> None:
@@ -85,7 +85,7 @@ class TracebackReader:
         self._reading: dict[str, _Reading] = {}
 
     def take(self, line: str, now_ns: int, task: str = "") -> None:
-        """Take a line of the console, the virtual time at which it was written, and the task that wrote it."""
+        """Read a line of the console, with the virtual time and the task that wrote it."""
         if line[:1] != "[":
             return
         match = _LINE.fullmatch(line)
@@ -116,7 +116,7 @@ class TracebackReader:
             self.found.append(RaisedError(node, what, now_ns, "\n".join(reading.lines), task, cause))
 
     def _forget_last(self, node: str) -> None:
-        """Drop the exception read last: its handler raised the one that follows, which is the error."""
+        """Drop the previous exception, because its handler raised the next one, which is the error."""
         mine = [at for at, error in enumerate(self.found) if error.who == node]
         if mine:
             del self.found[mine[-1]]
@@ -124,11 +124,11 @@ class TracebackReader:
 
 @dataclass(slots=True)
 class FailedCode:
-    """What has failed in a run; a part of its record.
+    """The failures of a run; a part of its record.
 
     Attributes:
-        died: exceptions that came out of tasks of applications, but for crashes that a fault plan asks for.
-        crashed: applications that a fault plan let crash.
+        died: exceptions from tasks of applications, except crashes injected by a fault plan.
+        crashed: applications that a fault plan crashed.
         printed: reads the tracebacks that nodes print.
     """
 
@@ -137,7 +137,7 @@ class FailedCode:
     printed: TracebackReader = field(default_factory=TracebackReader)
 
     def take(self, task: Task, error: BaseException, at_ns: int) -> None:
-        """An exception came out of a task."""
+        """Record an exception from a task."""
         if task.owner is None:
             return
         if isinstance(error, InjectedCrash):

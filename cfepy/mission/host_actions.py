@@ -1,6 +1,7 @@
-"""Acts: what a test or another program itself does to a mission, while the run stands still.
+"""Host actions: publish, set a parameter, call a service or write a file while the mission is paused.
 
-Acts are plain values that go through `cfepy.mission.outside`, so a journal has them and a replay does them again.
+Host actions are plain values that pass through `cfepy.mission.outside`. So a journal records them, and a replay repeats
+them.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ PACKET, PUBLISH, PARAM, CALL, FILE, ROS = "packet", "publish", "param", "call", 
 
 
 class ActedOn(Protocol):
-    """What acts need of a mission; after a reset its properties give those of the new processor."""
+    """The parts of a mission that host actions need; after a reset the properties return those of the new processor."""
 
     files: FileSystem
 
@@ -29,18 +30,18 @@ class ActedOn(Protocol):
 
     @property
     def ros(self) -> RosRuntime | None:
-        """The ROS side; None before the first node started."""
+        """The ROS side; None before the first node has started."""
 
     def begin_ros(self) -> RosRuntime:
-        """The ROS side, made if there was no node yet."""
+        """Return the ROS side, and create it if there was no node yet."""
 
 
 class HostCall:
-    """A service call under way.
+    """A service call in progress.
 
     Attributes:
-        response: None as long as there is none.
-        error: what went wrong instead.
+        response: the response; None before it arrives.
+        error: the error instead of a response.
     """
 
     def __init__(self) -> None:
@@ -48,23 +49,23 @@ class HostCall:
         self.error: Exception | None = None
 
     def make(self, proxy: Any, request: Any) -> None:
-        """Call, in a task of the mission."""
+        """Make the call in a task of the mission."""
         try:
             self.response = proxy(request)
-        except Exception as error:  # whatever goes wrong is what the caller wants to know
+        except Exception as error:  # the caller needs to know every error
             self.error = error
 
     @property
     def over(self) -> bool:
-        """Whether it has ended, well or not."""
+        """Whether the call has ended, with a response or an error."""
         return self.response is not None or self.error is not None
 
 
 class HostActs:
-    """Does acts.
+    """Performs host actions on a mission.
 
     Args:
-        mission: the mission, also after it was reset; it is not kept.
+        mission: the mission; it may be reset. Only a weak reference is kept.
     """
 
     def __init__(self, mission: ActedOn) -> None:
@@ -79,25 +80,25 @@ class HostActs:
         }
 
     def do(self, name: str, *values: Any) -> Any:
-        """Do one.
+        """Perform a host action.
 
         Args:
-            name: ROS is what a ROS node outside of the mission does (name, values, as `OutsideGraph.do`; without any
-                the ROS side begins); PACKET puts one on the bus as it is (data); PUBLISH a message on a ROS topic
-                (topic, data); PARAM sets a ROS parameter (name, value); CALL begins to call a ROS service (name,
-                request), which the run goes on with; FILE writes one (path, data).
-            values: plain, as above; messages as ROS serialises them.
+            name: PACKET puts a packet on the bus unchanged (data). PUBLISH publishes a message on a ROS topic (topic,
+                data). PARAM sets a ROS parameter (name, value). CALL starts a ROS service call (name, request), which
+                continues with the run. FILE writes a file (path, data). ROS performs an action of an external ROS node
+                (name, values; see `OutsideGraph.do`), or starts the ROS side without values.
+            values: plain values, as above; messages in ROS serialization.
 
         Raises:
-            KeyError: there is no such act, topic or service.
-            CfeError: the bus refuses a packet.
+            KeyError: if the action, topic or service does not exist.
+            CfeError: if the bus refuses a packet.
         """
         return self._acts[name](*values)
 
     @property
     def _mission(self) -> ActedOn:
         mission = self._reference()
-        assert mission is not None  # who acts on it has it
+        assert mission is not None  # the caller holds a reference
         return mission
 
     @property
@@ -115,7 +116,7 @@ class HostActs:
         self._mission.cfe.sb.transmit_msg(data, is_origination=False)
 
     def _publish(self, name: str, data: bytes) -> None:
-        """Long messages go out in segments, as a node sends them."""
+        """Publish a message; long messages are sent in segments, as a node sends them."""
         from rospy_shim.types.transport import HEADER_BYTES, segments, whole_header
 
         topic, bus = self._ros.graph.topics[name], self._mission.cfe.sb
@@ -133,7 +134,7 @@ class HostActs:
         self._ros.graph.params.set(name, value)
 
     def _call(self, name: str, request: bytes) -> HostCall:
-        """Call from a task of a node that is there already; see `Graph.caller`."""
+        """Start a call from a task of an existing node; see `Graph.caller`."""
         node, service_class = self._ros.graph.caller(name)
         call, message = HostCall(), service_class._request_class().deserialize(request)
         proxy = node.ServiceProxy(name, service_class)

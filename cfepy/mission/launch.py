@@ -1,7 +1,7 @@
-"""Missions of ROS nodes: of launch files, with a startup script or without one, and of a single node as of `rosrun`.
+"""Missions of ROS nodes: from launch files, with or without a startup script, and from a single node as with `rosrun`.
 
-Launch files are found and read by `rospy_shim.roslaunch`, which is imported when there is one.
-Nothing is written to disk: the startup script of such a mission is bytes.
+`rospy_shim.roslaunch` finds and reads launch files; it is loaded when there is one. Nothing is written to disk: the
+startup script of such a mission is kept as bytes.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
     from rospy_shim.roslaunch.launch_plan import LaunchPlan
 
 PRIORITY, STACK_BYTES, RESTART_NOTHING = 100, 16384, 0
-COMPILED_STACK_BYTES = 65536  # the streams of C++ need more than C does
-ROOM = 64  # more nodes than there are that limits allow for, since a workstation does not limit threads
+COMPILED_STACK_BYTES = 65536  # C++ streams need more stack than C
+ROOM = 64  # spare nodes in the limits, because a workstation does not limit threads
 KEPT_ENVIRONMENT = ("HOME", "PATH", "ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH")
 
 
 TEST_RESULTS = "/ram/gtest.xml"
-"""Where a test in C++ leaves its results, in a file of the mission."""
+"""The results file of a test in C++, in the mission's files."""
 
 
 class NodeBuilder(Protocol):
@@ -40,11 +40,11 @@ class NodeBuilder(Protocol):
     def __call__(
         self, node: CppNode, params: Mapping[str, Any], others: Sequence[str], config: CppNodesConfig
     ) -> tuple[Path, str]:
-        """Build it.
+        """Build a node.
 
         Args:
             node: the node.
-            params: the tree of parameters.
+            params: the parameter tree.
             others: full names of the mission's other nodes.
             config: the mission file's section `cpp_nodes:`.
 
@@ -52,8 +52,8 @@ class NodeBuilder(Protocol):
             The shared object and its entry point.
 
         Raises:
-            UsageError: it cannot be built; the text says why.
-            CppNodesError: the section is wrong.
+            UsageError: if it cannot be built; the text gives the reason.
+            CppNodesError: if the section is wrong.
         """
 
 
@@ -64,13 +64,13 @@ def spec_of(
     notes: tuple[str, ...] = (),
     built: Mapping[str, BuiltProgram] | None = None,
 ) -> MissionSpec:
-    """A mission of ROS nodes that is not on disk; the run ends when all of them have.
+    """Return a mission of ROS nodes that is not on disk; the run ends when all nodes have ended.
 
     Args:
-        made_from: the launch file or script; its folder shows as /cf.
+        made_from: the launch file or script; its folder appears as /cf.
         nodes: by cFE name, each with its script.
-        params: the tree of parameters.
-        notes: what the user should know.
+        params: the parameter tree.
+        notes: notes for the user.
         built: nodes in C++ by cFE name.
     """
     built = built or {}
@@ -91,15 +91,15 @@ def spec_of(
 
 
 def read_launch(file: Path, args: Mapping[str, str] | None = None, build: NodeBuilder | None = None) -> MissionSpec:
-    """The mission that a launch file by itself is, in the user's environment.
+    """Return the mission of a launch file without a startup script, in the user's environment.
 
     Args:
         file: the launch file.
         args: values of its arguments.
-        build: builds nodes in C++; None leaves them out.
+        build: builds nodes in C++; None omits them.
 
     Raises:
-        UsageError: it is wrong, or has no node that can run here.
+        UsageError: if it is wrong or has no node that can run here.
     """
     from rospy_shim.roslaunch.launch_plan import plan_of
 
@@ -115,18 +115,18 @@ def read_launch(file: Path, args: Mapping[str, str] | None = None, build: NodeBu
 def built_programs(
     plan: LaunchPlan, build: NodeBuilder | None, config: CppNodesConfig | None = None
 ) -> tuple[dict[str, BuiltProgram], list[str]]:
-    """The nodes in C++ of a launch file, built.
+    """Build the nodes in C++ of a launch file.
 
     Args:
-        plan: the launch file's.
-        build: builds them; None builds none.
-        config: how, as a mission file says; None without one.
+        plan: the plan of the launch file.
+        build: builds a node; None builds none.
+        config: the section of the mission file; None without one.
 
     Returns:
-        Those that were built, by cFE name, and notes about those that cannot be.
+        The built nodes by cFE name, and notes about those that cannot be built.
 
     Raises:
-        UsageError: a required one cannot be built, or the mission file is wrong.
+        UsageError: if a required node cannot be built, or the mission file is wrong.
     """
     config = config or CppNodesConfig()
     built: dict[str, BuiltProgram] = {}
@@ -134,7 +134,7 @@ def built_programs(
     names = [f"/{node.name}" for node in plan.nodes.values()]
     names += [node.full_name for node in plan.compiled.values()]
     for app, node in plan.compiled.items():
-        if build is None:  # they were not asked for
+        if build is None:  # they were not requested
             break
         try:
             others = [each for each in names if each != node.full_name]
@@ -150,10 +150,10 @@ def built_programs(
 
 
 def launch_file(words: Sequence[str]) -> tuple[Path, dict[str, str]]:
-    """The launch file and the arguments that a command line names.
+    """Return the launch file and the arguments that a command line names.
 
     Raises:
-        UsageError: there is no such file.
+        UsageError: if there is no such file.
     """
     args = dict(word.split(":=", 1) for word in words if ":=" in word)
     names = [word for word in words if ":=" not in word]
@@ -174,15 +174,15 @@ def launch_file(words: Sequence[str]) -> tuple[Path, dict[str, str]]:
 def with_launch_files(
     spec: MissionSpec, launches: Sequence[tuple[Path, Mapping[str, str]]], build: NodeBuilder | None = None
 ) -> MissionSpec:
-    """A mission with the nodes of launch files added to its own.
+    """Return a mission with the nodes of launch files added to its own.
 
     Args:
         spec: the mission.
         launches: launch files, and the arguments of each.
-        build: builds nodes in C++; None leaves them out.
+        build: builds nodes in C++; None omits them.
 
     Raises:
-        UsageError: one of them is wrong.
+        UsageError: if one of them is wrong.
     """
     from rospy_shim.roslaunch.launch_plan import plan_of
 
@@ -205,35 +205,37 @@ def with_launch_files(
 
 
 def _ends(built: Mapping[str, BuiltProgram]) -> dict[str, NodeConfig]:
-    """What is to become of nodes in C++ when they end."""
+    """Return the settings for the end of nodes in C++, by cFE name."""
     return {app: program.config for app, program in built.items()}
 
 
 def mission_environment() -> dict[str, str]:
-    """What launch files in a mission see of the user's environment: little, to be the same everywhere."""
+    """Return the environment variables that launch files in a mission see: only a few, so that they behave the same
+    everywhere.
+    """
     return {name: os.environ[name] for name in KEPT_ENVIRONMENT if name in os.environ}
 
 
 def lines_for(nodes: Mapping[str, NodeConfig]) -> bytes:
-    """Lines of a startup script; the name is also the file's, which is never opened."""
+    """Return the startup script lines of nodes; the name is also the name of the file, which is never opened."""
     numbers = f"{PRIORITY}, {STACK_BYTES}, 0x0, {RESTART_NOTHING}"
     return "".join(f"CFE_APP, {app}, __main__, {app}, {numbers};\n" for app in nodes).encode()
 
 
 def compiled_lines(built: Mapping[str, BuiltProgram]) -> bytes:
-    """Lines of a startup script for nodes in C++, by cFE name."""
+    """Return the startup script lines of nodes in C++, by cFE name."""
     numbers = f"{PRIORITY}, {COMPILED_STACK_BYTES}, 0x0, {RESTART_NOTHING}"
     return "".join(f"CFE_APP, {app}, {each.entry}, {app}, {numbers};\n" for app, each in built.items()).encode()
 
 
 def node_script(words: Sequence[str]) -> tuple[Path, list[str]]:
-    """The script that a command line names, and what is left for the node.
+    """Return the script that a command line names, and the node's arguments.
 
     Args:
         words: a script, or a package and the name of a node in it; then the node's arguments.
 
     Raises:
-        UsageError: there is none.
+        UsageError: if there is none.
     """
     if os.path.isfile(words[0]):
         return Path(words[0]).resolve(), list(words[1:])
@@ -247,14 +249,14 @@ def node_script(words: Sequence[str]) -> tuple[Path, list[str]]:
 
 
 def spec_of_node(words: Sequence[str], build: NodeBuilder | None = None) -> MissionSpec:
-    """The mission that one node is, which a command line names.
+    """Return the mission of a single node named on a command line.
 
     Args:
-        words: as of `node_script`.
-        build: builds a node in C++; None knows none.
+        words: see `node_script`.
+        build: builds a node in C++; None for none.
 
     Raises:
-        UsageError: there is none, or it cannot be built.
+        UsageError: if there is none, or it cannot be built.
     """
     from rospy_shim.roslaunch.launch_plan import node_environment, node_in_cpp
 
@@ -274,7 +276,7 @@ def spec_of_node(words: Sequence[str], build: NodeBuilder | None = None) -> Miss
 
 
 def spec_of_script(script: Path, words: Sequence[str]) -> MissionSpec:
-    """The mission that one node is, with its arguments."""
+    """Return the mission of a single node with its arguments."""
     from rospy_shim.roslaunch.launch_plan import app_name, node_environment
 
     environ = node_environment(os.environ, os.environ.get("ROS_NAMESPACE", "/"))

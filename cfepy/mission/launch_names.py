@@ -1,4 +1,4 @@
-"""What launch files are called, and where the words of a user find one; `cfepy.mission.launch` reads them."""
+"""The names of launch files, and how to find one from a user's words; `cfepy.mission.launch` reads them."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ LAUNCH_FILES = (".launch", ".test", ".xml")
 
 
 def launch_file_of_package(text: str) -> Path | None:
-    """The launch file that a package and its name in the package mean, with a blank between them, as roslaunch has it.
+    """Return the launch file for a package and a name in it, separated by a blank, as in roslaunch.
 
     Args:
         text: such as "demo robot.launch".
 
     Returns:
-        None when the text looks like something else.
+        The file, or None if the text does not have this form.
 
     Raises:
-        UsageError: there is no such package, or no such file in it.
+        UsageError: if there is no such package, or no such file in it.
     """
     package, blank, name = text.partition(" ")
     if not blank or "/" in package or not name.endswith(LAUNCH_FILES):
@@ -29,7 +29,7 @@ def launch_file_of_package(text: str) -> Path | None:
 
 
 def files_near(path: Path, suffixes: tuple[str, ...]) -> list[str]:
-    """The files of some kind in the folder of a path, as they would be written in its place."""
+    """Return the files with some suffixes in the folder of a path, written like the path."""
     try:
         return [str(each) for each in sorted(path.parent.iterdir()) if each.suffix in suffixes]
     except OSError:

@@ -1,8 +1,8 @@
-"""How many of everything a mission may have: cFE's defaults, what the board can hold, and the mission file's `limits:`.
+"""The limits of a mission: cFE's defaults, the board's limits, and the mission file's `limits:`.
 
-The board is hardware, so its numbers are the upper limits: a mission file lowers them and never raises them. A limit
-that the board does not give, a mission raises as it likes. Where RAM has no limit, a mission with ROS nodes gets room
-for their parameters and their long messages besides.
+The board is hardware, so its numbers are the upper limits: a mission file can lower them, never raise them. A mission
+can raise a limit that the board does not set. If RAM is not limited, a mission with ROS nodes also gets room for their
+parameters and their long messages.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from cfepy.reading.marked_yaml import Marked, Mistakes
 from cfepy.status import UsageError
 
 NODES = "nodes"
-"""The key under `limits:` that stands for all limits at once: room for so many ROS nodes."""
+"""The key under `limits:` for all limits at once: room for a number of ROS nodes."""
 
 MOST_NODES = 4000
 
@@ -29,7 +29,7 @@ ROS_ROOM: Mapping[str, int] = {
     "sb_buf_memory_bytes": 64 << 20,
     "tbl_buf_memory_bytes": 1 << 20,
 }
-"""What cFE is built with for ROS's parameters, which are critical tables, for threads, and for images on their way."""
+"""The room in cFE for ROS parameters (which are critical tables), for threads, and for images in transit."""
 
 _PER_NODE: Mapping[str, int] = {
     "es_max_applications": 1,
@@ -42,10 +42,10 @@ _PER_NODE: Mapping[str, int] = {
     "sb_max_dest_per_pkt": 1,
     "sb_buf_memory_bytes": 65_536,
 }
-"""What a ROS node takes when it is no small one: threads, topics on both sides, services, messages under way."""
+"""The needs of a larger ROS node: threads, topics on both sides, services, messages in transit."""
 
 _WORKSTATION: Mapping[str, int] = {"os_queue_max_depth": 10_000, "sb_buf_memory_bytes": 1 << 28}
-"""What a ROS node finds on a PC, where messages that are not taken yet wait in sockets and in lists."""
+"""The resources of a ROS node on a PC, where unread messages wait in sockets and lists."""
 
 _MOST: Mapping[str, int] = {"sb_max_msg_ids": HIGHEST_VALID_MSG_ID, "sb_buf_memory_bytes": (1 << 31) - 1}
 
@@ -55,11 +55,11 @@ class MissionLimits:
     """The section `limits:` of a mission file.
 
     Attributes:
-        values: fields of `PlatformConfig`, under their names.
-        nodes: room for so many ROS nodes; 0 for no more than cFE has by itself.
-        yields: `nodes` was counted, and not written down by the user: a board's own limits hold, whether they are
-            enough or not; where RAM has no limit, nodes get what a PC has.
-        places: where each of them was said, for errors.
+        values: values of `PlatformConfig`, by field name.
+        nodes: number of ROS nodes to make room for; 0 for cFE's defaults.
+        yields: whether `nodes` was counted and not set by the user: then a board's own limits hold, even if they are
+            too low, and nodes get a PC's resources if RAM is not limited.
+        places: the position in the file of each, for errors.
     """
 
     values: Mapping[str, Limit] = field(default_factory=dict)
@@ -68,14 +68,14 @@ class MissionLimits:
     places: Mapping[str, Marked] = field(default_factory=dict)
 
     def config(self, board: BoardProfile, has_nodes: bool) -> PlatformConfig:
-        """The platform configuration of a mission.
+        """Return the platform configuration of a mission.
 
         Args:
-            board: what it runs on.
-            has_nodes: whether there are ROS nodes in it.
+            board: the board of the mission.
+            has_nodes: whether it has ROS nodes.
 
         Raises:
-            UsageError: the mission wants more than the board has.
+            UsageError: if the mission needs more than the board has.
         """
         base = PlatformConfig().with_limits(ROS_ROOM if has_nodes and not board.sram_size else {})
         room = {name: max(value, getattr(base, name)) for name, value in limits_for(self.nodes).items()}
@@ -103,11 +103,11 @@ class MissionLimits:
 
 
 def read_limits(section: Marked, mistakes: Mistakes) -> MissionLimits:
-    """The section `limits:`.
+    """Return the section `limits:`.
 
     Args:
         section: its value.
-        mistakes: takes an unknown name, or a value that cannot be.
+        mistakes: collects unknown names and invalid values.
     """
     values: dict[str, Limit] = {}
     places: dict[str, Marked] = {}
@@ -125,13 +125,13 @@ def read_limits(section: Marked, mistakes: Mistakes) -> MissionLimits:
 
 
 def limits_for(nodes: int) -> dict[str, int]:
-    """Limits under which so many ROS nodes have room, besides all that fits into cFE's defaults.
+    """Return limits with room for a number of ROS nodes, in addition to cFE's defaults.
 
     Args:
-        nodes: how many, at most 4000.
+        nodes: number of nodes, at most 4000.
 
     Returns:
-        Values for `MissionLimits`; none for 0 nodes.
+        Values for `MissionLimits`; empty for 0 nodes.
 
     >>> limits_for(500)["es_max_applications"]
     533
@@ -147,7 +147,7 @@ def limits_for(nodes: int) -> dict[str, int]:
 
 
 def _at_least(wanted: Mapping[str, Limit], board: BoardProfile) -> dict[str, Limit]:
-    """What is wanted without that of which the board has more by itself."""
+    """Return the wanted limits, without those that the board already exceeds."""
     return {
         name: value
         for name, value in wanted.items()

@@ -1,7 +1,7 @@
-"""The loader that ES and OSAL ask for code (OS_ModuleLoad): it asks finders in order, each of which knows one kind.
+"""The loader of code for ES and OSAL (OS_ModuleLoad): it asks finders in order, one for each kind of code.
 
-cFE names code by a virtual path, /cf/hk.so. The processor says which finders there are: `BuiltInApps` below, and those
-of ROS nodes and of Python code (`cfepy.mission.python_code`).
+cFE names code by a virtual path, /cf/hk.so. The processor sets the finders: `BuiltInApps` below, and those for ROS
+nodes and Python code (`cfepy.mission.python_code`).
 """
 
 from __future__ import annotations
@@ -16,58 +16,60 @@ from cfepy.writing.console import Console
 
 NODE_SYMBOL = "__main__"
 NO_SYMBOL = "NULL"
-"""The entry point of a library that has none."""
+"""The entry point of a library without one."""
 
 
 class Code(Protocol):
-    """Code behind a virtual path, found and not loaded yet."""
+    """Code at a virtual path that was found but not loaded yet."""
 
     def main(self, symbol: str, app_name: str) -> Callable[[], object]:
-        """The main function of an application; errors as `ModuleLoader.load`."""
+        """Return the main function of an application; see `ModuleLoader.load` for the errors."""
 
     def library(self, symbol: str) -> tuple[object, Callable[[int], object]]:
-        """A library, loaded anew: what has its symbols as attributes, and its init function, which gets the LibId."""
+        """Load a library anew; return an object with its symbols as attributes, and its init function, which gets the
+        LibId.
+        """
 
     def module(self, owner: str) -> object:
-        """Load it anew for an owner: what has its symbols as attributes."""
+        """Load the code anew for an owner; return an object with its symbols as attributes."""
 
 
 class Finder(Protocol):
     """Finds one kind of code by its virtual path."""
 
     def find(self, file: str, symbol: str | None) -> Code | None:
-        """The code behind a virtual path, None when this finder knows of none.
+        """Return the code behind a virtual path, or None if this finder has none.
 
         Args:
             file: the virtual path.
-            symbol: the entry point of the application that is to start; None for a library or another module.
+            symbol: the entry point of the application to start; None for a library or another module.
 
         Raises:
-            OsalError: the path is no good.
-            RemovedCodeError: there was code, and the mission removed it; no other finder is to be asked.
+            OsalError: if the path is invalid.
+            RemovedCodeError: if the mission removed the code; no other finder may be asked.
         """
 
     def exists(self, file: str) -> bool:
-        """Whether there is code behind a virtual path, whatever its entry point is; errors as `find`."""
+        """Return whether there is code at a virtual path, with any entry point; see `find` for the errors."""
 
     def unload(self, app_name: str) -> None:
-        """An application has ended: let go of its code, where that takes more than forgetting it."""
+        """Release the code of an ended application, if that needs any work."""
         return
 
     def forget(self) -> None:
-        """The processor is at its end: let go of what was loaded."""
+        """Release all loaded code at the end of the processor."""
 
 
 class RemovedCodeError(LookupError):
-    """The mission removed the code that its folder had."""
+    """Exception for code that the mission removed from its folder."""
 
 
 class ModuleLoader:
     """The loader of one processor.
 
     Args:
-        console: for what is missing, and for what goes wrong in the init function of a library.
-        finders: what is asked for code, in this order.
+        console: for missing code and errors in the init function of a library.
+        finders: the finders, in the order of the search.
     """
 
     def __init__(self, console: Console, finders: Sequence[Finder]) -> None:
@@ -76,45 +78,47 @@ class ModuleLoader:
         self._libraries: list[object] = []
 
     def exists(self, file: str) -> bool:
-        """Whether there is code behind a virtual path."""
+        """Return whether there is code at a virtual path."""
         try:
             return any(finder.exists(file) for finder in self._finders)
         except (OsalError, RemovedCodeError):
             return False
 
     def load(self, file: str, symbol: str, app_name: str) -> Callable[[], object]:
-        """The main function of an application, ready to be called without arguments.
+        """Return the main function of an application, ready to be called without arguments.
 
         Raises:
-            OsalError: there is no such file, or executing it failed (the traceback is on the console).
-            SymbolError: it has no such function.
+            OsalError: if the file does not exist or its execution failed (the traceback is on the console).
+            SymbolError: if it has no such function.
         """
         return self._find(file, symbol).main(symbol, app_name)
 
     def load_library(self, file: str, symbol: str) -> Callable[[int], object]:
-        """The init function of a library; one that is called NULL does nothing. Errors as `load`."""
+        """Return the init function of a library; the name NULL gives a function that does nothing. See `load` for the
+        errors.
+        """
         library, init = self._find(file, None).library(symbol)
         return lambda lib_id: self._init_library(library, init, lib_id)
 
     def load_module(self, file: str, owner: str) -> object:
-        """Execute the code behind a virtual path anew, for another owner than an application (OS_ModuleLoad).
+        """Execute the code at a virtual path anew, for an owner other than an application (OS_ModuleLoad).
 
         Raises:
-            OsalError: there is no such file, or executing it failed (the traceback is on the console).
+            OsalError: if the file does not exist or its execution failed (the traceback is on the console).
         """
         return self._find(file, None).module(owner)
 
     def unload(self, app_name: str) -> None:
-        """An application has ended: its code may go."""
+        """Release the code of an ended application."""
         for finder in self._finders:
             finder.unload(app_name)
 
     def library_symbol(self, name: str) -> object | None:
-        """What a name stands for in a library that was loaded, the first one that has it; None when none has it."""
+        """Return the object of a name in the first loaded library that has it, or None."""
         return next((getattr(library, name) for library in self._libraries if hasattr(library, name)), None)
 
     def forget(self) -> None:
-        """Take the modules of this mission out of the process, with those that they consist of."""
+        """Remove the modules of this mission, and their submodules, from the process."""
         for finder in self._finders:
             finder.forget()
 
@@ -132,7 +136,9 @@ class ModuleLoader:
         raise OsalError(OS_ERROR, text)
 
     def _init_library(self, library: object, init: Callable[[int], object], lib_id: int) -> object:
-        """What the init function returns; a negative number when it fails, so that the boot goes on without it."""
+        """Call an init function and return its result; return a negative number for an error, so that the boot
+        continues.
+        """
         try:
             result = init(lib_id)
         except (TaskExit, KeyboardInterrupt):
@@ -142,13 +148,13 @@ class ModuleLoader:
 
             self._console.write(app_traceback(error))
             return OS_ERROR
-        if not isinstance(result, int) or result == 0:  # as ES judges it
+        if not isinstance(result, int) or result == 0:  # as ES interprets it
             self._libraries.append(library)
         return result
 
 
 class MainCode:
-    """An application that is a main function, and no module."""
+    """An application that is a main function without a module."""
 
     def __init__(self, file: str, make_main: Callable[[str], Callable[[], object]]) -> None:
         self._file = file
@@ -168,7 +174,7 @@ class MainCode:
 
 
 class BuiltInApps(Finder):
-    """Applications that have no code on a disk.
+    """Applications without code on a disk.
 
     Args:
         mains: their main functions, by virtual path.
@@ -185,4 +191,4 @@ class BuiltInApps(Finder):
         return file in self._mains
 
     def forget(self) -> None:
-        """There is nothing to let go of."""
+        """Do nothing: there is no code to release."""

@@ -1,7 +1,7 @@
 """`Mission`: a mission on one simulated computer, through all its resets.
 
-It makes what outlives a reset (kernel, clock, trace, console, files, network, retained memory) and lets a `Processor`
-boot on it. Nothing in the parts knows of this module.
+It creates the parts that outlive a reset (kernel, clock, trace, console, files, network, retained memory) and boots a
+`Processor` on them. No part depends on this module.
 """
 
 from __future__ import annotations
@@ -47,16 +47,17 @@ if TYPE_CHECKING:
 P = ParamSpec("P")
 T = TypeVar("T")
 
-SHUTDOWN_NS = 2_000_000_000  # virtual time that nodes get at the end of a run for their shutdown hooks
-RESTART_NS = 10 * NS_PER_MS  # from a reset until the board comes up; also keeps time going when every boot fails
+SHUTDOWN_NS = 2_000_000_000  # virtual time for the shutdown hooks of nodes at the end of a run
+RESTART_NS = 10 * NS_PER_MS  # from a reset until the board starts; time also passes if every boot fails
 
 
 def _while_there_is_one(method: Callable[P, T], otherwise: T) -> Callable[P, T]:
-    """A method of the mission, for its tasks: who keeps it does not keep the mission, which its user may forget.
+    """Return a method of the mission for its tasks that holds only a weak reference, so that the user can drop the
+    mission.
 
     Args:
-        method: bound.
-        otherwise: what comes of a call when there is no mission any more.
+        method: the bound method.
+        otherwise: result of a call after the mission was dropped.
     """
     reference = weakref.WeakMethod(method)
 
@@ -68,7 +69,7 @@ def _while_there_is_one(method: Callable[P, T], otherwise: T) -> Callable[P, T]:
 
 
 def _noting_lines(trace: Trace, kernel: Kernel, failed: FailedCode) -> Callable[[str], None]:
-    """What the console gives its lines to: the trace, and what reads tracebacks in them."""
+    """Return the consumer of console lines: it records them in the trace and looks for tracebacks."""
 
     def note(line: str) -> None:
         trace.note(line)
@@ -78,31 +79,30 @@ def _noting_lines(trace: Trace, kernel: Kernel, failed: FailedCode) -> Callable[
 
 
 class Mission:
-    """One mission on one simulated processor.
+    """A mission on one simulated processor.
 
     Args:
         mission: a startup script, a mission's folder, the name of a shipped mission, or a `MissionSpec`.
-        seed: of everything random in the mission.
+        seed: seed of everything random in the mission.
         board: name or file of a board profile; None takes the mission's own.
-        tasks: "thread", "greenlet" or "auto": greenlets where they are installed (`cfepy.rtos.context_choice`).
-        console: where lines go; None prints them.
-        policy: decides which task runs next where there is a choice (`cfepy.rtos.policy`); None is first come, first
-            served.
+        tasks: "thread", "greenlet" or "auto": greenlets if they are installed (`cfepy.rtos.context_choice`).
+        console: called with each line; None prints them.
+        policy: decides which task runs next (`cfepy.rtos.policy`); None is first come, first served.
         trace: takes the records; None makes one that only keeps the digest.
-        attachments: what watches the mission or changes it, in the order in which they are called.
+        attachments: objects that observe or modify the mission, in the order of their calls.
 
     Attributes:
-        spec, seed, tasks, board, config, console: as given, or as found.
-        why_tasks: why "auto" left installed greenlets alone; empty when it did not.
+        spec, seed, tasks, board, config, console: as given, or as determined.
+        why_tasks: why "auto" did not use installed greenlets; empty if it did.
         kernel, trace, files, network: the parts that outlive a reset.
-        outside: the door through which anything comes in while it runs.
-        record: what the report tells; `record.resets` are the resets so far.
-        accesses: what its Python code tells of what it touches.
-        stall_watch: ends the run when a task does not give up the CPU.
-        processor: what runs between two resets; a reset puts another one here.
-        booted: virtual ns at which the mission became OPERATIONAL for the first time, None before.
-        meet: lets those that fly beside it come to where it stands, and tells the virtual ns until which it may go on
-            without them; None when it flies alone.
+        outside: the entry point for all external input during the run.
+        record: the data of the report; `record.resets` has the resets so far.
+        accesses: collects the accesses of the mission's Python code to shared data.
+        stall_watch: ends the run if a task does not give up the CPU.
+        processor: the processor that runs between two resets; a reset replaces it.
+        booted: virtual ns at which the mission first became OPERATIONAL; None before.
+        meet: synchronizes missions that fly together, and returns the virtual ns until which this one may continue;
+            None if it flies alone.
     """
 
     def __init__(
@@ -155,7 +155,7 @@ class Mission:
             each.power_up(self.processor)
 
     def forget_files(self) -> None:
-        """What the run wrote is gone; for a process that leaves it in the middle."""
+        """Remove the files that the run wrote, for a process that leaves the run early."""
         self._machine.run_files.close()
 
     def _kernel_class(self, base: type[Kernel]) -> type[Kernel]:
@@ -187,79 +187,81 @@ class Mission:
         )
 
     def _provide_tables(self) -> None:
-        """Put the default tables of shipped apps into /cf, where the mission has none of its own."""
+        """Put the default tables of shipped apps into /cf, unless the mission has its own."""
         for package in self._packages():
             for table in sorted(package.glob("tables/*.tbl")):
                 if self.files.find(f"/cf/{table.name}") is None:
                     self.files.write_file(f"/cf/{table.name}", table.read_bytes())
 
     def _packages(self) -> Iterator[Path]:
-        """The folders of apps and libraries that are packages, in the order of the startup script."""
+        """Yield the folders of apps and libraries that are packages, in the order of the startup script."""
         for entry in self.spec.entries:
             code = None if entry.symbol == NODE_SYMBOL else find_code(entry.path, self.spec.folder)
             if isinstance(code, Path) and code.name == "__init__.py":
                 yield code.parent
 
-    # -- what runs now ---------------------------------------------------------------------------------------------
+    # -- the running parts --------------------------------------------------------------------------------------
 
     @property
     def cfe(self) -> Cfe:
-        """The handle of the services that run now."""
+        """The handle of the running services."""
         return self.processor.cfe
 
     @property
     def memory(self) -> MemoryBudget:
-        """The board's memory, as booked since the last reset."""
+        """The memory accounting of the board since the last reset."""
         return self.processor.memory
 
     @property
     def ros(self) -> RosRuntime | None:
-        """The ROS side; None before the first node started."""
+        """The ROS side; None before the first node has started."""
         return self.processor.ros
 
     def begin_ros(self) -> RosRuntime:
-        """The ROS side, made if there was no node yet."""
+        """Return the ROS side, and create it if there was no node yet."""
         return self.processor.begin_ros()
 
     @property
     def run_files(self) -> Overlay | None:
-        """What apps and nodes see of files, and wrote, until the mission is closed; None before it was needed."""
+        """The files of apps and nodes, as seen and written, until the mission is closed; None before they were
+        needed.
+        """
         return self._machine.run_files.made
 
     @property
     def booted(self) -> int | None:
-        """Virtual ns at which the mission became OPERATIONAL for the first time, None before."""
+        """Virtual ns at which the mission first became OPERATIONAL; None before."""
         return self._first_boot if self._first_boot is not None else self.processor.booted
 
     @property
     def over(self) -> bool:
-        """Whether the run has come to its end by itself: a node ended that the others cannot do without, or all did."""
+        """Whether the run has ended on its own: a required node, or all nodes, have ended."""
         return self.ros is not None and bool(self.ros.monitor.over)
 
     @property
     def stall(self) -> StallError | None:
-        """What the run was broken off for; None as long as each task has given up the CPU."""
+        """The error of a run that was broken off for a stall; None if every task has given up the CPU."""
         broken = self.kernel.broken
         return broken if isinstance(broken, StallError) else None
 
     # -- running ---------------------------------------------------------------------------------------------------
 
     def run_for(self, seconds: float) -> None:
-        """Run for some virtual seconds more.
+        """Run for a number of virtual seconds.
 
         Raises:
-            StallError: a task does not give up the CPU.
-            KeyboardInterrupt: and what a task outside any app raised.
+            StallError: if a task does not give up the CPU.
+            KeyboardInterrupt: for Ctrl-C; errors of tasks outside any app are also raised.
         """
         self.run_until(self.kernel.now + round(seconds * NS_PER_S))
 
     def run_until(self, until_ns: int) -> None:
-        """Run until a virtual time in ns, through every reset that is asked for on the way.
+        """Run until a virtual time in ns, through every requested reset.
 
         Raises:
-            StallError: a task does not give up the CPU.
-            KeyboardInterrupt: Ctrl-C; the run can go on after it, if each task gave up the CPU soon.
-            RuntimeError: the mission was closed.
+            StallError: if a task does not give up the CPU.
+            KeyboardInterrupt: for Ctrl-C; the run can continue afterwards, if each task soon gave up the CPU.
+            RuntimeError: if the mission was closed.
         """
         if self._is_closed:
             raise RuntimeError("this mission was closed: its tasks have ended, and it cannot go on; boot another one")
@@ -268,11 +270,11 @@ class Mission:
             if self.meet is not None:
                 stop_ns = min(until_ns, self.meet())
             self._run_held_back(stop_ns)
-            if stop_ns == until_ns or self.kernel.now < stop_ns:  # it is there, or was stopped on the way
+            if stop_ns == until_ns or self.kernel.now < stop_ns:  # it has arrived, or was stopped on the way
                 return
 
     def _run_held_back(self, until_ns: int) -> None:
-        """Run until a virtual time in ns; a signal does not break off what a task is about."""
+        """Run until a virtual time in ns, while signals wait until tasks have finished their current step."""
         if not self._resetting and self.kernel.passes(until_ns):
             self.outside.begin_piece(until_ns)
             return
@@ -310,12 +312,12 @@ class Mission:
             length.took(kernel.now - start_ns, watch.elapsed_ns())
 
     def conclude(self) -> None:
-        """Say that the time of the run is over; what comes now is the shutdown."""
+        """Notify the attachments that the time of the run is over; the shutdown follows."""
         for each in self._attachments:
             each.conclude()
 
     def shut_down_nodes(self) -> None:
-        """Ask all ROS nodes to end, and give them a little virtual time for their shutdown hooks."""
+        """Ask all ROS nodes to shut down, and give them a little virtual time for their shutdown hooks."""
         ros = self.ros
         if ros is None or self._resetting or self.kernel.broken is not None:
             return
@@ -325,17 +327,17 @@ class Mission:
             self.kernel.run(min(end, self.kernel.now + SHUTDOWN_NS // 20))
 
     def finish(self) -> str:
-        """The run is over: its digest. What tasks do while they are ended is no part of it."""
+        """End the run and return its digest. Actions of tasks while they are being ended do not belong to the run."""
         digest = self.trace.digest()
         for each in self._attachments:
             each.finish()
         return digest
 
     def close(self) -> None:
-        """End every task; the numbers stay readable.
+        """End every task; the results stay readable.
 
         Raises:
-            RuntimeError: the caller is in another process than the tasks, or for greenlets in another thread.
+            RuntimeError: if the caller is in another process than the tasks, or for greenlets in another thread.
         """
         self.kernel.check_caller()
         self._is_closed = True
@@ -356,20 +358,21 @@ class Mission:
         self.close()
 
     def __del__(self) -> None:
-        """One that nobody has closed, and that nobody can any more: its threads must not outlive it.
+        """Close a mission that was not closed and is no longer referenced, because its threads must not outlive it.
 
-        At the end of Python there is nothing to do any more, and its threads do not run.
+        At the exit of Python this does nothing, because its threads no longer run.
         """
         if getattr(self, "_is_closed", True) or sys.is_finalizing():
             return
         warnings.warn(f"mission {self.spec.folder.name} was not closed", ResourceWarning, source=self, stacklevel=2)
-        with suppress(RuntimeError):  # greenlets of another thread, or tasks of another process: no threads of ours
+        # greenlets of another thread, or tasks of another process: these are not our threads
+        with suppress(RuntimeError):
             self.close()
 
     # -- failures and resets ---------------------------------------------------------------------------------------
 
     def _task_failed(self, task: Task, error: BaseException) -> bool:
-        """An exception came out of a task: say so, and let ES act as the startup script asks."""
+        """Report an exception from a task, and let ES handle it as the startup script requests."""
         self.record.part(FailedCode).take(task, error, self.kernel.now)
         if task.owner is None or isinstance(error, PanicError):
             return False
@@ -380,8 +383,8 @@ class Mission:
         return self.cfe.es.take_fault(task, error, reason(error))
 
     def _on_restart(self, reset_type: int, why: str, fault: bool) -> None:
-        """The PSP restarts the processor: come back to the host, which alone can end every task."""
-        if not self._resetting:  # a `finally` block of a task that is being ended may ask once more
+        """Handle a restart of the processor by the PSP: return to the host, which alone can end every task."""
+        if not self._resetting:  # a `finally` block of a task that is being ended may request it again
             self._resetting = True
             self.record.resets.append(Reset(self.kernel.now, reset_type, why, fault))
         self.kernel.stop()

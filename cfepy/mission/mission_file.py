@@ -1,8 +1,8 @@
-"""The mission file: a table of its sections, and what reads each of them.
+"""The mission file: a table of its sections and their readers.
 
-The file is read once, by `read_mission_file`: before a run its first mistake is raised, `cfepy check` has all of them
-kept. docs/mission_file.md describes it. The sections that say what must hold of a run (`DEMANDS`) are kept as they
-stand; `cfepy.monitors.run_rules` reads them.
+`read_mission_file` reads the file once. Before a run it raises the first mistake; `cfepy check` collects all of them.
+docs/mission_file.md describes the file. The sections with rules for a run (`DEMANDS`) are kept unread;
+`cfepy.monitors.run_rules` reads them.
 """
 
 from __future__ import annotations
@@ -25,22 +25,22 @@ from cfepy.nodes import BridgedPacket, NodeConfig, RosBridge, RosConfig, TopicCo
 from cfepy.reading.marked_yaml import Marked, Mistakes, load
 
 DEMANDS = ("invariants", "results", "deadlines", "inversions")
-"""Sections that say what must hold of a run."""
+"""Sections with rules for a run."""
 
 LaunchFile = tuple[Path, Mapping[str, str]]
-"""A launch file, and the arguments that it is given."""
+"""A launch file with its arguments."""
 
 
 @dataclass(frozen=True, slots=True)
 class MissionSections:
-    """What a mission file says, as far as it could be read.
+    """The content of a mission file, as far as it could be read.
 
     Attributes:
         name, board, cfe_version, compiled, cpp_nodes, limits, nodes, topics, params, params_from, ordered_sets,
-        connection_delay, ros_bridge, launch, sweep: the sections of these names, as their readers give them; `name`
-            and `board` are None when nothing is said.
-        demands: the sections of `DEMANDS`, as they stand there.
-        places: all sections that are there and known, as they stand there.
+            connection_delay, ros_bridge, launch, sweep: the values of these sections; `name` and `board` are None if
+            missing.
+        demands: the sections of `DEMANDS`, unread.
+        places: all known sections in the file, unread.
     """
 
     name: str | None = None
@@ -63,7 +63,7 @@ class MissionSections:
 
     @property
     def ros(self) -> RosConfig:
-        """All that is said about ROS, but for launch files."""
+        """The whole ROS configuration, except launch files."""
         params = merged(self.params_from, self.params)
         return RosConfig(
             nodes=self.nodes,
@@ -75,7 +75,7 @@ class MissionSections:
         )
 
     def board_in(self, folder: Path) -> str:
-        """The board: a file of the mission's folder, or else a name or path; "linux" when nothing is said."""
+        """Return the board: a file in the mission's folder, otherwise a name or path; "linux" if none is given."""
         board = "linux" if self.board is None else self.board
         return str(folder / board) if os.path.isfile(folder / board) else board
 
@@ -85,7 +85,7 @@ def read_mission_file(path: Path, mistakes: Mistakes) -> MissionSections:
 
     Args:
         path: the file.
-        mistakes: takes what is wrong with it.
+        mistakes: collects the mistakes.
     """
     root = mistakes.attempt(partial(load, path))
     places: dict[str, Marked] = {}
@@ -99,11 +99,11 @@ def read_mission_file(path: Path, mistakes: Mistakes) -> MissionSections:
 
 
 def read_launches(section: Marked, mistakes: Mistakes) -> tuple[LaunchFile, ...]:
-    """The launch files under `launch:`, each by its path, or as a mapping with its arguments.
+    """Return the launch files under `launch:`, each as a path, or as a mapping with its arguments.
 
     Args:
-        section: the list; paths start at the folder of its file.
-        mistakes: takes a file that is not there, or an unknown key.
+        section: the list; paths are relative to the folder of its file.
+        mistakes: collects missing files and unknown keys.
     """
     items = mistakes.attempt(section.items) or []
     found = (mistakes.attempt(partial(_launch, item)) for item in items)
@@ -121,11 +121,11 @@ def _launch(item: Marked) -> LaunchFile:
 
 
 def read_compiled(section: Marked, mistakes: Mistakes) -> CompiledConfig:
-    """The section `compiled:`.
+    """Return the section `compiled:`.
 
     Args:
         section: its value.
-        mistakes: takes unknown keys, and values that are neither true nor false.
+        mistakes: collects unknown keys, and values that are neither true nor false.
     """
     said = {
         name: mistakes.attempt(partial(_truth, value)) for name, value in mistakes.fields(section, _COMPILED_FIELDS)
@@ -137,11 +137,11 @@ def read_compiled(section: Marked, mistakes: Mistakes) -> CompiledConfig:
 
 
 def read_nodes(section: Marked, mistakes: Mistakes) -> dict[str, NodeConfig]:
-    """The section `nodes:`, without the nodes that are wrong.
+    """Return the section `nodes:`, without invalid nodes.
 
     Args:
         section: its value.
-        mistakes: takes unknown keys, and values that cannot be.
+        mistakes: collects unknown keys and invalid values.
     """
     nodes: dict[str, NodeConfig] = {}
     for app, entry in mistakes.mapping(section).items():
@@ -161,11 +161,11 @@ def read_nodes(section: Marked, mistakes: Mistakes) -> dict[str, NodeConfig]:
 
 
 def read_topics(section: Marked, mistakes: Mistakes) -> dict[str, TopicConfig]:
-    """The section `topics:`, without the topics that are wrong.
+    """Return the section `topics:`, without invalid topics.
 
     Args:
         section: its value.
-        mistakes: takes an unknown key, a missing or impossible MsgId, one that is given twice, a name without "/".
+        mistakes: collects unknown keys, missing, invalid or duplicate MsgIds, and names without "/".
     """
     topics: dict[str, TopicConfig] = {}
     by_id: dict[int, str] = {}
@@ -196,11 +196,11 @@ MOST_CLOCK_HZ = 1000
 
 
 def read_bridge(section: Marked, mistakes: Mistakes) -> RosBridge:
-    """The section `ros_bridge:`, without what is wrong in it.
+    """Return the section `ros_bridge:`, without invalid entries.
 
     Args:
         section: its value.
-        mistakes: takes an unknown key, a topic's name without "/", and a rate that cannot be.
+        mistakes: collects unknown keys, topic names without "/", and invalid rates.
     """
     publish: dict[str, BridgedPacket] = {}
     subscribe: list[str] = []
@@ -251,7 +251,7 @@ def _namespace(entry: Marked) -> str:
 
 
 def _keys(entry: Marked) -> tuple[str | float, ...]:
-    """What is typed at a node's terminal."""
+    """Return the keys typed at a node's terminal."""
     keys = tuple(item.value for item in entry.items())
     for item, key in zip(entry.items(), keys, strict=True):
         if isinstance(key, bool) or not isinstance(key, str | int | float) or (not isinstance(key, str) and key < 0):
@@ -260,14 +260,14 @@ def _keys(entry: Marked) -> tuple[str | float, ...]:
 
 
 def _truth(entry: Marked) -> bool:
-    """A value that is true or false."""
+    """Return a value that is true or false."""
     if not isinstance(entry.value, bool):
         raise entry.fail(f"is {entry.value!r}; write true or false")
     return entry.value
 
 
 def _release(entry: Marked) -> str:
-    """A release of cFE."""
+    """Return a release of cFE."""
     if not isinstance(entry.value, str) or entry.value not in RELEASES:
         choice = " or ".join(f'"{name}"' for name in RELEASES)
         raise entry.fail(f"is {entry.value!r}; the releases of cFE to choose from are {choice}")
@@ -297,11 +297,11 @@ _NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
     "respawn_delay": Marked.time,
     "required": _truth,
 }
-"""What reads each field of a node; the results are those of `NodeConfig`."""
+"""The readers of the fields of a node, which return the values of `NodeConfig`."""
 
 
 def _single(read: Callable[[Marked], Any]) -> Callable[[Marked, Mistakes], Any]:
-    """What reads a section that can have one mistake only."""
+    """Return a reader for a section that can have only one mistake."""
     return lambda section, mistakes: mistakes.attempt(partial(read, section))
 
 
@@ -322,7 +322,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "launch": read_launches,
     "sweep": read_sweep,
 }
-"""What reads each section; the results are the attributes of `MissionSections`. None stands for nothing good."""
+"""The readers of the sections, which return the attributes of `MissionSections`, or None for an invalid section."""
 
 SECTIONS = (*_READERS, *DEMANDS)
-"""All sections that a mission file may have."""
+"""All sections of a mission file."""

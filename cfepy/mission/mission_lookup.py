@@ -1,7 +1,7 @@
-"""Finding the mission that a user means, and reading all that it is made of.
+"""Finding the mission that a user names, and reading all its files.
 
-That is a startup script with the mission file beside it (`mission.yaml`, or the script's name with `.yaml`) and the
-lock file of its MsgIds, both optional; or a launch file.
+A mission is a startup script with an optional mission file next to it (`mission.yaml`, or the script's name with
+`.yaml`) and an optional lock file of its MsgIds. It can also be a launch file.
 """
 
 from __future__ import annotations
@@ -37,20 +37,20 @@ _LONGEST_FIRST_LINE = 200
 
 
 def shipped_missions() -> list[str]:
-    """Names of the missions that cfepy brings along, sorted."""
+    """Return the names of the missions included in cfepy, sorted."""
     return sorted(path.parent.name for path in shipped("missions").glob(f"*/{STARTUP_SCRIPT}"))
 
 
 def find_script(mission: str) -> Path:
-    """The startup script or launch file that a user means.
+    """Return the startup script or launch file for a user's name.
 
     Args:
-        mission: a path of a script or launch file, a folder with a startup.scr, the name of a shipped mission, that
+        mission: a path of a script or launch file, a folder with a startup.scr, the name of a shipped mission, or one
             with another startup script in its folder (`pathfinder/mended.scr`), or a package and the name of a launch
             file in it, with a blank between them.
 
     Raises:
-        UsageError: nothing of the kind.
+        UsageError: if it is none of these.
     """
     path = Path(mission)
     if os.path.isfile(path):
@@ -74,13 +74,13 @@ def find_script(mission: str) -> Path:
 
 
 def missions_near(path: Path) -> list[str]:
-    """The missions in the folder of a path, as they would be written in its place."""
+    """Return the missions in the folder of a path, written like the path."""
     folders = [str(each.parent) for each in path.parent.glob(f"*/{STARTUP_SCRIPT}")]
     return sorted([*folders, *files_near(path, _MISSION_FILES)])
 
 
 def is_node(mission: str) -> bool:
-    """Whether a text names a file that is a Python program: a ROS node by itself, which is flown as one."""
+    """Return whether a text names a Python program, which is flown as a single ROS node."""
     path = Path(mission)
     if not os.path.isfile(path):
         return False
@@ -89,10 +89,10 @@ def is_node(mission: str) -> bool:
 
 
 def _check_kind(path: Path) -> None:
-    """What is neither a startup script nor a launch file must not boot as an empty mission.
+    """Check that a file is a startup script or a launch file; another file must not boot as an empty mission.
 
     Raises:
-        UsageError: it is something else.
+        UsageError: if it is another kind of file.
     """
     data = read_limited(path, max(LINE_FILE_BYTES, XML_BYTES))
     if path.suffix == ".py" or data.startswith(b"#!"):
@@ -103,21 +103,21 @@ def _check_kind(path: Path) -> None:
 
 
 def mission_file_of(script: Path) -> Path | None:
-    """The mission file that belongs to a startup script; None when there is none."""
+    """Return the mission file that belongs to a startup script; None if there is none."""
     candidates = (script.with_suffix(".yaml"), script.parent / MISSION_FILE)
     return next((path for path in candidates if os.path.isfile(path)), None)
 
 
 def read_mission(mission: str, args: Mapping[str, str] | None = None, build: NodeBuilder | None = None) -> MissionSpec:
-    """Find a mission and read its mission file, or the launch file that it is.
+    """Find a mission, and read its mission file or launch file.
 
     Args:
         mission: see `find_script`.
         args: arguments for a launch file.
-        build: builds the nodes in C++ of launch files; None leaves them out.
+        build: builds the nodes in C++ of launch files; None omits them.
 
     Raises:
-        UsageError: there is no such mission, its mission file is wrong, or it takes no arguments.
+        UsageError: if there is no such mission, its mission file is wrong, or it takes no arguments.
     """
     script = find_script(mission)
     if script.suffix in LAUNCH_FILES:
@@ -138,7 +138,7 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None, build: Nod
 
 
 def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None) -> MissionSpec:
-    """A mission as its mission file says; one without such a file imports nothing that reads it."""
+    """Return a mission with the content of its mission file; without such a file its readers are not loaded."""
     from cfepy.mission.mission_file import read_mission_file
 
     said = read_mission_file(path, Mistakes())
@@ -163,13 +163,13 @@ def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None)
 
 
 def read_sections(mission: str) -> MissionSections:
-    """The sections of a mission file; those of a mission without one are as usual.
+    """Return the sections of a mission file, or the defaults for a mission without one.
 
     Args:
         mission: the file itself, or its mission; see `find_script`.
 
     Raises:
-        UsageError: there is neither, or the file is wrong.
+        UsageError: if there is neither, or the file is wrong.
     """
     from cfepy.mission.mission_file import MissionSections, read_mission_file
 
@@ -181,13 +181,14 @@ def read_sections(mission: str) -> MissionSections:
 
 
 def cpp_nodes_source(said: str) -> str:
-    """Where it stands how nodes in C++ are built, as a command line says: a profile's name, or the path of a YAML file.
+    """Return the source of the build settings for nodes in C++ from a command line: a profile's name, or the path of a
+    YAML file.
 
     Args:
         said: a profile, a YAML file with a section `cpp_nodes:`, or the mission of one.
 
     Raises:
-        UsageError: there is neither.
+        UsageError: if there is neither.
     """
     if said in PROFILES or (said.endswith((".yaml", ".yml")) and os.path.isfile(said)):
         return said
@@ -198,13 +199,13 @@ def cpp_nodes_source(said: str) -> str:
 
 
 def cpp_nodes_of(said: str) -> CppNodesConfig:
-    """How nodes in C++ are built, as a command line says.
+    """Return the build settings for nodes in C++ from a command line.
 
     Args:
         said: see `cpp_nodes_source`.
 
     Raises:
-        UsageError: there is no such file or no such section, or something in the file is wrong.
+        UsageError: if the file or the section does not exist, or the file is wrong.
     """
     source = cpp_nodes_source(said)
     if source in PROFILES:
@@ -218,14 +219,14 @@ def cpp_nodes_of(said: str) -> CppNodesConfig:
 
 
 def read_lock(path: Path, ros: RosConfig) -> RosConfig:
-    """The MsgIds of a lock file, with all else that is said about ROS.
+    """Return the ROS configuration with the MsgIds of a lock file.
 
     Args:
         path: the file; see `cfepy.ground.survey`.
-        ros: what the mission file says.
+        ros: the configuration in the mission file.
 
     Raises:
-        UsageError: it is no such file, or gives a MsgId twice.
+        UsageError: if it is not a lock file, or has a duplicate MsgId.
     """
     sections = load(path).mapping(("topics", "services"))
     by_id = {topic.msg_id: topic.name for topic in ros.topics.values()}
@@ -233,7 +234,7 @@ def read_lock(path: Path, ros: RosConfig) -> RosConfig:
     for title, section in sections.items():
         for name, entry in section.mapping().items():
             if title == "topics" and name in ros.topics:
-                continue  # the mission file has chosen another since
+                continue  # the mission file has a newer choice
             msg_id = entry.integer(1, HIGHEST_VALID_MSG_ID)
             if msg_id in by_id:
                 text = f"has the MsgId 0x{msg_id:04X} of {by_id[msg_id]}; remove one, and lock the mission again"

@@ -1,8 +1,8 @@
-"""The one door through which anything from outside enters a running mission: datagrams, connections and their bytes.
+"""The single entry point for external input into a running mission: datagrams, connections and their bytes.
 
-The ground link, the bridge to real sockets and a replay bring things in here, while the run stands still between two
-pieces of it; only a call of the mission's own to the outside is answered within a piece. A listener gets each
-arrival, so that a journal has all of them and a replay can repeat them.
+The ground link, the bridge to real sockets and a replay bring input in here, while the run is paused between two of its
+parts. Only the mission's own calls to the outside are answered within a part. A listener gets each arrival, so a
+journal has all of them and a replay can repeat them.
 """
 
 from __future__ import annotations
@@ -20,13 +20,12 @@ ACT = "act"
 
 
 class Arrival(NamedTuple):
-    """Something that came from outside: its kind, and what belongs to it, as plain values.
+    """An input from outside: its kind, and its plain values.
 
-    DATAGRAM: port of the mission, host and port of the sender, data. CALL: the outside connects: port, host and port
-    of the caller. ANSWER: the mission connects: host and port of both sides, whether it was answered.
-    Of a connection, by its number from 0: BYTES that came, how many the outside has TAKEN, that the outside ENDED what
-    it sends, that it CLOSED the connection. ACT: an act on the mission itself (`cfepy.mission.host_actions`):
-    name and values of the act.
+    DATAGRAM: port of the mission, host and port of the sender, data. CALL (an external connect): port, host and port of
+    the caller. ANSWER (the mission connects): host and port of both sides, whether it was answered. For a connection,
+    by its number from 0: BYTES that arrived, the number of bytes TAKEN by the outside, ENDED when the outside sends no
+    more, CLOSED when it closes the connection. ACT: a host action (`cfepy.mission.host_actions`): its name and values.
     """
 
     kind: str
@@ -37,15 +36,15 @@ class Outside:
     """The outside of one mission.
 
     Args:
-        kernel: the simulated computer's.
-        network: what its sockets are plugged into.
-        trace: gets a note of what comes in.
+        kernel: the kernel of the simulated computer.
+        network: the virtual network of its sockets.
+        trace: gets a note of each input.
 
     Attributes:
-        until_ns: the virtual time until which the present or last piece of the run goes.
-        visits: which piece with that end it is, from 1.
-        listener: is told of each arrival; None without one.
-        do: does acts; the mission puts it here.
+        until_ns: the virtual time at which the present or last part of the run ends.
+        visits: the number of the part among those with this end, from 1.
+        listener: called with each arrival; None without one.
+        do: performs host actions; set by the mission.
     """
 
     def __init__(self, kernel: Kernel, network: Network, trace: Trace) -> None:
@@ -59,19 +58,19 @@ class Outside:
         self._streams: list[Stream] = []
 
     def begin_piece(self, until_ns: int) -> None:
-        """The run goes on until a virtual time in ns."""
+        """Start a part of the run that ends at a virtual time in ns."""
         self.visits = self.visits + 1 if until_ns == self.until_ns else 1
         self.until_ns = until_ns
 
     def datagram(self, port: int, source: Place, data: bytes) -> bool:
-        """A datagram arrives at a port; whether a socket took it."""
+        """Deliver a datagram to a port; return whether a socket took it."""
         self._tell(DATAGRAM, port, source.host, source.port, data)
         self._trace.note(f"uplink to {port} at {self._kernel.now}: {data.hex()}")
         mailbox = self._network.datagrams.find(Place(LOOPBACK, port))
         return mailbox is not None and mailbox.offer(Datagram(source, Place(LOOPBACK, port), data))
 
     def call(self, port: int, source: Place) -> OutsideStream | None:
-        """The outside connects to a port; None when no socket takes connections there."""
+        """Connect from outside to a port; return None if no socket accepts connections there."""
         listener = self._network.streams.find(Place(LOOPBACK, port))
         if listener is None or not listener.listening or not listener.has_room:
             return None
@@ -79,10 +78,10 @@ class Outside:
         return self._keep(listener.connect(source, Place(LOOPBACK, port)))
 
     def answer(self, source: Place, target: Place, answered: bool) -> tuple[Stream, OutsideStream] | None:
-        """The mission connects to the outside, where the call was answered or not.
+        """Connect the mission to the outside, where the call was answered or not.
 
         Returns:
-            The mission's end of the connection, and the outside's.
+            The mission's end of the connection, and the outside's end.
         """
         self._tell(ANSWER, source.host, source.port, target.host, target.port, answered)
         if not answered:
@@ -92,15 +91,15 @@ class Outside:
         return near, self._keep(far)
 
     def act(self, name: str, *values: Any) -> Any:
-        """Act on the mission itself; arguments, result and errors as `HostActs.do`."""
+        """Perform a host action; see `HostActs.do` for arguments, result and errors."""
         self._tell(ACT, name, *values)
         return self.do(name, *values)
 
     def repeat(self, arrival: Arrival) -> None:
-        """Do again what was told of, but for an ANSWER, which is given when it is asked for.
+        """Repeat a recorded arrival, except an ANSWER, which is given when the mission connects.
 
         Raises:
-            LookupError: it is about a connection that there is not.
+            LookupError: if it is about an unknown connection.
         """
         kind, values = arrival
         if kind == DATAGRAM:
@@ -112,7 +111,7 @@ class Outside:
         elif kind == ACT:
             try:
                 self.act(*values)
-            except Exception:  # as it was refused the first time, after which the run went on
+            except Exception:  # it was also refused the first time, and the run continued
                 pass
         else:
             self._repeat_on(self._stream(values[0]), kind, values)
@@ -147,8 +146,8 @@ class OutsideStream:
     """The outside's end of a connection with the mission.
 
     Args:
-        outside: the door.
-        number: of the connection.
+        outside: the entry point.
+        number: number of the connection.
         stream: the end of the virtual connection.
     """
 
@@ -159,44 +158,44 @@ class OutsideStream:
 
     @property
     def room(self) -> int:
-        """Bytes that the mission's end would take now."""
+        """Bytes that the mission's end can accept now."""
         return self._stream.room
 
     @property
     def readable(self) -> bool:
-        """Whether the mission has sent something, or will send no more."""
+        """Whether the mission has sent bytes, or will send no more."""
         return self._stream.readable
 
     @property
     def ended(self) -> bool:
-        """Whether the mission sends no more."""
+        """Whether the mission will send no more."""
         return self._stream.ended
 
     @property
     def alone(self) -> bool:
-        """Whether the mission has left the connection."""
+        """Whether the mission has closed the connection."""
         return self._stream.other is None
 
     def write(self, data: bytes) -> None:
-        """Bytes come in; there is room for them."""
+        """Bring in bytes; there must be room for them."""
         outside, port = self._outside, self._stream.remote.port
         outside._tell(BYTES, self._number, data)
         outside._trace.note(f"stream to {port} at {outside._kernel.now}: {data.hex()}")
         self._stream.write(data)
 
     def read(self, limit: int) -> bytes:
-        """Take at most so many bytes that the mission has sent, which makes room for more."""
+        """Take at most `limit` bytes that the mission has sent, which makes room for more."""
         data = self._stream.read(limit)
         if data:
             self._outside._tell(TAKEN, self._number, len(data))
         return data
 
     def end(self) -> None:
-        """The outside sends no more."""
+        """Stop sending from the outside."""
         self._outside._tell(ENDED, self._number)
         self._stream.shut(read=False, write=True)
 
     def close(self) -> None:
-        """The outside leaves the connection."""
+        """Close the connection from the outside."""
         self._outside._tell(CLOSED, self._number)
         self._stream.close()

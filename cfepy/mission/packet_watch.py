@@ -1,7 +1,7 @@
-"""A watch on the Software Bus of a mission, which sees every packet, also those without a subscriber.
+"""An observer of a mission's Software Bus that sees every packet, including those without a subscriber.
 
-A watch changes nothing: no subscription, no virtual time, no record in the trace. It goes on over resets, since each
-processor gets a bus of the class that is made here.
+It changes nothing: no subscription, no virtual time, no record in the trace. It continues over resets, because each
+processor gets a bus of the class created here.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ HOST = "host"
 
 
 class Seen(NamedTuple):
-    """A packet on the bus: when in virtual ns, its bytes as subscribers get them, the application that sent it."""
+    """A packet on the bus: its virtual time in ns, its bytes as subscribers get them, the sending application."""
 
     at_ns: int
     packet: bytes
@@ -34,11 +34,11 @@ class Seen(NamedTuple):
 
 
 def hearing(base: type[SoftwareBus], note: Callable[[Link, bytes], object]) -> type[SoftwareBus]:
-    """A class of Software Bus that tells of messages which are never sent, since their topic has no subscriber.
+    """Return a Software Bus class that reports messages that are not sent because their topic has no subscriber.
 
     Args:
-        base: the class to start from; whom that tells is told first.
-        note: gets the publisher's link and the message.
+        base: the class to derive from; its own report comes first.
+        note: called with the publisher's link and the message.
     """
     before = base.on_unsent
 
@@ -51,11 +51,11 @@ def hearing(base: type[SoftwareBus], note: Callable[[Link, bytes], object]) -> t
 
 
 class PacketWatch(Attachment):
-    """Shows what is sent.
+    """Reports the packets that are sent.
 
     Args:
-        take: gets each packet before its subscribers do; called inside the simulation, so it must not wait.
-        wanted: which MsgIds it gets.
+        take: called with each packet before its subscribers get it; it runs inside the simulation, so it must not wait.
+        wanted: returns whether it gets a MsgId.
     """
 
     def __init__(self, take: Callable[[Seen], object], wanted: Callable[[int], bool] = lambda msg_id: True) -> None:
@@ -70,7 +70,7 @@ def _watched(
     base: type[SoftwareBus], take: Callable[[Seen], object], wanted: Callable[[int], bool]
 ) -> type[SoftwareBus]:
     class WatchedBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
-        """A Software Bus that is looked at."""
+        """A Software Bus with an observer."""
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
             if self._is_packet(packet) and wanted(packet[0] << 8 | packet[1]):
@@ -83,7 +83,7 @@ def _watched(
             return bool(PRIMARY_HEADER_SIZE < len(packet) <= self.config.sb_max_msg_size)
 
         def _as_sent(self, packet: bytes | bytearray) -> bytes:
-            """With what origination fills in."""
+            """Return the packet as completed at its origin."""
             copy = bytearray(packet)
             route = self.routes.get(copy[0] << 8 | copy[1])
             msg.set_size(copy, len(copy))
@@ -96,6 +96,6 @@ def _watched(
 
 
 def receivers(bus: SoftwareBus, msg_id: int) -> list[str]:
-    """Names of the applications that get a MsgId now."""
+    """Return the names of the applications subscribed to a MsgId now."""
     route = bus.routes.get(msg_id)
     return [] if route is None else list(dict.fromkeys(each.pipe.app_name for each in route.active))

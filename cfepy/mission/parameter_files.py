@@ -1,7 +1,7 @@
-"""ROS parameters in YAML: what stands in a mission file, and the files that it names, as `rosparam load` takes them.
+"""ROS parameters in YAML: those in a mission file, and the files that it names, as for `rosparam load`.
 
-Later ones win over earlier ones, name by name, and what the mission file says itself comes last. A value that ROS could
-not carry (nothing, a date, an integer of more than 32 bits) is an error with file and line.
+Later values override earlier ones, name by name. The values in the mission file itself come last. A value that ROS
+cannot carry (null, a date, an integer of more than 32 bits) is an error with file and line.
 """
 
 from __future__ import annotations
@@ -18,14 +18,15 @@ _INT_MIN, _INT_MAX = -(1 << 31), (1 << 31) - 1
 
 
 def read_files(section: Marked) -> dict[str, Any]:
-    """The section `params_from`: the parameters in the files that it names, as a tree; a namespace is a dictionary.
+    """Return the section `params_from`: the parameters in the files that it names, as a tree; a namespace is a
+    dictionary.
 
     Args:
-        section: a file, or a list of files, each as a path seen from the mission file or as
-            `{file: PATH, namespace: NAME}`.
+        section: a file, or a list of files, each as a path relative to the mission file or as `{file: PATH, namespace:
+            NAME}`.
 
     Raises:
-        UsageError: a file cannot be read, is no mapping, or has a value that ROS cannot carry.
+        UsageError: if a file cannot be read, is not a mapping, or has a value that ROS cannot carry.
     """
     tree: dict[str, Any] = {}
     for path, namespace in _files(section):
@@ -34,16 +35,16 @@ def read_files(section: Marked) -> dict[str, Any]:
 
 
 def read_tree(section: Marked) -> dict[str, Any]:
-    """A mapping of names to values, checked.
+    """Return a mapping of names to values, checked.
 
     Raises:
-        UsageError: it is no mapping, or has a value that ROS cannot carry.
+        UsageError: if it is not a mapping, or has a value that ROS cannot carry.
     """
     return {name: _value(entry) for name, entry in section.mapping().items()}
 
 
 def merged(tree: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
-    """Two trees as one: namespaces are joined, and of values those of `over` count."""
+    """Return two trees merged: namespaces are joined, and values of `over` win."""
     found = dict(tree)
     for name, value in over.items():
         below = found.get(name)
@@ -52,7 +53,7 @@ def merged(tree: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _files(section: Marked) -> Iterator[tuple[Path, str]]:
-    """(path, namespace) of each file."""
+    """Yield (path, namespace) of each file."""
     entries = [section] if isinstance(section.value, str) else section.items()
     for entry in entries:
         said = {"file": entry} if isinstance(entry.value, str) else entry.mapping(["file", "namespace"])
@@ -83,10 +84,10 @@ def _value(entry: Marked) -> Any:
 
 
 def checked(value: Any) -> Any:
-    """A plain value that ROS can carry.
+    """Return a plain value if ROS can carry it.
 
     Raises:
-        UsageError: it is another, or there is one in it.
+        UsageError: if it, or a value inside it, cannot be carried.
     """
     inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else None
     for each in inner if inner is not None else ():
@@ -100,7 +101,7 @@ def checked(value: Any) -> Any:
 
 
 def _fault(value: Any) -> str | None:
-    """Why ROS cannot carry a value that has none inside; None when it can."""
+    """Return why ROS cannot carry a value that is not a container, or None."""
     if isinstance(value, bool | float | str | bytes):
         return None
     if not isinstance(value, int):

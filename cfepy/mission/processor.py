@@ -1,6 +1,7 @@
-"""`Processor`: what lives between two resets of the simulated computer: OSAL, PSP, the services, ROS, and the boot.
+"""`Processor`: the parts that live between two resets of the simulated computer: OSAL, PSP, the services, ROS, and the
+boot.
 
-A reset throws a processor away and makes a new one on the same machine, as a real one loses what was in its RAM.
+A reset drops a processor and creates a new one on the same machine, just as a real one loses its RAM.
 """
 
 from __future__ import annotations
@@ -51,18 +52,17 @@ BOOT_PRIORITY = 0
 EVS_PRIORITY, SB_PRIORITY, ES_PRIORITY, TIME_PRIORITY, TBL_PRIORITY = 61, 64, 68, 60, 70
 CORE_APPS = ("CFE_EVS", "CFE_SB", "CFE_ES", "CFE_TIME", "CFE_TBL")
 ROS_FILE = "/cf/roscore.so"
-"""What stands for the code of ROS's own application (`rospy_shim.parameters.app`)."""
+"""The virtual path for the code of ROS's own application (`rospy_shim.parameters.app`)."""
 UNIX_AT_CFE_EPOCH = 315_532_800  # 1980-01-01 in seconds since 1970-01-01
 
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """What a reset leaves alone, and what a processor is made of.
+    """The parts of the computer that a reset does not change, from which a processor is made.
 
-    `retained` is the memory that outlives a processor reset, `network` what sockets are plugged into, `bus` the class
-    of the Software Bus, `on_restart` what the PSP calls for a reset: (type, reason, fault). `run_files` what apps and
-    nodes see of files, `accesses` what their code tells of what it touches, `stall_watch` what ends a run that does not
-    go on.
+    `retained` is the memory that outlives a processor reset. `network` connects the sockets. `bus` is the class of the
+    Software Bus. The PSP calls `on_restart` for a reset: (type, reason, fault). `run_files` are the files of apps and
+    nodes. `accesses` collects accesses of their code to shared data. `stall_watch` ends a run that does not advance.
     """
 
     spec: MissionSpec
@@ -83,22 +83,22 @@ class Machine:
 
     @property
     def epoch_ns(self) -> int:
-        """Unix time in ns at virtual time 0: the spacecraft's clock, as ROS nodes read it."""
+        """The Unix time at virtual time 0 in ns: the spacecraft's clock, as ROS nodes read it."""
         return (UNIX_AT_CFE_EPOCH + self.config.time_def_met_secs + self.config.time_def_stcf_secs) * NS_PER_S
 
 
 class RunFiles:
-    """What apps and nodes see of files, made when it is needed: a mission without nodes may not import it.
+    """The files of apps and nodes, created on demand, because a mission without nodes must not load the code for them.
 
     Attributes:
-        made: it; None before.
+        made: the files; None before.
     """
 
     def __init__(self) -> None:
         self.made: Overlay | None = None
 
     def of(self, machine: Machine) -> Overlay:
-        """That of a machine."""
+        """Return the files of a machine."""
         if self.made is None:
             from cfepy.nodes import Overlay, below_root
 
@@ -109,24 +109,24 @@ class RunFiles:
         return self.made
 
     def close(self) -> None:
-        """The mission is over."""
+        """Close the files at the end of the mission."""
         if self.made is not None:
             self.made.close()
 
 
 class Processor:
-    """One power cycle; its boot task is ready to run when it was made.
+    """One power cycle of the processor; its boot task is ready to run after construction.
 
     Args:
-        machine: what it is made of.
-        start_ns: how long after now the board comes up.
+        machine: the parts that outlive a reset.
+        start_ns: time from now until the board starts, in ns.
 
     Attributes:
         cfe: the services.
-        handle: the services as apps and nodes reach them.
+        handle: the services for apps and nodes.
         ports, osal, psp, memory, loader, es_task, sb_task: the parts.
-        ros: the ROS side, made when the first node starts; None before.
-        booted: virtual ns at which it became OPERATIONAL, None before.
+        ros: the ROS side, created when the first node starts; None before.
+        booted: virtual ns at which it became OPERATIONAL; None before.
     """
 
     def __init__(self, machine: Machine, start_ns: int = 0) -> None:
@@ -162,7 +162,7 @@ class Processor:
         self.es_task = EsTask(self.cfe.es, machine.spec.name, self._build_text(), checksum)
 
     def _finders(self) -> list[Finder]:
-        """What is asked for the code of applications, in this order."""
+        """Return the finders of application code, in the order of the search."""
         machine, folder = self.machine, self.machine.spec.folder
         self._compiled = CompiledFiles(machine.files, self._make_compiled_loader, machine.spec.built_files)
         python = PythonLoader(machine.console, lambda: self.handle, AppModules(self._app_universe, machine.accesses))
@@ -174,7 +174,7 @@ class Processor:
         ]
 
     def _app_universe(self) -> Universe:
-        """Where apps have those modules from that open files."""
+        """Return the provider of the modules with which apps open files."""
         machine = self.machine
         return make_app_universe(
             kernel=machine.kernel,
@@ -200,7 +200,7 @@ class Processor:
         )
 
     def _make_services(self) -> Cfe:
-        """The services, tied together by their ports and to what outlives the processor."""
+        """Return the services, connected by their ports and with the parts that outlive the processor."""
         machine, ports = self.machine, self.ports
         kernel, config, console = machine.kernel, machine.config, machine.console
         es = ExecutiveServices(kernel, ports, config, self.osal, self.psp, console, self.loader)
@@ -217,7 +217,9 @@ class Processor:
         return Cfe(es, sb, evs, time, tbl, self.osal, self.psp, fs, ConfigServices(config, machine.spec.name))
 
     def _handle_for_apps(self) -> Cfe:
-        """The services themselves, unless a policy decides which task runs; only such a run imports call points."""
+        """Return the services themselves, or with call points if a policy decides; only such a run loads the call
+        points.
+        """
         kernel = self.machine.kernel
         if kernel.policy is None:
             return self.cfe
@@ -231,7 +233,7 @@ class Processor:
         return f"Build cfepy {machine.config.release.source} by {who}, config {machine.board.name}"
 
     def _boot(self) -> None:
-        """The processor's main task: PSP first, then the executive."""
+        """Run the processor's main task: PSP first, then the executive."""
         if self._start_ns:
             self.machine.kernel.delay(self._start_ns)
         self.psp.boot()
@@ -239,7 +241,7 @@ class Processor:
         Boot(self.cfe.es, self._object_table(), self.machine.spec.startup_script, self._operational).main()
 
     def _object_table(self) -> ObjectTable:
-        """What CFE_ES_Main calls and starts before the startup script (CFE_ES_ObjectTable)."""
+        """Return the calls and tasks that CFE_ES_Main starts before the startup script (CFE_ES_ObjectTable)."""
         cfe, kept = self.cfe, self.machine.retained.kept
         calls: dict[str, Callable[[], object]] = {
             "Config_Init": _set_up_already,
@@ -274,30 +276,30 @@ class Processor:
         self.booted = self.machine.kernel.now
 
     def _ros_main(self) -> None:
-        """The main function of ROS's own application, which starts with the first node."""
+        """Run ROS's own application, which starts with the first node."""
         assert self.ros is not None
         self.ros.parameters.main()
 
     def _node_main(self, script: Path, app_name: str) -> Callable[[], object]:
-        """The main function of a node; ROS itself starts before the first one."""
+        """Return the main function of a node; ROS itself starts before the first one."""
         ros = self._start_ros()
         return lambda: ros.run_node(script, app_name)
 
     def begin_ros(self) -> RosRuntime:
-        """The ROS side, made if there was no node yet; its application starts with the first one."""
+        """Return the ROS side, and create it if there was no node yet; its application starts with the first node."""
         ros = self.ros
         if ros is None:
             ros = self.ros = self._make_ros()
         return ros
 
     def _start_ros(self) -> RosRuntime:
-        """ROS, which starts before the first node, compiled or not."""
+        """Start ROS before the first node, compiled or not, and return it."""
         ros = self.begin_ros()
         ros.parameters.ensure()
         return ros
 
     def _make_ros(self) -> RosRuntime:
-        """The ROS side; a mission without nodes does not import it."""
+        """Return a new ROS side; a mission without nodes does not load it."""
         from rospy_shim.runtime import RosRuntime
 
         machine = self.machine
@@ -317,59 +319,60 @@ class Processor:
 
     @property
     def compiled(self) -> CompiledRuntime | None:
-        """The C side of the processor; None when nothing compiled was loaded."""
+        """The C side of the processor; None if no compiled code was loaded."""
         return self._compiled.runtime
 
     def _make_compiled_loader(self) -> CodeLoader:
-        """What loads compiled code; a mission without any does not import it."""
+        """Return a loader of compiled code; a mission without any does not load it."""
         return COMPILED_CODE.need("compiled code")(self, self._costs.polling_ns, self._start_ros)
 
     def _script_of(self, file: str) -> Path | None:
-        """The script of a node that came with a launch file, or that another node has started."""
+        """Return the script of a node from a launch file, or of one that another node has started."""
         started = None if self.ros is None else self.ros.script_of(file)
         return self._scripts.get(file) or started
 
     def topics(self) -> list[TopicRow]:
-        """The rows of ROS's topics."""
+        """Return the rows of ROS's topics."""
         return [] if self.ros is None else self.ros.topics()
 
     def end(self) -> None:
-        """End every task and object and let go of the applications' code; the numbers stay readable."""
+        """End every task and object, and release the applications' code; the results stay readable."""
         kernel = self.machine.kernel
         for app in self.cfe.es.apps:
             history = self.cfe.es.history_of(app.name)
             history.cpu_ns += sum(task.cpu_ns for task in kernel.tasks if task.owner is app)
-        self.osal.register_event_handler(_ignore)  # an application's own is at its end, like the application
-        self.osal.delete_all_objects()  # first, since it calls the tasks' delete handlers
+        self.osal.register_event_handler(_ignore)  # an application's handler has ended together with the application
+        self.osal.delete_all_objects()  # first, because it calls the tasks' delete handlers
         kernel.unwind()
-        self.osal.delete_all_objects()  # what `finally` blocks have made meanwhile, such as a socket on the network
+        # objects that `finally` blocks have created meanwhile, such as a socket on the network
+        self.osal.delete_all_objects()
         self.loader.forget()
 
 
 def _set_up_already() -> None:
-    """What C sets up here, Python did when it made the objects."""
+    """Do nothing; the Python objects are ready when constructed, unlike in C."""
 
 
 def _ignore(event: int, object_id: int, data: object) -> int:
-    """An event handler for OSAL that does nothing."""
+    """Ignore an OSAL event."""
     return 0
 
 
 class _TableFiles:
     """The file system as Table Services use it (`cfepy.tbl.table_file.TableStorage`), with a descriptor for each file.
 
-    They leave the file of every load from the ground open, so a processor that loads fifty tables opens no file any
+    They leave the file of every load from the ground open, so after fifty table loads a processor cannot open files any
     more.
 
     Args:
-        osal: of the processor.
+        osal: the OSAL of the processor.
     """
 
     def __init__(self, osal: Osal) -> None:
         self._osal = osal
 
     def read_file(self, path: str) -> bytes:
-        """The whole content of a file."""
+        """Return the whole content of a file."""
         self._osal.close(self._osal.open_create(path, access_mode=OS_READ_ONLY))
         return self._osal.files.read_file(path)
 
@@ -378,16 +381,17 @@ class _TableFiles:
         self._osal.open_create(path, access_mode=OS_READ_ONLY)
 
     def write_file(self, path: str, data: bytes) -> None:
-        """Make or replace a file."""
+        """Create or replace a file."""
         flags = OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE
         self._osal.close(self._osal.open_create(path, flags, OS_WRITE_ONLY))
         self._osal.files.write_file(path, data)
 
     def exists(self, path: str) -> bool:
-        """Whether there is such a file."""
+        """Return whether a file exists."""
         return self._osal.files.exists(path)
 
 
 COMPILED_CODE: Hook[Callable[[Processor, int, Callable[[], RosRuntime]], CodeLoader]] = Hook("compiled_code")
-"""Makes what loads compiled code: for a processor, with the time in ns that a call takes which only looks, and what
-starts ROS before the first node."""
+"""Makes the loader of compiled code. It gets the processor, the time of a polling call in ns, and a function that
+starts ROS before the first node.
+"""

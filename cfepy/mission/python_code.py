@@ -1,9 +1,9 @@
-"""Python code of applications, libraries and ROS nodes: where it is found, and how it is executed.
+"""Python code of applications, libraries and ROS nodes: how it is found and executed.
 
-What stands behind /cf/hk.so is looked for in this order: the mission's folder (hk.py, or a package hk), the apps that
-cfepy brings along, an installed Python module of that name, and a file that the mission itself wrote, which may be on
-/ram. What it wrote over a file of its folder counts, and what it removed there is gone. An app is executed anew for
-every start, so that a restart finds its variables as a fresh C module would.
+The code for /cf/hk.so is searched in this order: the mission's folder (hk.py, or a package hk), the apps included in
+cfepy, an installed Python module of that name, and a file that the mission itself wrote, possibly on /ram. Files that
+the mission overwrote or removed in its folder count as such. An app is executed anew at every start, so a restart finds
+fresh variables, as with a C module.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from cfepy.status import OS_ERROR, OsalError
 from cfepy.writing.console import Console
 
 CODE_SUFFIXES = ("", ".so", ".py", ".obj", ".o")
-NODE_SUFFIX = ".so"  # what ES puts after a name that has no suffix
+NODE_SUFFIX = ".so"  # the suffix that ES adds to a name without one
 PREFIX = "cfepy_app_"
 
 
@@ -41,13 +41,13 @@ PREFIX = "cfepy_app_"
 
 
 class NodeScripts(Finder):
-    """Scripts of ROS nodes: applications whose entry point is `__main__`.
+    """Finds scripts of ROS nodes: applications with the entry point `__main__`.
 
     Args:
-        files: where /cf leads.
+        files: the virtual file system.
         folder: the mission's folder.
-        script_of: the script of a node that has it outside the folder, by virtual path.
-        node_main: gives the main function of a node, by its script and its application's name.
+        script_of: returns the script of a node outside the folder, by virtual path.
+        node_main: returns the main function of a node, by its script and its application's name.
     """
 
     def __init__(
@@ -69,20 +69,20 @@ class NodeScripts(Finder):
         return None if script is None else MainCode(file, lambda app_name: self._node_main(script, app_name))
 
     def exists(self, file: str) -> bool:
-        """A script that the mission changed or removed is none."""
+        """Return whether there is a script; one that the mission changed or removed does not count."""
         if self._script_of(file) is not None:
             return True
         script = find_node(file, self._folder)
         return script is not None and not _is_changed(script, self._folder, self._files)
 
     def forget(self) -> None:
-        """There is nothing to let go of."""
+        """Do nothing: there is no code to release."""
 
 
 def find_node(file: str, folder: Path) -> Path | None:
-    """The script of a ROS node behind a virtual path below /cf: a file x, as ROS scripts are often called, or x.py.
+    """Return the script of a ROS node at a virtual path below /cf: a file x, as ROS scripts are often named, or x.py.
 
-    OSAL never opens it, so OSAL's limits for file names do not hold for it; it must be below /cf all the same.
+    OSAL never opens it, so OSAL's limits for file names do not apply; it must still be below /cf.
     """
     if ".." in file:
         return None
@@ -100,9 +100,9 @@ class PythonLoader:
     """Executes the Python code of one processor.
 
     Args:
-        console: for what goes wrong while a module is executed.
-        handle: gives what the main function of an app gets.
-        modules: what the code has in place of the host's modules.
+        console: for errors while a module is executed.
+        handle: returns the argument for the main function of an app.
+        modules: the replacements for the host's modules.
     """
 
     def __init__(self, console: Console, handle: Callable[[], Any], modules: AppModules) -> None:
@@ -112,24 +112,24 @@ class PythonLoader:
         self._console = console
 
     def module(self, file: str, found: Found, owner: str) -> ModuleType:
-        """Execute code as a new module; errors as `ModuleLoader.load_module`."""
+        """Execute code as a new module; see `ModuleLoader.load_module` for the errors."""
         try:
             return execute(found, self.names.new(owner), self._modules)
         except (TaskExit, KeyboardInterrupt):
             raise
-        except BaseException as error:  # also sys.exit(): it is the module that ends, not the process
+        except BaseException as error:  # also sys.exit(), which ends the module and not the process
             from cfepy.mission.tracebacks import app_traceback, described
 
             self._console.write(app_traceback(error))
             raise OsalError(OS_ERROR, f"{file}: {described(error)}") from error
 
     def forget(self) -> None:
-        """Let go of the code and of what it has open."""
+        """Release the code and its open files."""
         self.names.forget()
         self._modules.close()
 
     def function(self, module: ModuleType, file: str, symbol: str) -> Callable[[Any], object]:
-        """An entry point; errors as `ModuleLoader.load`."""
+        """Return an entry point; see `ModuleLoader.load` for the errors."""
         function = getattr(module, symbol, None)
         if not callable(function):
             self._console.write(f"OS_SymbolLookup: {file} has no function {symbol}")
@@ -143,12 +143,12 @@ class PythonLoader:
 
 
 class PythonCode:
-    """Python code: see `Code`.
+    """Python code; see `Code`.
 
     Args:
-        python: what executes it.
-        file: its virtual path, as it was asked for.
-        found: what stands behind that.
+        python: executes it.
+        file: the requested virtual path.
+        found: the code at that path.
     """
 
     def __init__(self, python: PythonLoader, file: str, found: Found) -> None:
@@ -157,12 +157,12 @@ class PythonCode:
         self._found = found
 
     def main(self, symbol: str, app_name: str) -> Callable[[], object]:
-        """The function is called with the handle of the services."""
+        """Return the main function, which is called with the handle of the services."""
         main, handle = self._python.function(self.module(app_name), self._file, symbol), self._python.handle
         return lambda: main(handle())
 
     def library(self, symbol: str) -> tuple[ModuleType, Callable[[int], object]]:
-        """The init function gets the handle of the services, and not the LibId."""
+        """Return a library and its init function, which gets the handle of the services and not the LibId."""
         module, handle = self.module(f"library {self._file}"), self._python.handle
         if symbol == NO_SYMBOL:
             return module, lambda lib_id: 0
@@ -174,10 +174,10 @@ class PythonCode:
 
 
 class PythonFinder(ABC):
-    """Finds Python code of applications and libraries; nodes are none.
+    """Finds Python code of applications and libraries, not of nodes.
 
     Args:
-        python: what executes it.
+        python: executes the code.
     """
 
     def __init__(self, python: PythonLoader) -> None:
@@ -191,7 +191,7 @@ class PythonFinder(ABC):
         return self.look(file) is not None
 
     def unload(self, app_name: str) -> None:
-        """The module goes when the application starts again."""
+        """Do nothing: the module is removed when the application starts again."""
         return
 
     def forget(self) -> None:
@@ -199,15 +199,15 @@ class PythonFinder(ABC):
 
     @abstractmethod
     def look(self, file: str) -> Found | None:
-        """What stands behind a virtual path; errors as `find`."""
+        """Return the code at a virtual path; see `find` for the errors."""
 
 
 class MissionFolder(PythonFinder):
-    """The folder of the mission, with what the mission itself wrote over its files.
+    """The folder of the mission, with the files that the mission itself overwrote.
 
     Args:
-        python: what executes the code.
-        files: where /cf leads.
+        python: executes the code.
+        files: the virtual file system.
         folder: the mission's folder.
     """
 
@@ -228,14 +228,14 @@ class MissionFolder(PythonFinder):
 
 
 class ShippedApps(PythonFinder):
-    """The apps that cfepy brings along."""
+    """The apps included in cfepy."""
 
     def look(self, file: str) -> Found | None:
         return _in_folder(file, shipped("apps"))
 
 
 class InstalledModules(PythonFinder):
-    """Python modules that are installed on the host."""
+    """Python modules installed on the host."""
 
     def look(self, file: str) -> Found | None:
         return _installed(file)
@@ -245,8 +245,8 @@ class WrittenFiles(PythonFinder):
     """Files that the mission itself wrote, or got from the ground.
 
     Args:
-        python: what executes the code.
-        files: of the mission.
+        python: executes the code.
+        files: the virtual file system.
     """
 
     def __init__(self, python: PythonLoader, files: FileSystem) -> None:
@@ -258,7 +258,7 @@ class WrittenFiles(PythonFinder):
 
 
 def python_finders(python: PythonLoader, files: FileSystem, folder: Path) -> list[Finder]:
-    """The finders of Python code, in their order; arguments as those of `MissionFolder`."""
+    """Return the finders of Python code, in the order of the search; see `MissionFolder` for the arguments."""
     return [
         MissionFolder(python, files, folder),
         ShippedApps(python),
@@ -268,32 +268,33 @@ def python_finders(python: PythonLoader, files: FileSystem, folder: Path) -> lis
 
 
 def find_code(file: str, folder: Path) -> Path | str | None:
-    """The Python code on the host behind a virtual path below /cf, for tools that look at a mission from outside.
+    """Return the Python code on the host at a virtual path below /cf, for tools that examine a mission from outside.
 
     Args:
         file: the virtual path.
         folder: the mission's folder.
 
     Returns:
-        A source file, or the name of an installed module; None where compiled code is.
+        A source file, or the name of an installed module; None if there is compiled code.
     """
     return None if find_compiled(file, folder) is not None else find_declarations(file, folder)
 
 
 def find_declarations(file: str, folder: Path) -> Path | str | None:
-    """As `find_code`, for tools that want the names and packets that Python code declares: for compiled code, those of
-    the Python application that goes by its name, such as one that cfepy brings along.
+    """Return the Python code with the declared names and packets for a virtual path, for tools; see `find_code`.
+
+    For compiled code it is the Python application of the same name, such as one included in cfepy.
     """
     return _in_folder(file, folder) or _in_folder(file, shipped("apps")) or _installed(file)
 
 
 def _inside(file: str) -> PurePosixPath:
-    """A virtual path below /cf, seen from there."""
+    """Return a virtual path relative to /cf."""
     return PurePosixPath(file).relative_to("/cf") if file.startswith("/cf/") else PurePosixPath(file.lstrip("/"))
 
 
 def _in_folder(file: str, folder: Path) -> Path | None:
-    """hk.py or the package hk for /cf/hk.so."""
+    """Return hk.py or the package hk for /cf/hk.so."""
     inside = _inside(file)
     if inside.suffix not in CODE_SUFFIXES:
         return None
@@ -303,7 +304,7 @@ def _in_folder(file: str, folder: Path) -> Path | None:
 
 
 def _installed(file: str) -> str | None:
-    """The name of the installed module that a virtual path names."""
+    """Return the name of the installed module for a virtual path."""
     inside = _inside(file)
     path = inside.with_suffix("") if inside.suffix in CODE_SUFFIXES else inside
     name = str(path).replace("/", ".")
@@ -317,29 +318,29 @@ def _installed(file: str) -> str | None:
 
 
 def _is_changed(found: Path, folder: Path, files: FileSystem) -> bool:
-    """Whether the mission wrote over a file of its folder, or removed it; packages are taken as they are."""
+    """Return whether the mission changed or removed a file of its folder; packages are assumed unchanged."""
     if found.name == "__init__.py" or not found.is_relative_to(folder):
         return False
     try:
         node = files.find(f"/cf/{found.relative_to(folder).as_posix()}")
     except OsalError:
-        return False  # a ROS node; OSAL takes no name of this length, so the mission cannot have changed it
+        return False  # a ROS node; OSAL refuses such a long name, so the mission cannot have changed it
     return node is None or bytes(node.data) != read_limited(found, PYTHON_BYTES)
 
 
 class SourceAlone(SourceFileLoader):
     """The import loader of a mission's Python source file, which neither reads nor writes bytecode.
 
-    Bytecode goes by the second of the file's last change and its size, so it may be that of the edit before.
+    Bytecode is matched by the size and the second of the last change of the file, so it may belong to an earlier edit.
     """
 
     def path_stats(self, path: object) -> dict[str, float]:
-        """Fail always, so that no bytecode is looked for or written."""
+        """Always fail, so that bytecode is neither read nor written."""
         raise OSError
 
 
 class VirtualCode(SourceAlone):
-    """A Python source file that is on the virtual file system alone, as an import loader; tracebacks show its lines.
+    """An import loader of a Python source file that exists only on the virtual file system; tracebacks show its lines.
 
     Args:
         path: its virtual path.
@@ -351,19 +352,19 @@ class VirtualCode(SourceAlone):
         self.source = source
 
     def get_filename(self, name: str | None = None) -> str:
-        """The virtual path, whatever the module is called."""
+        """Return the virtual path, for any module name."""
         return str(self.path)
 
     def get_data(self, path: object) -> bytes:
-        """The source."""
+        """Return the source."""
         return self.source
 
 
 def find_virtual_code(file: str, files: FileSystem) -> VirtualCode | None:
-    """The source behind a virtual path: x.py for /ram/x.so, else the file itself, whatever its suffix; or None.
+    """Return the source at a virtual path: x.py for /ram/x.so, otherwise the file itself with any suffix; or None.
 
     Raises:
-        OsalError: the path is no good.
+        OsalError: if the path is invalid.
     """
     path = PurePosixPath(file)
     for suffix in dict.fromkeys((".py", path.suffix)):
@@ -375,20 +376,20 @@ def find_virtual_code(file: str, files: FileSystem) -> VirtualCode | None:
 
 
 Found = Path | str | VirtualCode
-"""Python code: a source file, the name of an installed module, or what the mission itself wrote."""
+"""Python code: a source file, the name of an installed module, or a file that the mission itself wrote."""
 
 
 def execute(found: Found, name: str, modules: AppModules | None = None) -> ModuleType:
-    """Execute Python code as a module of this name.
+    """Execute Python code as a module.
 
     Args:
-        found: what is executed.
-        name: of the module.
-        modules: what it has in place of the host's; None, and the apps that cfepy brings along: nothing.
+        found: the code.
+        name: name of the module.
+        modules: the replacements for the host's modules; None, and apps included in cfepy, use the host's.
 
     Raises:
-        ImportError: there is nothing to execute.
-        BaseException: whatever the code raises.
+        ImportError: if there is no code to execute.
+        BaseException: any error of the code.
     """
     spec = _spec(found, name)
     if spec is None or spec.loader is None:
@@ -420,7 +421,7 @@ def _spec(found: Found, name: str) -> importlib.machinery.ModuleSpec | None:
 
 
 def _fault_of(function: Callable[..., Any]) -> str | None:
-    """Why a function cannot be an entry point, and what to do; None when it can."""
+    """Return why a function cannot be an entry point, with the remedy, or None."""
     plain = "calling it runs nothing; make it a plain function"
     if inspect.iscoroutinefunction(function) or inspect.isasyncgenfunction(function):
         return f"is async: {plain}"
@@ -431,7 +432,7 @@ def _fault_of(function: Callable[..., Any]) -> str | None:
     except TypeError:
         return f"does not take one argument, the handle of the services; write `def {function.__name__}(cfe):`"
     except ValueError:
-        return None  # a function of C that does not tell
+        return None  # a function in C without a signature
     return None
 
 
@@ -441,8 +442,8 @@ def _fault_of(function: Callable[..., Any]) -> str | None:
 class ModuleNames:
     """Names in `sys.modules` for the code of one mission: unique in the process, yet the same in every run.
 
-    They can be seen from inside a mission (in a traceback, in `__name__`), so no address of an object may be in them:
-    each mission takes the lowest number that no other living mission has.
+    They are visible inside a mission (in a traceback, in `__name__`), so they must not contain the address of an
+    object. Each mission takes the lowest number that no other living mission has.
     """
 
     def __init__(self) -> None:
@@ -451,7 +452,9 @@ class ModuleNames:
         self._of: dict[str, str] = {}
 
     def new(self, owner: str) -> str:
-        """A name for the module of an application; the one it had before goes, so that restarts pile up nothing."""
+        """Return a name for the module of an application; its earlier module is removed, so that restarts do not
+        accumulate.
+        """
         if not self._root:
             self._root = _take_root()
         if owner in self._of:
@@ -461,7 +464,7 @@ class ModuleNames:
         return name
 
     def forget(self) -> None:
-        """Take all modules of the mission out of the process."""
+        """Remove all modules of the mission from the process."""
         if self._of:
             _take_out(set(self._of.values()))
         self._of.clear()
@@ -470,7 +473,7 @@ class ModuleNames:
 
 
 def _take_out(names: set[str]) -> None:
-    """Take modules, and those that they consist of, out of the process: in one pass, since it has thousands."""
+    """Remove modules and their submodules from the process in one pass, because it has thousands of modules."""
     ours = [each for each in list(sys.modules) if each.startswith(PREFIX)]
     for each in ours:
         if each.partition(".")[0] in names:
@@ -478,5 +481,5 @@ def _take_out(names: set[str]) -> None:
 
 
 def _take_root() -> str:
-    mine = ModuleType(PREFIX)  # holds the place
+    mine = ModuleType(PREFIX)  # reserves the name
     return next(root for root in map(f"{PREFIX}{{}}".format, count()) if sys.modules.setdefault(root, mine) is mine)

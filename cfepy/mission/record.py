@@ -23,8 +23,8 @@ class Reset:
     Args:
         at_ns: virtual time.
         reset_type: RST_TYPE_PROCESSOR or RST_TYPE_POWERON.
-        reason: why, and at whose request.
-        fault: it followed from a failure, and was not asked for.
+        reason: the reason and the requester.
+        fault: whether a failure caused it; otherwise it was requested.
     """
 
     at_ns: int
@@ -35,7 +35,7 @@ class Reset:
 
 @dataclass(slots=True)
 class Traffic:
-    """What became of the messages of one MsgId; see `TopicResult` for the meaning of the numbers."""
+    """Delivery counts for one MsgId; see `TopicResult` for the meaning of the numbers."""
 
     sent: int = 0
     delivered: int = 0
@@ -53,8 +53,8 @@ class Traffic:
 
 
 class DataRace(NamedTuple):
-    """Two accesses that nothing orders: when the second came, what is told, of whom, in which task; what tells it from
-    others, where the text does not.
+    """Two accesses that nothing orders: the time of the second, a description, the application, the task, and an
+    identification if the text is not one.
     """
 
     at_ns: int
@@ -66,19 +66,21 @@ class DataRace(NamedTuple):
 
 
 class Overwrite(NamedTuple):
-    """A block of compiled code that was written past, found when it was over: when that was, of whom, what is told."""
+    """A write past a block of compiled code, found at the end of the block: the time, the application, a
+    description.
+    """
 
     at_ns: int
     app: str
     text: str
 
     def __str__(self) -> str:
-        """The text, with the application if it is one's."""
+        """Return the text, with the application if there is one."""
         return f"{self.app}: {self.text}" if self.app else self.text
 
 
 class StackUse(NamedTuple):
-    """How many bytes of its stack a compiled task has used at most, and how many it has."""
+    """The stack use of a compiled task: the maximum bytes used, and the size."""
 
     used: int
     size: int
@@ -86,14 +88,14 @@ class StackUse(NamedTuple):
 
 @dataclass(slots=True)
 class RunRecord:
-    """Everything that outlives a reset for the sake of the report.
+    """The data of a run that outlive resets, for the report.
 
-    Attachments keep what they have to tell in a part of their own. `history` is by application name, `event_counts` by
-    event type, `errors_by_app` counts ERROR and CRITICAL events, `first_errors` has the first of them by application
-    and event id: the services of each processor write into these four themselves. `topics` has rows of ROS topics by
-    MsgId. `tables` gives further rows for the report, by their title there; an attachment that has some puts a function
-    here. `data_races` are those that were found, `overwrites` what the guard found in its memory. `stack_use` is by
-    application and task, of tasks that have ended.
+    Attachments keep their data in a part of their own. `history` is by application name, `event_counts` by event type.
+    `errors_by_app` counts ERROR and CRITICAL events, and `first_errors` has the first of them by application and event
+    id. The services of each processor write into these four. `topics` has rows of ROS topics by MsgId. `tables`
+    provides more rows for the report, by title; an attachment adds its function there. `data_races` are the races
+    found, and `overwrites` the memory errors that the guard found. `stack_use` is by application and task, for ended
+    tasks.
     """
 
     resets: list[Reset] = field(default_factory=list)
@@ -110,28 +112,28 @@ class RunRecord:
     _traffic: dict[int, Traffic] = field(default_factory=dict)
 
     def note_stack(self, app: str, task: str, used: int, size: int) -> None:
-        """A compiled task has ended; of several that had its name the deepest use stays."""
+        """Record the stack use of an ended compiled task; for several tasks of the same name, the maximum is kept."""
         before = self.stack_use.get((app, task))
         self.stack_use[app, task] = StackUse(max(used, before.used if before else 0), size)
 
     def part(self, kind: type[P]) -> P:
-        """The part of a kind, made without arguments when it is first asked for."""
+        """Return the part of a kind, created without arguments at the first request."""
         found = self._parts.get(kind)
         if not isinstance(found, kind):
             found = self._parts[kind] = kind()
         return found
 
     def rows(self, title: str) -> list[dict[str, Any]]:
-        """The rows of a table; none when there is no such table."""
+        """Return the rows of a table; empty if there is no such table."""
         table = self.tables.get(title)
         return [] if table is None else table()
 
     def deaths(self) -> list[str]:
-        """A line for each application that died: how often, and of what at last."""
+        """Return a line for each application that died: how often, and the last cause."""
         return list(self.deaths_by_app().values())
 
     def deaths_by_app(self) -> dict[str, str]:
-        """The same by the application's name."""
+        """Return these lines by the application's name."""
         found = {}
         for app in self.history.values():
             if app.last_error is not None:
@@ -142,14 +144,14 @@ class RunRecord:
         return found
 
     def close_books(self, bus: SoftwareBus, topics: Iterable[TopicRow]) -> None:
-        """Take down the traffic of a processor that is about to be reset, and the rows of its ROS topics."""
+        """Record the traffic of a processor that is about to be reset, and the rows of its ROS topics."""
         topics = list(topics)
         self.topics.update((row.msg_id, row) for row in topics)
         for msg_id, count in traffic_of(bus, topics).items():
             self._traffic.setdefault(msg_id, Traffic()).add(count)
 
     def traffic(self, bus: SoftwareBus, topics: Iterable[TopicRow]) -> dict[int, Traffic]:
-        """Traffic by MsgId, in order, with that of the processor that runs now."""
+        """Return the traffic by MsgId, sorted, including that of the running processor."""
         total = traffic_of(bus, topics)
         for msg_id, count in self._traffic.items():
             total.setdefault(msg_id, Traffic()).add(count)
@@ -157,11 +159,11 @@ class RunRecord:
 
 
 def traffic_of(bus: SoftwareBus, topics: Iterable[TopicRow] = ()) -> dict[int, Traffic]:
-    """Traffic on one bus by MsgId.
+    """Return the traffic on one bus by MsgId.
 
     Args:
         bus: the Software Bus.
-        topics: the rows of the ROS side (`rospy_shim.graph.graph.TopicRow`), for what only it knows.
+        topics: the rows of the ROS side (`rospy_shim.graph.graph.TopicRow`), for counts that only it has.
     """
     found: dict[int, Traffic] = {}
     for route in bus.routes.values():

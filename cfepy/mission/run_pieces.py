@@ -1,10 +1,10 @@
-"""A run in pieces, so short in wall-clock time that the host gets a word in between: the host's user above all.
+"""A run in parts that are so short in wall-clock time that the host, and above all the user, can interrupt in between.
 
-The pieces change nothing in a run: its trace is that of a run in one piece.
+The parts do not change the run: its trace is the same as without them.
 
-Python's own answer to Ctrl-C is a KeyboardInterrupt between any two steps of whatever runs, which may be the kernel in
-the middle of taking a task from a queue: neither could the run go on after that, nor could its tasks be ended. So a
-signal that would be answered like that waits until the piece is over.
+Python's default for Ctrl-C is a KeyboardInterrupt between any two steps of the running code, perhaps in the kernel
+while it takes a task from a queue. After that the run could not continue, and its tasks could not be ended. So such a
+signal waits until the part is over.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from cfepy.interpreter.host_system import interrupt_once, signal_number
 
 FIRST_PIECE_NS = 10_000_000  # virtual time
 LEAST_PIECE_NS = 1_000_000
-SHORT_NS, LONG_NS = 80_000_000, 250_000_000  # wall time that a piece should take
+SHORT_NS, LONG_NS = 80_000_000, 250_000_000  # wall time that a part should take
 _handler_of: Callable[[int], Any] = getattr(signal.getsignal, "__wrapped__", signal.getsignal)
-"""The function in C, which makes no enum of what it finds: it is asked before each piece."""
+"""The function in C, which creates no enum; it is called before each part."""
 
 
 _SIGNALS = tuple(filter(None, map(signal_number, ("SIGINT", "SIGTERM", "SIGHUP"))))
@@ -28,22 +28,22 @@ _RAISING = (signal.default_int_handler, interrupt_once)
 
 
 def is_to_be_held_back() -> bool:
-    """Whether Python would answer a signal with a KeyboardInterrupt, so that it takes `HeldBack`."""
+    """Return whether Python would raise a KeyboardInterrupt for a signal, so that `HeldBack` is needed."""
     return any(_handler_of(each) in _RAISING for each in _SIGNALS)
 
 
 class PieceLength:
-    """How long a piece is, after what the ones before it took.
+    """The length of a part, adapted to the time of earlier parts.
 
     Attributes:
-        ns: virtual time of the next piece.
+        ns: virtual time of the next part.
     """
 
     def __init__(self) -> None:
         self.ns = FIRST_PIECE_NS
 
     def took(self, length_ns: int, wall_ns: int) -> None:
-        """A piece of so much virtual time took so much wall-clock time."""
+        """Adapt the length after a part, from its virtual time and its wall-clock time."""
         if wall_ns > LONG_NS:
             self.ns = max(LEAST_PIECE_NS, self.ns // 2)
         elif wall_ns < SHORT_NS and length_ns >= self.ns:
@@ -51,15 +51,15 @@ class PieceLength:
 
 
 class HeldBack:
-    """Around what a signal must not break off: Ctrl-C, and others of which Python makes a KeyboardInterrupt.
+    """A context manager that holds back Ctrl-C, and other signals that raise a KeyboardInterrupt.
 
-    The KeyboardInterrupt comes at the end, unless another error does. A second signal does not wait, unless it is
-    SIGHUP: what it is about does not come to an end by itself. Signals that the program answers in its own way, and
-    those of other threads than the first, are left alone.
+    The KeyboardInterrupt is raised at the end, unless another error is. A second signal is not held back, except
+    SIGHUP, because the code inside may never end. Signals with another handler, and signals outside the main thread,
+    are left alone.
 
     Attributes:
-        asked: whether there was one.
-        is_first: whether signals are held back here; not when they are already, further out.
+        asked: whether a signal arrived.
+        is_first: whether signals are held back here; False if an outer one already does.
     """
 
     def __init__(self) -> None:
@@ -73,7 +73,7 @@ class HeldBack:
                 if _handler_of(each) in _RAISING:
                     self._before[each] = signal.signal(each, self._on_signal)
         except ValueError:
-            pass  # not the first thread: signals do not come here
+            pass  # not the main thread: it gets no signals
         self.is_first = bool(self._before)
         return self
 

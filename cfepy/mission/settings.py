@@ -1,7 +1,7 @@
-"""ROS parameters that a run has in place of those that its mission says: `--set /left/rate=50`.
+"""ROS parameters of a run that override those of its mission: `--set /left/rate=50`.
 
-A private parameter of a node is changed where the mission file has it, `nodes:`, since a node is given that when it
-starts; every other one in the tree that the master begins with.
+A private parameter of a node is changed in the mission's section `nodes:`, because a node gets that when it starts. Any
+other parameter is changed in the initial tree of the master.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ OPTION = "--set"
 
 
 def with_settings(spec: MissionSpec, settings: Sequence[tuple[str, str]]) -> MissionSpec:
-    """A mission in which parameters have other values.
+    """Return a mission with other values of parameters.
 
     Args:
         spec: the mission.
         settings: full name of a parameter, such as "/left/rate", and its value in YAML; later ones win.
 
     Raises:
-        UsageError: a name that is none, or a value that ROS cannot carry.
+        UsageError: for an invalid name, or a value that ROS cannot carry.
     """
     nodes, params, notes = dict(spec.ros.nodes), dict(spec.ros.params), list(spec.notes)
     for name, text in settings:
@@ -62,7 +62,7 @@ def _within(name: str, node: NodeConfig) -> bool:
 
 
 def _tree(name: str, value: Any) -> dict[str, Any]:
-    """A value below its namespaces."""
+    """Return a value below its namespaces."""
     for part in reversed(name.strip("/").split("/")):
         value = {part: value}
     tree: dict[str, Any] = value
@@ -70,7 +70,7 @@ def _tree(name: str, value: Any) -> dict[str, Any]:
 
 
 def _doubts(name: str, nodes: Mapping[str, NodeConfig], params: Mapping[str, Any]) -> list[str]:
-    """That a parameter may be nobody's: it is of no node that the mission names, and the mission has none like it."""
+    """Return a note if no node of the mission has the name of the parameter and the mission has no similar one."""
     first = name.strip("/").split("/")[0]
     if "/" not in name[1:] or first in params or any(node.name is None for node in nodes.values()):
         return []

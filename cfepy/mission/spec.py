@@ -1,4 +1,4 @@
-"""`MissionSpec`: what a mission is made of, whether it was read from files or made in memory."""
+"""`MissionSpec`: the content of a mission, read from files or created in memory."""
 
 from __future__ import annotations
 
@@ -26,8 +26,9 @@ class CompiledConfig:
     """How compiled applications were built, and how they are flown.
 
     Attributes:
-        omit_deprecated: with OMIT_DEPRECATED, which makes CFE_TBL_Handle_t an id instead of an int16.
-        guard: give them memory that nothing can be written past, and that is not zero, to find mistakes.
+        omit_deprecated: whether they were built with OMIT_DEPRECATED, which makes CFE_TBL_Handle_t an id instead of an
+            int16.
+        guard: whether they get guarded, nonzero memory, to find memory errors.
     """
 
     omit_deprecated: bool = False
@@ -41,7 +42,7 @@ class BuiltProgram(NamedTuple):
         name: full name of the node.
         file: the shared object.
         entry: its entry point.
-        node: what a launch file says of it.
+        node: its entry in a launch file.
     """
 
     name: str
@@ -51,7 +52,7 @@ class BuiltProgram(NamedTuple):
 
     @property
     def config(self) -> NodeConfig:
-        """What is to become of it when it ends."""
+        """The settings for its end."""
         return NodeConfig(
             self.node.app,
             name=self.name.lstrip("/"),
@@ -63,27 +64,26 @@ class BuiltProgram(NamedTuple):
 
 @dataclass(frozen=True)
 class MissionSpec:
-    """What a mission is made of.
+    """The content of a mission.
 
     Attributes:
-        name: of the mission.
-        folder: shows as /cf in it.
+        name: name of the mission.
+        folder: the folder that appears as /cf.
         script: the startup script.
-        mission_file: None when there is none.
-        board: what it is made for: a shipped board's name or a path.
-        cfe_version: the release of cFE that it flies on.
+        mission_file: None if there is none.
+        board: its board: a shipped board's name or a path.
+        cfe_version: its release of cFE.
         compiled: how its compiled applications were built.
         ros: its ROS nodes, topics and parameters.
-        limits: what it asks for of a platform.
-        startup: the startup script of a mission that was made in memory; `script` then names what it was made from.
-        notes: what its user should know before it runs.
+        limits: its platform limits.
+        startup: the startup script of a mission created in memory; `script` then names its source.
+        notes: notes for the user before the run.
         cpp_nodes: how its nodes in C++ are built.
-        built: nodes in C++ that were built for it, by cFE name.
-        demands: sections of the mission file that say what must hold of a run, as they stand there;
-            `cfepy.monitors.run_rules` reads them.
-        sweep: what a rate means in it, for `cfepy sweep`.
-        ids: what the run gives it of `cfepy.config.platform.IDENTITIES`, in place of its own.
-        beside: the missions that fly beside it: what their applications declare can be seen in this one, too.
+        built: the built nodes in C++, by cFE name.
+        demands: the unread sections of the mission file with rules for a run; `cfepy.monitors.run_rules` reads them.
+        sweep: the meaning of a rate, for `cfepy sweep`.
+        ids: the identities of `cfepy.config.platform.IDENTITIES` that the run overrides.
+        beside: the missions that fly together with it; this one can see the declarations of their applications.
     """
 
     name: str
@@ -106,22 +106,22 @@ class MissionSpec:
 
     @property
     def startup_script(self) -> bytes:
-        """The startup script's contents: its own, or those of the file `script`."""
+        """The content of the startup script: its own, or the file `script`."""
         return read_limited(self.script, STARTUP_BYTES) if self.startup is None else self.startup
 
     @CachedProperty
     def entries(self) -> tuple[StartupEntry, ...]:
-        """What the startup script starts, in order; read once."""
+        """The entries of the startup script, in order; read once."""
         return tuple(read_entries(self.startup_script, RELEASES[self.cfe_version].longest_entry))
 
     @property
     def scripts(self) -> dict[str, Path]:
-        """Scripts of nodes that are not in its folder, by the virtual paths that the startup script has."""
+        """The scripts of nodes outside its folder, by their virtual paths in the startup script."""
         return {f"/cf/{app}.so": node.script for app, node in self.ros.nodes.items() if node.script is not None}
 
     @property
     def built_files(self) -> dict[str, Path]:
-        """The shared objects of its nodes in C++, by the virtual paths that their lines name."""
+        """The shared objects of its nodes in C++, by their virtual paths in the startup script."""
         return {f"/cf/{app}.so": each.file for app, each in self.built.items()}
 
     @property

@@ -14,11 +14,11 @@ from cfepy.reading.marked_yaml import Marked, Mistakes
 
 @dataclass(frozen=True, slots=True)
 class SweepConfig:
-    """What a sweep varies and measures.
+    """The parameters that a sweep varies, and the topics that it measures.
 
     Attributes:
         rate: full names of parameters (with a slash) and names of launch arguments that a rate in Hz sets.
-        topics: that have this rate then; none for all topics of the mission.
+        topics: topics that then have this rate; empty for all topics of the mission.
     """
 
     rate: tuple[str, ...] = ()
@@ -26,11 +26,11 @@ class SweepConfig:
 
 
 def read_sweep(section: Marked, mistakes: Mistakes) -> SweepConfig:
-    """The section `sweep:`.
+    """Return the section `sweep:`.
 
     Args:
         section: its value.
-        mistakes: takes an unknown key, and what is no list of names.
+        mistakes: collects unknown keys and values that are not lists of names.
     """
     said: dict[str, tuple[str, ...]] = {}
     for name, entry in mistakes.fields(section, ("rate", "topics")):

@@ -1,7 +1,7 @@
-"""A watch on the ROS topics of a mission, which sees every message with its sender and time.
+"""An observer of a mission's ROS topics that sees every message with its sender and time.
 
-It watches the Software Bus, so it changes nothing: the run has the trace of one that is not watched. It sees
-packets that cFE applications send to a topic's MsgId as well, and messages without a subscriber.
+It observes the Software Bus, so it changes nothing: the trace is the same as without it. It also sees packets that cFE
+applications send to a topic's MsgId, and messages without a subscriber.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 RAW_TYPE = "std_msgs/UInt8MultiArray"
 CLOCK_BYTES = 8
 ADDRESSEE = slice(12, 16)
-"""Bytes of a topic's packet that are 0 if it is for all subscribers."""
+"""The bytes of a topic's packet that are 0 if the packet is for all subscribers."""
 
 
 class TopicMessage:
@@ -32,10 +32,10 @@ class TopicMessage:
     Attributes:
         topic: resolved name.
         header: the connection header of its publisher.
-        data: as ROS serialises it.
-        at_ns: virtual time of its sending.
-        stamp_ns: ROS time of its sending: that of the spacecraft's clock, or of /clock when nodes use simulated time;
-            None as long as that has not begun.
+        data: the message in ROS serialization.
+        at_ns: virtual time at which it was sent.
+        stamp_ns: ROS time at which it was sent: the spacecraft's clock, or /clock if nodes use simulated time; None
+            before /clock has started.
     """
 
     __slots__ = ("at_ns", "data", "header", "stamp_ns", "topic")
@@ -46,11 +46,11 @@ class TopicMessage:
 
 
 class TopicWatch(PacketWatch):
-    """Watches the topics of a mission.
+    """Observes the topics of a mission.
 
     Args:
-        take: gets each message when it is sent; called inside the simulation, so it must not wait.
-        patterns: names of topics, such as "/odom" or "/arm/*"; all when there are none.
+        take: called with each message when it is sent, inside the simulation, so it must not wait.
+        patterns: names of topics, such as "/odom" or "/arm/*"; empty for all.
     """
 
     def __init__(self, take: Callable[[TopicMessage], object], patterns: Sequence[str] = ()) -> None:
@@ -67,20 +67,21 @@ class TopicWatch(PacketWatch):
         return self.hearing(super().bus(base))
 
     def hearing(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """A class of bus that shows messages whose topic has no subscriber, but no packets."""
+        """Return a bus class that reports messages whose topic has no subscriber, but no packets."""
         return hearing(base, self._take_unsent)
 
     def begin(self, mission: Mission) -> None:
         self._mission = mission
 
-    # -- what is seen --------------------------------------------------------------------------------------------------
+    # -- observed packets
+    # ------------------------------------------------------------------------------------------------
 
     def _graph(self) -> Graph | None:
         ros = None if self._mission is None else self._mission.ros
         return None if ros is None else ros.graph
 
     def _topic(self, msg_id: int) -> TopicEntry | None:
-        """The topic of a MsgId, None when it is no topic's."""
+        """Return the topic of a MsgId, or None if it belongs to no topic."""
         graph = self._graph()
         if graph is None:
             return None
@@ -94,10 +95,10 @@ class TopicWatch(PacketWatch):
         return topic is not None and (topic.name == "/clock" or matches(topic.name, self._patterns))
 
     def take_packet(self, seen: Seen) -> None:
-        """A packet was sent; for what watches all packets itself, and so does not let this watch do it too."""
+        """Handle a sent packet, for a caller that observes all packets itself."""
         topic = self._topic(seen.msg_id)
         if topic is None or (not topic.raw and any(seen.packet[ADDRESSEE])):
-            return  # a repetition of a message for one subscriber, which is no new message
+            return  # a repetition for one subscriber, which is not a new message
         data = seen.packet if topic.raw else self._whole(seen)
         if data is not None:
             links = [link for link in topic.links if link.node.config.app == seen.sender]
@@ -107,7 +108,7 @@ class TopicWatch(PacketWatch):
             self._show(topic, *shown, seen.at_ns)
 
     def _whole(self, seen: Seen) -> bytes | None:
-        """The message in a packet, or the one that ends with it; None when there is more to come."""
+        """Return the message in a packet, or the one that it completes; None if more segments follow."""
         flag, key = get_segmentation_flag(seen.packet), (seen.msg_id, seen.sender)
         payload = seen.packet[TLM_HEADER_SIZE:]
         if flag == SegmentationFlag.UNSEGMENTED:
@@ -137,14 +138,14 @@ class TopicWatch(PacketWatch):
 
 
 def matches(topic: str, patterns: Sequence[str]) -> bool:
-    """Whether a topic is one of those that are meant; see `TopicWatch`."""
+    """Return whether a topic matches the patterns; see `TopicWatch`."""
     return not patterns or any(fnmatchcase(topic, pattern) for pattern in patterns)
 
 
 def _header_of(topic: TopicEntry, sender: str) -> dict[str, str]:
-    """A connection header for an application that sends to a topic and is no Python node.
+    """Return a connection header for an application that sends to a topic and is not a Python node.
 
-    It is empty as long as the type of the topic is not known.
+    It is empty while the type of the topic is unknown.
     """
     compiled = next((node for node in topic.compiled_publishers if node.config.app == sender), None)
     if compiled is not None:
@@ -156,7 +157,7 @@ def _header_of(topic: TopicEntry, sender: str) -> dict[str, str]:
 
 
 def _header_of_bytes(header: dict[str, str]) -> dict[str, str]:
-    """The connection header of a raw topic, whose messages have a whole packet as their data."""
+    """Return the connection header of a raw topic, whose messages contain a whole packet."""
     from rospy_shim.types.msgs import message_class
 
     kind = message_class(RAW_TYPE)
@@ -164,7 +165,7 @@ def _header_of_bytes(header: dict[str, str]) -> dict[str, str]:
 
 
 def _as_bytes_message(header: dict[str, str], packet: bytes) -> tuple[dict[str, str], bytes]:
-    """A raw topic: nodes get the whole packet as the data of a message; so does the bag."""
+    """Return header and data of a raw topic's message; like nodes, a bag gets the whole packet as its data."""
     from rospy_shim.types.msgs import message_class
 
     return _header_of_bytes(header), message_class(RAW_TYPE)(data=packet)._pack()

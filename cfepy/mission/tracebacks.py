@@ -1,4 +1,4 @@
-"""Tracebacks as the author of an app wants them: the lines of the app, without those of cfepy around them."""
+"""Tracebacks for the author of an app: the lines of the app, without the surrounding lines of cfepy."""
 
 from __future__ import annotations
 
@@ -12,24 +12,27 @@ from cfepy.reading.texts import without_addresses
 
 SHARED = str(Path(PACKAGE) / "share")
 _PLACE = re.compile(r"\([^\s():]+:\d+\)")
-FILES = 4096  # of which it is remembered whose they are
-INNERMOST = 50  # frames that are shown: how deep a runaway recursion gets differs between task contexts
+FILES = 4096  # number of files whose owner is cached
+INNERMOST = 50  # maximum number of frames shown, because the depth of a runaway recursion depends on the task context
 
 
 def app_traceback(error: BaseException) -> str:
-    """The formatted traceback of an error and its causes, without frames of cfepy; all when nothing would be left."""
+    """Return the formatted traceback of an error and its causes, without cfepy's frames, unless nothing would
+    be left.
+    """
     text = traceback.TracebackException.from_exception(error, limit=-INNERMOST)
     whole = list(text.stack)
     strip(text, _is_ours)
-    if not text.stack and not isinstance(error, SyntaxError):  # that one names its place by itself
+    if not text.stack and not isinstance(error, SyntaxError):  # a SyntaxError names its place itself
         text.stack = traceback.StackSummary.from_list(whole)
     return "".join(text.format()).rstrip()
 
 
 def reason(error: BaseException) -> str:
-    """The last line of a traceback, with the place: `ValueError: no such joint (arm.py:12)`.
+    """Return the last line of a traceback, with the place: `ValueError: no such joint (arm.py:12)`.
 
-    Of a text of several lines, it is the first. One that names a place of its own stays as it is: a fault in C does.
+    If the text has several lines, only the first is used. A text that already names a place, such as a fault in C, is
+    kept.
     """
     frames = traceback.extract_tb(error.__traceback__, limit=-INNERMOST)
     own = [frame for frame in frames if not _is_ours(frame.filename)] or frames
@@ -39,7 +42,7 @@ def reason(error: BaseException) -> str:
 
 
 def described(error: BaseException) -> str:
-    """Type and text of an error, also when its own `__str__` fails."""
+    """Return the type and text of an error, even if its `__str__` fails."""
     try:
         return f"{type(error).__name__}: {error}"
     except Exception:

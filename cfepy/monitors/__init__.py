@@ -1,10 +1,10 @@
-"""What must hold of a run, and the attachments that check it: messages, observer, invariants, deadlines.
+"""Rules for a run, and the attachments that check them: observer, invariants, deadlines, priority inversions.
 
-What belongs here is an attachment that watches a run and changes nothing in it, or reads the section of the mission
-file that says what to check. Faults are in `cfepy.faults`, commands and the answers expected in `cfepy.script`.
+An attachment that observes a run without changing it belongs here, as does the reader of the section of the mission
+file that configures it. Faults are in `cfepy.faults`, commands and expected answers in `cfepy.script`.
 
-The names below are loaded when they are first used: a run imports no more of this package than it needs. The central
-file is `cfepy/monitors/observer.py`.
+The names below are loaded on first use, so a run loads only the parts of this package that it needs. The central file
+is `cfepy/monitors/observer.py`.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ __all__ = [
     "shortened",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

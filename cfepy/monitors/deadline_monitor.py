@@ -1,4 +1,4 @@
-"""The monitor of the deadlines of a mission file: it measures each, and writes a line for each that was missed."""
+"""The monitor of a mission file's deadlines: it measures each, and writes a line for each overrun."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from cfepy.rtos import Task
 from cfepy.sb import Pipe, SoftwareBus
 from cfepy.units import NS_PER_S, time_text
 
-SHOWN = 10  # overruns of one deadline that the console shows; all are in the trace
-KEPT = 1000  # overruns of one deadline that are kept for tools, the first ones
-FIRST_SEGMENT = 0x40  # of the sequence flags in byte 2: a message begins, whole or in segments
+SHOWN = 10  # maximum number of overruns of one deadline on the console; all are in the trace
+KEPT = 1000  # maximum number of overruns of one deadline that are kept for tools, the first ones
+FIRST_SEGMENT = 0x40  # of the sequence flags in byte 2: start of a message, whole or in segments
 BETWEEN_MESSAGES = ("at_least_every", "at_most_every")
 PREFIX = "DEADLINE "
-"""How the line of an overrun begins."""
+"""Start of the line for an overrun."""
 
 
 @dataclass(slots=True)
 class TopicState:
-    """A topic's checks by kind, and its last message: when it came, and whether the next one is late already."""
+    """Checks of a topic by kind, the time of its last message, and whether the next one is already late."""
 
     checks: dict[str, Check]
     last_ns: int | None = None
     is_late: bool = False
 
     def due_ns(self, booted_ns: int) -> int | None:
-        """The last instant at which the next message is in time; None when there is none, or it has passed."""
+        """Return the latest time at which the next message is in time; None if there is none, or it has passed."""
         check = self.checks.get("at_least_every")
         if check is None or self.is_late:
             return None
@@ -41,22 +41,24 @@ class TopicState:
 
 @dataclass(slots=True)
 class TaskState:
-    """A task with deadlines: `waits` says that it does, `due_ns` until when at most, `woken_ns` since when it is up."""
+    """A task with deadlines: `waits` is whether it waits, `due_ns` its time limit, `woken_ns` when the last
+    wait ended.
+    """
 
     checks: list[Check] = field(default_factory=list)
     waits: bool = False
     due_ns: int | None = None
     woken_ns: int | None = None
-    before_ns: int | None = None  # the end of the wait before this one
+    before_ns: int | None = None  # end of the previous wait
 
 
 class DeadlineMonitor(Observer):
-    """Measures while the mission is OPERATIONAL, until the time of the run is over.
+    """Measures deadlines while the mission is OPERATIONAL, until the end of the run.
 
     The mission's record gets the checks, and the first overruns of each.
 
     Args:
-        deadlines: what is asked.
+        deadlines: the deadlines.
     """
 
     def __init__(self, deadlines: Deadlines) -> None:
@@ -79,7 +81,7 @@ class DeadlineMonitor(Observer):
         return found
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """A message without a subscriber is never sent, and has come all the same."""
+        """Return a bus that reports messages without subscribers too: they are never sent, but count here."""
         base = super().bus(base)
         is_paced = any(state.checks.keys() & set(BETWEEN_MESSAGES) for _, state in self._topics)
         return hearing(base, self._take_unheard) if is_paced else base
@@ -90,7 +92,7 @@ class DeadlineMonitor(Observer):
         mission.record.part(DeadlineRecord).checks = list(self._all())
 
     def power_up(self, processor: Processor) -> None:
-        """A reset: all checks begin anew, when the mission is OPERATIONAL again."""
+        """After a reset, start all checks again when the mission is OPERATIONAL again."""
         super().power_up(processor)
         self._processor = processor
         self._tasks.clear()
@@ -100,7 +102,7 @@ class DeadlineMonitor(Observer):
             state.last_ns, state.is_late = None, False
 
     def conclude(self) -> None:
-        """What is late by now is late, and what comes now is not measured."""
+        """Record messages that are late now, and stop measuring."""
         self._find_late(self._kernel.now)
         self._is_over = True
 
@@ -117,7 +119,7 @@ class DeadlineMonitor(Observer):
     # -- applications ------------------------------------------------------------------------------------------------
 
     def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
-        """A wait begins, and a response ends; one for a mutex is part of the work."""
+        """A wait starts and a response ends; waiting for a mutex is part of the work."""
         state = self._state_of(task)
         if state is None or not waits or task.mutex is not None:
             return
@@ -136,7 +138,7 @@ class DeadlineMonitor(Observer):
             self._wakes(state, task, at_ns, at_ns)
 
     def on_run(self, task: Task, at_ns: int) -> None:
-        """Note that a task runs; if no call ended its wait, its timer woke it when that was due."""
+        """A task runs; if no call ended its wait, its timer did so when it was due."""
         self._find_late(at_ns)
         state = self._state_of(task)
         if state is not None and state.waits:
@@ -157,7 +159,7 @@ class DeadlineMonitor(Observer):
         return named is not None or task.number == task.owner.main_task_id
 
     def _timer_of(self, task: Task) -> int | None:
-        """When the wait of a task is over at the latest."""
+        """Return the time limit of a task's wait."""
         timers = self._kernel.timers
         return next((when for when, sequence, each in timers if each is task and sequence == task.timer), None)
 
@@ -175,7 +177,7 @@ class DeadlineMonitor(Observer):
     # -- topics ------------------------------------------------------------------------------------------------------
 
     def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
-        """A message begins."""
+        """A message starts."""
         self._find_late(sent.at_ns)
         if self._measures and packet[2] & FIRST_SEGMENT:
             self._comes(sent.msg_id, sent.at_ns)
@@ -187,7 +189,7 @@ class DeadlineMonitor(Observer):
             self._comes(link.msg_id, now_ns)
 
     def _comes(self, msg_id: int, at_ns: int) -> None:
-        """A message: how long after the one before?"""
+        """Check the interval since the previous message."""
         for state in self._states_of(msg_id):
             before, was_late = state.last_ns, state.is_late
             state.last_ns, state.is_late, self._next_due = at_ns, False, None
@@ -196,7 +198,7 @@ class DeadlineMonitor(Observer):
             for kind in BETWEEN_MESSAGES:
                 check = state.checks.get(kind)
                 if check is not None and was_late and kind == "at_least_every":
-                    check.saw(at_ns - before)  # it was told when it was due
+                    check.saw(at_ns - before)  # it was reported when it was due
                 elif check is not None:
                     self._measure(check, at_ns - before, at_ns, "from one message to the next")
 
@@ -218,7 +220,7 @@ class DeadlineMonitor(Observer):
         return found
 
     def _find_late(self, now_ns: int) -> None:
-        """Messages that should have come by now; told at the first thing that happens after they were due."""
+        """Report messages that are overdue, at the first event after their limit."""
         if not self._topics or self._is_over or (self._next_due is not None and now_ns <= self._next_due):
             return
         booted = self._processor.booted
@@ -234,7 +236,7 @@ class DeadlineMonitor(Observer):
         left = [due for _, state in self._topics if (due := state.due_ns(booted)) is not None]
         self._next_due = min(left, default=1 << 62)
 
-    # -- what was missed ---------------------------------------------------------------------------------------------
+    # -- overruns ------------------------------------------------------------------------------------------------------
 
     def _measure(self, check: Check, measured_ns: int, at_ns: int, where: str) -> None:
         if check.measure(measured_ns):
@@ -251,7 +253,7 @@ class DeadlineMonitor(Observer):
         self._tell(check, f"{PREFIX}{at_ns / NS_PER_S:.6f} {text}")
 
     def _tell(self, check: Check, line: str) -> None:
-        """A line on the console, or in the trace alone when there were many already."""
+        """Write a line to the console, or only to the trace if there were many already."""
         if check.overruns > SHOWN:
             self.mission.trace.note(line)
         else:

@@ -1,7 +1,7 @@
-"""Deadlines: how quick applications must answer, how fresh topics must be, and what was measured against that.
+"""Deadlines: how fast applications must respond, how fresh topics must be, and the measured values.
 
-The section `deadlines:` of a mission file says them; a `Check` counts how often each was measured, how often in vain,
-and keeps the worst there was. `cfepy.monitors.deadline_monitor` does the measuring.
+They are defined in the section `deadlines:` of a mission file. A `Check` counts measurements and overruns, and keeps
+the worst value. `cfepy.monitors.deadline_monitor` does the measuring.
 """
 
 from __future__ import annotations
@@ -24,14 +24,15 @@ _TIME = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(ns|us|ms|s|Hz)\s*")
 
 @dataclass(frozen=True, slots=True)
 class AppDeadline:
-    """What is asked of an application.
+    """Deadlines of an application.
 
     Attributes:
         app: its cFE name.
-        response_ns: longest time from the end of a wait of one of its tasks to the beginning of the next; None for any.
-        period_ns: time from one end of a wait to the next of its main task, or of `task`; None for any.
-        jitter_ns: how much more or less than the period is good.
-        task: name of the only task that is meant; None for all, as to the response, and the main one, as to the period.
+        response_ns: longest time from the end of a wait of one of its tasks to the start of the next; None for no
+            limit.
+        period_ns: time from one end of a wait to the next, for the main task or `task`; None for no limit.
+        jitter_ns: allowed deviation from the period.
+        task: name of the only task to check; None checks the response of all tasks and the period of the main task.
     """
 
     app: str
@@ -43,13 +44,13 @@ class AppDeadline:
 
 @dataclass(frozen=True, slots=True)
 class TopicDeadline:
-    """What is asked of a topic or another message.
+    """Deadlines of a topic or another message.
 
     Attributes:
         name: the topic, a packet's name, or a MsgId as "0x0883".
-        latency_ns: longest time from its sending until a receiver has it; None for any.
-        longest_ns: longest time from one message to the next; None for any.
-        shortest_ns: shortest time from one message to the next; None for any.
+        latency_ns: longest time from sending until a receiver has it; None for no limit.
+        longest_ns: longest time from one message to the next; None for no limit.
+        shortest_ns: shortest time from one message to the next; None for no limit.
     """
 
     name: str
@@ -59,13 +60,13 @@ class TopicDeadline:
 
     @property
     def msg_id(self) -> int | None:
-        """The MsgId, where it is given as a number."""
+        """The MsgId, if it is given as a number."""
         return int(self.name, 16) if self.name.startswith("0x") else None
 
 
 @dataclass(frozen=True, slots=True)
 class Deadlines:
-    """All deadlines of a mission; false when there are none."""
+    """All deadlines of a mission; false if there are none."""
 
     apps: tuple[AppDeadline, ...] = ()
     topics: tuple[TopicDeadline, ...] = ()
@@ -75,11 +76,11 @@ class Deadlines:
 
 
 def read_deadlines(section: Marked, mistakes: Mistakes) -> Deadlines:
-    """The section `deadlines:`, without those that are wrong.
+    """Return the section `deadlines:`, without invalid entries.
 
     Args:
         section: its value.
-        mistakes: takes an unknown key, or a value that cannot be.
+        mistakes: collects unknown keys and invalid values.
     """
     parts = dict(mistakes.fields(section, ("apps", "topics")))
     apps = mistakes.mapping(parts["apps"]) if "apps" in parts else {}
@@ -130,10 +131,10 @@ def _check_msg_id(name: str, entry: Marked) -> None:
 
 
 def _time(entry: Marked | None, zero: bool = False) -> int | None:
-    """A time with its unit, in ns.
+    """Return a time with its unit, in ns.
 
     Raises:
-        UsageError: it is none.
+        UsageError: if the text is not a time with a unit.
     """
     if entry is None:
         return None
@@ -148,7 +149,7 @@ def _time(entry: Marked | None, zero: bool = False) -> int | None:
 
 
 def limits_of(deadline: AppDeadline | TopicDeadline) -> Mapping[str, int]:
-    """The limits that a deadline sets, in ns, by the names that they have in the mission file."""
+    """Return the limits of a deadline in ns, by their names in the mission file."""
     if isinstance(deadline, AppDeadline):
         named = {"response": deadline.response_ns, "period": deadline.period_ns}
     else:
@@ -157,7 +158,7 @@ def limits_of(deadline: AppDeadline | TopicDeadline) -> Mapping[str, int]:
 
 
 class Overrun(NamedTuple):
-    """A deadline that was missed: when in virtual ns, whose, which, and what happened."""
+    """An overrun: time in virtual ns, owner, kind and description."""
 
     at_ns: int
     owner: str
@@ -167,17 +168,17 @@ class Overrun(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class DeadlineResult:
-    """One deadline. Times in virtual s.
+    """Report of one deadline. Times in virtual s.
 
     Attributes:
         owner: an application, topic or packet.
         kind: as in the mission file, such as "response".
-        limit_s: what it asks for; of a period, the period itself.
-        jitter_s: of a period; 0 for others.
-        checked: how many times it was measured.
-        overruns: how many times it was missed.
-        worst_s: the worst that was measured; None as long as nothing was.
-        first_at_s: when it was first missed; None when it never was.
+        limit_s: its limit; for a period, the period itself.
+        jitter_s: for a period; 0 for others.
+        checked: number of measurements.
+        overruns: number of overruns.
+        worst_s: worst measured value; None without measurement.
+        first_at_s: time of the first overrun; None if there was none.
     """
 
     owner: str
@@ -191,13 +192,13 @@ class DeadlineResult:
 
     @property
     def limit_text(self) -> str:
-        """The limit as people write it: "10 ms +- 1 ms"."""
+        """The limit for display: "10 ms +- 1 ms"."""
         limit = time_text(round(self.limit_s * NS_PER_S))
         return f"{limit} +- {time_text(round(self.jitter_s * NS_PER_S))}" if self.kind == "period" else limit
 
     @property
     def problem(self) -> str | None:
-        """A line that says how it was missed; None when it was not."""
+        """Return a line that describes the overruns; None if there were none."""
         if not self.overruns or self.worst_s is None or self.first_at_s is None:
             return None
         times = f"{self.overruns} time{'s' if self.overruns > 1 else ''}"
@@ -208,7 +209,7 @@ class DeadlineResult:
 
 @dataclass(slots=True)
 class Check:
-    """One limit, and how it was kept so far; times in ns."""
+    """One limit and its measurements so far; times in ns."""
 
     owner: str
     kind: str
@@ -220,7 +221,7 @@ class Check:
     first_at_ns: int | None = None
 
     def measure(self, measured_ns: int) -> bool:
-        """Take one measurement; whether it is good."""
+        """Add a measurement; returns whether it is within the limit."""
         self.checked += 1
         self.saw(measured_ns)
         if self.kind == "period":
@@ -230,7 +231,7 @@ class Check:
         return measured_ns <= self.limit_ns
 
     def saw(self, measured_ns: int) -> None:
-        """Keep the worst that there was."""
+        """Update the worst value."""
         if self.worst_ns is None or self._badness(measured_ns) > self._badness(self.worst_ns):
             self.worst_ns = measured_ns
 
@@ -240,7 +241,7 @@ class Check:
         return -measured_ns if self.kind == "at_most_every" else measured_ns
 
     def result(self) -> DeadlineResult:
-        """What came of it."""
+        """Return the report."""
         worst = None if self.worst_ns is None else self.worst_ns / NS_PER_S
         first = None if self.first_at_ns is None else self.first_at_ns / NS_PER_S
         limit, jitter = self.limit_ns / NS_PER_S, self.jitter_ns / NS_PER_S

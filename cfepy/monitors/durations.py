@@ -1,12 +1,12 @@
-"""What can be the longest in a run: how long a response, a message on its way, a wait for the processor takes.
+"""Durations whose maximum in a run is measured: responses, latencies of messages, waits for the processor.
 
     latency:/scan           from the sending of a message until a receiver has it
     latency:/scan->/cmd     from a message on /scan to the next one on /cmd
-    response:ARM            of a task of an application: from the end of a wait to the beginning of the next one
+    response:ARM            of a task of an application: from the end of a wait to the start of the next one
     age:/scan               from a message to the next one, or to the end of the run
     wait:ARM                of a task: how long it is ready and others run
 
-`latency`, `response` and `age` are measured as the deadlines `latency`, `response` and `at_least_every` of a mission
+`latency`, `response` and `age` are measured like the deadlines `latency`, `response` and `at_least_every` of a mission
 file are, which docs/mission_file.md describes, and like them while the mission is OPERATIONAL.
 """
 
@@ -30,12 +30,12 @@ _ARROW = "->"
 
 
 class Measure(NamedTuple):
-    """What is measured.
+    """A duration to measure.
 
     Attributes:
         kind: one of `KINDS`.
         name: a topic, a packet's name or a MsgId (`0x0883`); an application; a task, also as a pattern.
-        effect: of a latency from one message to another, the other; empty for one message on its way.
+        effect: for a latency between two messages, the second one; empty for the latency of one message.
     """
 
     kind: str
@@ -44,10 +44,10 @@ class Measure(NamedTuple):
 
     @classmethod
     def parse(cls, text: str) -> Measure:
-        """The measure that a text means.
+        """Return the measure of a text.
 
         Raises:
-            UsageError: it means none.
+            UsageError: if the text is not a measure.
         """
         kind, _, name = text.partition(":")
         name, arrow, effect = name.partition(_ARROW)
@@ -60,11 +60,11 @@ class Measure(NamedTuple):
 
     @property
     def text(self) -> str:
-        """What `parse` reads."""
+        """Return the text from which `parse` makes this."""
         return f"{self.kind}:{self.name}{_ARROW if self.effect else ''}{self.effect}"
 
     def deadlines(self) -> Deadlines:
-        """Deadlines that are never missed, and measured as this is."""
+        """Return deadlines without limits, with the measurement of this duration."""
         if self.kind == RESPONSE:
             return Deadlines(apps=(AppDeadline(self.name, response_ns=LONGEST_NS),))
         if self.kind == WAIT:
@@ -76,7 +76,7 @@ class Measure(NamedTuple):
 
 
 class Longest(NamedTuple):
-    """The longest that was measured, in virtual ns; when it ended, where, and how many times there were."""
+    """The longest measured duration, in virtual ns; its end, place and the task."""
 
     time_ns: int
     at_ns: int
@@ -85,14 +85,14 @@ class Longest(NamedTuple):
 
 
 class LongestWatch(DeadlineMonitor):
-    """Measures one thing in a run.
+    """Measures one duration in a run.
 
     Args:
-        measure: what.
-        on_longest: called whenever something took longer than all before.
+        measure: the duration.
+        on_longest: called whenever a new maximum was measured.
 
     Attributes:
-        longest: so far; None as long as nothing was measured.
+        longest: maximum so far; None without measurement.
     """
 
     def __init__(self, measure: Measure, on_longest: Callable[[], object] = lambda: None) -> None:
@@ -100,12 +100,12 @@ class LongestWatch(DeadlineMonitor):
         self.longest: Longest | None = None
         self._measure_of = measure
         self._on_longest = on_longest
-        self._causes: list[int] = []  # when messages came that have had no effect yet
-        self._ready: dict[Task, int] = {}  # tasks that could run, and since when
-        self._due: dict[Task, int | None] = {}  # when the wait of a task is over at the latest
+        self._causes: list[int] = []  # times of messages that have had no effect yet
+        self._ready: dict[Task, int] = {}  # tasks that are ready, and since when
+        self._due: dict[Task, int | None] = {}  # time limits of the tasks' waits
 
     def begin(self, mission: Mission) -> None:
-        """The deadlines of the mission itself stay in its record."""
+        """Leave the mission's own deadlines in its record."""
         kept = mission.record.part(DeadlineRecord).checks
         super().begin(mission)
         mission.record.part(DeadlineRecord).checks = kept
@@ -117,7 +117,7 @@ class LongestWatch(DeadlineMonitor):
         self._due.clear()
 
     def conclude(self) -> None:
-        """What has not come to its end has lasted until now."""
+        """Measure unfinished durations until now."""
         now_ns = self._kernel.now
         if self._measures:
             for _, state in self._topics:
@@ -127,7 +127,7 @@ class LongestWatch(DeadlineMonitor):
                 self._saw_ready(task, now_ns)
         super().conclude()
 
-    # -- deadlines, as they are measured -----------------------------------------------------------------------------
+    # -- deadlines as durations ----------------------------------------------------------------------------------------
 
     def _measure(self, check: Check, measured_ns: int, at_ns: int, where: str) -> None:
         self._saw(measured_ns, at_ns, where, self._kernel.current.name)
@@ -137,10 +137,10 @@ class LongestWatch(DeadlineMonitor):
             self.longest = Longest(time_ns, at_ns, where, task)
             self._on_longest()
 
-    # -- from a cause to its effect ----------------------------------------------------------------------------------
+    # -- from cause to effect ------------------------------------------------------------------------------------------
 
     def _comes(self, msg_id: int, at_ns: int) -> None:
-        """See `DeadlineMonitor`: a message."""
+        """A message was sent; see `DeadlineMonitor`."""
         if not self._measure_of.effect:
             super()._comes(msg_id, at_ns)
             return
@@ -152,7 +152,7 @@ class LongestWatch(DeadlineMonitor):
         if cause in found:
             self._causes.append(at_ns)
 
-    # -- tasks that could run ----------------------------------------------------------------------------------------
+    # -- ready tasks ---------------------------------------------------------------------------------------------------
 
     def _means(self, task: Task) -> bool:
         return self._measure_of.kind == WAIT and fnmatchcase(task.name, self._measure_of.name)
@@ -163,7 +163,7 @@ class LongestWatch(DeadlineMonitor):
             self._ready[task] = at_ns
 
     def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
-        """The task waits from now on, or could run."""
+        """The task starts to wait, or is ready."""
         super().on_leave(task, at_ns, waits)
         if not self._means(task):
             return
@@ -172,7 +172,7 @@ class LongestWatch(DeadlineMonitor):
         self._due[task] = self._timer_of(task) if waits else None
 
     def on_run(self, task: Task, at_ns: int) -> None:
-        """The task runs at last; without a call that ended its wait, its timer did."""
+        """The task runs; if no call ended its wait, its timer did."""
         super().on_run(task, at_ns)
         if not self._means(task):
             return

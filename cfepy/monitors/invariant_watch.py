@@ -1,7 +1,7 @@
-"""The monitor of the invariants of a mission: it judges each with every message that it is about, as that is sent.
+"""The monitor of a mission's invariants: each is checked against its messages when they are sent.
 
-A violation is written on the console, noted in the trace, and listed in the report. A processor reset begins anew:
-what was remembered of earlier messages is forgotten. A mission without invariants never loads this module.
+A violation is written to the console and the trace, and listed in the report. A processor reset starts again: earlier
+messages are forgotten. A mission without invariants never loads this module.
 """
 
 from __future__ import annotations
@@ -22,28 +22,27 @@ from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
 Report = Callable[[str, int, str, str], None]
-"""Gets what does not hold: text, virtual time in ns, the sender of the message, more lines."""
+"""Receives a violation: text, virtual time in ns, the sender of the message, more lines."""
 
 
 class Latest(dict[str, Any]):
-    """The latest message of each topic; None for one that had none yet."""
+    """The latest message of each topic; None if there was none yet."""
 
     def __missing__(self, topic: str) -> None:
         return None
 
     def get(self, topic: str, default: Any = None) -> Any:
-        """As of a dict."""
         message = super().get(topic)
         return default if message is None else message
 
 
 class Judge:
-    """Judges one invariant; remembers what it needs for that since the last reset.
+    """Checks one invariant; keeps its state since the last reset.
 
     Args:
-        invariant: which one.
-        latest: of all topics.
-        report: gets what does not hold.
+        invariant: the invariant.
+        latest: latest messages of all topics.
+        report: receives violations.
     """
 
     def __init__(self, invariant: Invariant, latest: Latest, report: Report) -> None:
@@ -54,11 +53,11 @@ class Judge:
         self._counts: dict[str, int] = {}
 
     def selects(self, topic: str) -> bool:
-        """Whether it wants the messages of a topic or the packets of a name."""
+        """Return whether it checks the messages of a topic or the packets of a name."""
         return _selects(self.invariant.selection, topic)
 
     def take(self, heard: Heard) -> bool:
-        """Judge with a message; whether it was one that it is about."""
+        """Check a message; returns whether the invariant applies to it."""
         names = self._names(heard)
         self._last[heard.topic] = heard.msg
         when = self.invariant.when
@@ -68,10 +67,10 @@ class Judge:
         return True
 
     def end(self, now_ns: int) -> None:
-        """The time of the run is over."""
+        """The run has ended."""
 
     def _names(self, heard: Heard) -> dict[str, Any]:
-        """What its expressions can name."""
+        """Return the names that its expressions can use."""
         count = self._counts[heard.topic] = self._counts.get(heard.topic, 0) + 1
         return {
             "msg": heard.msg,
@@ -93,14 +92,14 @@ class Judge:
 
 
 class FunctionJudge(Judge):
-    """Lets a function of the mission judge: False, a text or an AssertionError say that it does not hold."""
+    """Checks with a function of the mission: False, a text or an AssertionError means a violation."""
 
     def __init__(self, invariant: Invariant, latest: Latest, report: Report) -> None:
         super().__init__(invariant, latest, report)
         self._code = code_of(invariant)
 
     def end(self, now_ns: int) -> None:
-        """An object that has a method of this name is asked once more."""
+        """An object with a method of this name is called once more at the end."""
         last_word = getattr(self._code, "end", None)
         if last_word is not None:
             self._ask(last_word, now_ns, "")
@@ -128,11 +127,11 @@ class AnswerJudge(Judge):
         self._open: deque[Heard] = deque()
 
     def selects(self, topic: str) -> bool:
-        """See `Judge.selects`: answers, too."""
+        """Return whether it checks such messages, including answers; see `Judge.selects`."""
         return super().selects(topic) or _selects(self._answer.selection, topic)
 
     def take(self, heard: Heard) -> bool:
-        """A message that is both answers first."""
+        """A message that is both is treated as an answer first."""
         self._expire(heard.at_ns)
         names = self._names(heard)
         if self._open and _selects(self._answer.selection, heard.topic):
@@ -149,7 +148,7 @@ class AnswerJudge(Judge):
         return is_cause
 
     def end(self, now_ns: int) -> None:
-        """What still has time is not judged."""
+        """Do not report answers that are not due yet."""
         self._expire(now_ns)
 
     def _expire(self, now_ns: int) -> None:
@@ -162,7 +161,7 @@ class AnswerJudge(Judge):
 
 
 class AgainJudge(Judge):
-    """Reports when no message that it is about has come for too long, since it was to begin, or since the last one."""
+    """Reports if no matching message came for too long, since the start or since the last one."""
 
     def __init__(self, invariant: Invariant, latest: Latest, report: Report, now_ns: int) -> None:
         super().__init__(invariant, latest, report)
@@ -178,7 +177,7 @@ class AgainJudge(Judge):
         return is_one
 
     def _judge(self, heard: Heard, names: dict[str, Any]) -> None:
-        """That it came is all that is asked of it."""
+        """The message only has to come."""
 
     def end(self, now_ns: int) -> None:
         self._expire(now_ns)
@@ -191,7 +190,7 @@ class AgainJudge(Judge):
 
 
 class EventuallyJudge(Judge):
-    """Reports at the end of the run when something never held."""
+    """Reports at the end of the run if a condition never held."""
 
     _has_held = False
 
@@ -208,14 +207,14 @@ class EventuallyJudge(Judge):
 
 
 class InvariantWatch(Attachment):
-    """Watches over all invariants of a mission.
+    """Checks all invariants of a mission.
 
     Args:
         spec: the mission.
         invariants: its invariants.
 
     Raises:
-        UsageError: one names a packet that the mission does not have, or its code cannot be executed.
+        UsageError: if one names a packet that the mission does not have, or its code cannot be executed.
     """
 
     def __init__(self, spec: MissionSpec, invariants: Sequence[Invariant]) -> None:
@@ -232,7 +231,7 @@ class InvariantWatch(Attachment):
         except UsageError as error:
             raise UsageError(error.text, file=spec.mission_file, field="invariants") from None
         self._mission: Mission | None = None
-        self._now_ns = 0  # when the processor was made
+        self._now_ns = 0  # when the processor was created
         self._records = InvariantRecords()
         self._make_judges()
 
@@ -285,7 +284,7 @@ class InvariantWatch(Attachment):
         self._latest[heard.topic] = _message(heard)
 
     def _ask(self, judge: Judge, what: Callable[[], Any]) -> None:
-        """Let a judge do something; one whose code fails is told once, and judges no more."""
+        """Call a judge; if its code fails, the error is reported once and the judge is disabled."""
         assert self._mission is not None
         name = judge.invariant.name
         if name in self._broken:
@@ -325,7 +324,7 @@ def _selections(invariant: Invariant) -> Iterator[Selection]:
 
 
 def _all(selection: Selection) -> tuple[str, ...]:
-    """The pattern of an empty selection."""
+    """Return the pattern of an empty selection."""
     return () if selection.packets else ("*",)
 
 
@@ -339,4 +338,4 @@ def _message(heard: Heard) -> Any:
     try:
         return heard.msg
     except Exception:
-        return None  # the judges that want this message have reported it
+        return None  # judges that check this message have reported it

@@ -1,7 +1,7 @@
-"""What must hold of the messages of a mission: the section `invariants` of a mission file.
+"""Invariants of the messages of a mission: the section `invariants` of a mission file.
 
-An invariant is an expression over a message, a function of the mission's own Python file, or an answer that has to come
-in time. Here they are read; `cfepy.monitors.invariant_watch` watches over them. docs/mission_file.md describes them.
+An invariant is an expression over a message, a function in the mission's own Python file, or an answer that must come
+in time. They are read here and checked by `cfepy.monitors.invariant_watch`. See docs/mission_file.md.
 """
 
 from __future__ import annotations
@@ -31,7 +31,9 @@ FIELDS = (*SOURCE_FIELDS, "holds", "when", "within", "then", "again", "eventuall
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """Which messages: topics by name or pattern, packets by the dictionary's names or MsgIds. All topics when empty."""
+    """Selected messages: topics by name or pattern, packets by the dictionary's names or MsgIds. All topics if
+    empty.
+    """
 
     topics: tuple[str, ...] = ()
     packets: tuple[str, ...] = ()
@@ -42,7 +44,7 @@ class Selection:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What has to come after a message, at most so long after it."""
+    """The answer that must follow a message within a time limit."""
 
     selection: Selection
     holds: Predicate | None
@@ -51,19 +53,18 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Invariant:
-    """Something that must hold.
+    """A rule for messages.
 
     Attributes:
         name: its key in the mission file.
-        place: where it stands there, `file:line`.
-        selection: the messages that it is about.
-        when: it is about those for which this holds only.
-        holds: what must hold of each of them.
-        answer: what has to come after each of them.
-        again_ns: such a message has to come within this time of virtual time, and again and again; None for no time.
-        eventually: of one message at least this must hold by the end of the run.
-        file, function: the mission's own code that judges them.
-        after_ns: virtual time from which on it has to hold.
+        place: its place there, `file:line`.
+        selection: messages to which it applies.
+        when: condition; it applies only to messages for which this holds.
+        holds: condition that must hold for each of them.
+        answer: answer that must follow each of them.
+        again_ns: longest virtual time between such messages; None for no limit.
+        eventually: condition that must hold for at least one message by the end of the run.
+        after_ns: virtual time from which on it applies.
     """
 
     name: str
@@ -86,21 +87,21 @@ class Invariant:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The topics, patterns and packets of the messages that it is about, without answers."""
+        """The topics, patterns and packets to which it applies, without answers."""
         return (*self.selection.topics, *self.selection.packets)
 
     @property
     def packets(self) -> tuple[str, ...]:
-        """The names of all packets that it is about."""
+        """The names of all packets to which it applies."""
         return self.selection.packets + (() if self.answer is None else self.answer.selection.packets)
 
 
 def read_invariants(section: Marked, mistakes: Mistakes) -> tuple[Invariant, ...]:
-    """The section `invariants:`, without those that are wrong.
+    """Return the section `invariants:`, without invalid entries.
 
     Args:
-        section: its value; files of functions are looked for in the folder of its file.
-        mistakes: takes an unknown field, one that is missing, or a value that cannot be.
+        section: its value; files of functions are searched in the folder of its file.
+        mistakes: collects unknown keys, missing keys and invalid values.
     """
     entries = mistakes.mapping(section).items()
     found = (mistakes.attempt(partial(_invariant, name, entry)) for name, entry in entries)
@@ -134,10 +135,10 @@ def _invariant(name: str, entry: Marked) -> Invariant:
 
 
 def read_selection(fields: Mapping[str, Marked]) -> Selection:
-    """The messages that `topic` and `packet` name.
+    """Return the messages given by `topic` and `packet`.
 
     Raises:
-        UsageError: a topic without "/", or a MsgId that cannot be.
+        UsageError: if a topic does not start with "/", or a MsgId is invalid.
     """
     topics = [_topic(each) for each in _list(fields.get("topic"))]
     return Selection(tuple(topics), tuple(_packet(each) for each in _list(fields.get("packet"))))
@@ -185,7 +186,7 @@ def _again(entry: Marked) -> int:
 
 
 def _function(entry: Marked, fields: Mapping[str, Marked]) -> tuple[Path | None, str]:
-    """The file and the name of a function or class."""
+    """Return the file and the name of a function or class."""
     if "function" not in fields:
         if "file" in fields:
             raise entry.fail("names a file but no function of it; add `function: NAME`")
@@ -205,10 +206,10 @@ def _function(entry: Marked, fields: Mapping[str, Marked]) -> tuple[Path | None,
 
 
 def code_of(invariant: Invariant) -> Any:
-    """The function of an invariant, executed afresh; a class is called, and the object that comes of it judges.
+    """Return the function of an invariant, from a new execution of its file; a class is instantiated.
 
     Raises:
-        UsageError: executing its file failed.
+        UsageError: if executing its file failed.
     """
     assert invariant.file is not None
     space: dict[str, Any] = {"__name__": invariant.file.stem, "__file__": str(invariant.file)}

@@ -1,11 +1,11 @@
-"""Priority inversion: a task waits for what a less urgent one holds, and a third one, of a priority between, runs.
+"""Priority inversion: a task waits for a lock of a less urgent task while a task with a priority in between runs.
 
     BC_DIST (priority 40) waited 65.5 ms for semaphore SELECT held by ASI_MET (priority 120) while COMM (priority 80)
     ran for 65.5 ms
 
-That is bounded by what the third one has to do, not by the lock: it is what mutexes with priority inheritance, as
-OSAL's are, keep from happening (Sha, Rajkumar, Lehoczky: IEEE Transactions on Computers 39, 1990). A semaphore has no
-owner. It counts as a lock of the task that took it last, when this task has given it back before.
+The wait is as long as the work of the third task, not of the lock's owner. Mutexes with priority inheritance, such as
+OSAL's, prevent this (Sha, Rajkumar, Lehoczky: IEEE Transactions on Computers 39, 1990). A semaphore has no owner. It
+counts as a lock of the task that took it last, if this task has given it back before.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from cfepy.osal import OsObject
 from cfepy.rtos import Task
 from cfepy.units import NS_PER_MS
 
-SHORTEST_NS = NS_PER_MS  # of those that are told, where nobody says otherwise
+SHORTEST_NS = NS_PER_MS  # minimum duration of reported inversions, by default
 _TAKES = ("bin_sem_take", "bin_sem_timed_wait", "count_sem_take", "count_sem_timed_wait")
 _GIVES = ("bin_sem_give", "count_sem_give")
 
 
 @dataclass(slots=True)
 class _Wait:
-    """A task that waits for what another one holds, and who ran meanwhile, by task in ns."""
+    """A task that waits for a lock of another one, with the run times of other tasks meanwhile, in ns."""
 
     what: str
     holder: Task
@@ -39,24 +39,24 @@ class _Wait:
 
 
 class InversionWatch(Observer):
-    """Finds the priority inversions of a run, and keeps them in its record.
+    """Finds the priority inversions of a run, and adds them to its record.
 
     Args:
-        shortest_ns: those in which others ran for less are not kept.
+        shortest_ns: inversions in which others ran for less are dropped.
     """
 
     def __init__(self, shortest_ns: int = SHORTEST_NS) -> None:
         super().__init__()
         self._shortest_ns = shortest_ns
-        self._holders: dict[int, Task] = {}  # who took a semaphore last, by its id
-        self._locks: set[tuple[int, Task]] = set()  # semaphores, with tasks that gave back what they took
+        self._holders: dict[int, Task] = {}  # the task that took a semaphore last, by its id
+        self._locks: set[tuple[int, Task]] = set()  # semaphores, with tasks that took them and gave them back
         self._waits: dict[Task, _Wait] = {}
         self._ran_from = 0
-        self._held_up: list[_Wait] = []  # those for whom the running task is one of the others
+        self._held_up: list[_Wait] = []  # waits in which the running task is one of the others
 
     @property
     def found(self) -> InversionRecord:
-        """Those of the run so far that are over."""
+        """Return the finished inversions of the run so far."""
         return self.mission.record.part(InversionRecord)
 
     def begin(self, mission: Mission) -> None:
@@ -64,7 +64,7 @@ class InversionWatch(Observer):
         mission.record.part(InversionRecord).clear()
 
     def power_up(self, processor: Processor) -> None:
-        """A reset: what waited does not wait any more, and there are other semaphores."""
+        """After a reset, drop all waits; the semaphores are new."""
         self._end_all()
         super().power_up(processor)
         self._holders.clear()
@@ -72,10 +72,11 @@ class InversionWatch(Observer):
         osal = processor.cfe.os
         for names, wrapped in ((_TAKES, self._taking), (_GIVES, self._giving)):
             for name in names:
-                setattr(osal, name, MethodType(wrapped(getattr(osal, name)), osal))  # others get in before methods
+                # other attachments wrap methods too
+                setattr(osal, name, MethodType(wrapped(getattr(osal, name)), osal))
 
     def conclude(self) -> None:
-        """Who waits still has waited until now."""
+        """Count unfinished waits until now."""
         self._end_all()
 
     # -- semaphores as locks -----------------------------------------------------------------------------------------
@@ -100,7 +101,9 @@ class InversionWatch(Observer):
         return call
 
     def _holder_of(self, task: Task) -> Task | None:
-        """The less urgent task that has what a task is about to wait for, if there is exactly one."""
+        """Return the less urgent task that holds the lock which a task is about to wait for, if there is
+        exactly one.
+        """
         waits = task.waits
         if waits is None:
             return None
@@ -110,10 +113,10 @@ class InversionWatch(Observer):
             holders += [holder] if holder is not None and (waits.subject.id, holder) in self._locks else []
         return holders[0] if len(holders) == 1 and holders[0].base_priority > task.priority else None
 
-    # -- who waits, and who runs -------------------------------------------------------------------------------------
+    # -- waiting and running -------------------------------------------------------------------------------------------
 
     def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
-        """A task has run for a while, and may begin to wait."""
+        """Count the time that a task has run, and note if it starts to wait."""
         ran_ns = at_ns - self._ran_from
         if ran_ns:
             for each in self._held_up:
@@ -125,7 +128,7 @@ class InversionWatch(Observer):
             self._waits[task] = _Wait(task.waits.what, holder, holder.base_priority, at_ns)
 
     def on_run(self, task: Task, at_ns: int) -> None:
-        """Others may be held up by the task."""
+        """Find the waits in which this task is one of the others."""
         if task in self._waits:
             self._end(task, at_ns)
         self._ran_from = at_ns

@@ -1,9 +1,9 @@
-"""Liveness: tasks that are ready and do not run, and applications that run and get nowhere.
+"""Liveness: ready tasks that do not run, and applications that run without progress.
 
-A task *starves* when it is ready for longer than a time and others have the processor. An application is in a
-*livelock* when its tasks run again and again for longer than a time, and none of them sends a message or takes one.
-Both times are virtual, from when the mission is OPERATIONAL. Who runs on without virtual time going by is told by the
-stall watch.
+A task *starves* if it is ready for longer than a limit while others have the processor. An application is in a
+*livelock* if its tasks run repeatedly for longer than a limit, and none of them sends or takes a message. Both limits
+are in virtual time, counted once the mission is OPERATIONAL. A task that runs without advancing virtual time is
+reported by the stall watch.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from cfepy.rtos import Task
 from cfepy.sb import Pipe
 from cfepy.units import NS_PER_S, time_text
 
-RUNS = 100  # of an application's tasks without a message, from which on it is no idling
+RUNS = 100  # minimum number of runs of an application's tasks without a message that counts as a livelock
 
 
 class Limits(NamedTuple):
-    """How long a task may be ready, and how long an application may run without a message, in ns; 0 for ever."""
+    """Limits for ready tasks and for applications that run without a message, in ns; 0 for no limit."""
 
     starved_ns: int = 0
     livelock_ns: int = 0
 
 
 class Lack(NamedTuple):
-    """A task that starved, or an application in a livelock; `at_ns` is when its time was over."""
+    """A task that starved, or an application in a livelock; `at_ns` is when the limit was reached."""
 
     is_livelock: bool
     app: str
@@ -39,20 +39,20 @@ class Lack(NamedTuple):
 
 @dataclass(slots=True)
 class _Quiet:
-    """An application since its last message: since when, and how often its tasks ran."""
+    """An application since its last message: the time, and the number of runs of its tasks."""
 
     since_ns: int
     runs: int = 0
 
 
 class LivenessWatch(Observer):
-    """Looks for both in a run.
+    """Looks for starving tasks and livelocks in a run.
 
     Args:
-        limits: how long is too long.
+        limits: the limits.
 
     Attributes:
-        found: of each task and each application the first.
+        found: the first finding of each task and each application.
     """
 
     def __init__(self, limits: Limits) -> None:
@@ -60,14 +60,14 @@ class LivenessWatch(Observer):
         self.found: list[Lack] = []
         self._limits = limits
         self._ready: dict[Task, int] = {}
-        self._due: dict[Task, int] = {}  # tasks that wait with a limit in time, and when that is over
+        self._due: dict[Task, int] = {}  # tasks that wait with a time limit, and when it expires
         self._quiet: dict[str, _Quiet] = {}
         self._told: set[tuple[bool, str]] = set()
-        self._before: Task | None = None  # the task that ran last
+        self._before: Task | None = None  # the last task that ran
         self._processor: Processor
 
     def power_up(self, processor: Processor) -> None:
-        """What was ready is gone."""
+        """After a reset, drop all ready tasks."""
         super().power_up(processor)
         self._processor = processor
         self._ready.clear()
@@ -75,7 +75,7 @@ class LivenessWatch(Observer):
         self._quiet.clear()
 
     def conclude(self) -> None:
-        """Who could run still, and could for too long, has starved as well."""
+        """Report tasks that are still ready and over the limit."""
         now_ns = self._kernel.now
         for task, due_ns in self._due.items():
             if due_ns < now_ns and not task.timer:
@@ -83,7 +83,7 @@ class LivenessWatch(Observer):
         for task in list(self._ready):
             self._runs(task, now_ns)
 
-    # -- starving ----------------------------------------------------------------------------------------------------
+    # -- starvation ----------------------------------------------------------------------------------------------------
 
     def on_ready(self, task: Task, at_ns: int) -> None:
         if _is_own(task):
@@ -151,7 +151,7 @@ class LivenessWatch(Observer):
 
 
 def _is_own(task: Task) -> bool:
-    """Whether it is one of the mission's applications."""
+    """Return whether an application belongs to the mission."""
     return task.owner is not None and task.owner.name not in CORE_APPS
 
 

@@ -1,6 +1,6 @@
-"""A watch on selected messages of a mission: ROS topics and cFE packets alike, decoded.
+"""Observation of selected messages of a mission, ROS topics as well as cFE packets, decoded.
 
-It watches the Software Bus, so it changes nothing: no subscription, no virtual time, no record in the trace.
+It observes the Software Bus without changing anything: no subscription, no virtual time, no record in the trace.
 """
 
 from __future__ import annotations
@@ -17,10 +17,7 @@ from cfepy.units import NS_PER_S
 
 
 class Fields(dict[str, Any]):
-    """The fields of a packet: `msg.PacketID.AppName`, and as a dict.
-
-    A packet whose layout is not declared has one field, `data`, its bytes behind the header.
-    """
+    """Fields of a packet: `msg.PacketID.AppName`, or as a dict."""
 
     def __getattr__(self, name: str) -> Any:
         try:
@@ -34,7 +31,7 @@ class Heard:
 
     Attributes:
         topic: the topic's resolved name, or the packet's name in the dictionary.
-        sender: the cFE name of the application that sent it, "host" for one from outside the simulation.
+        sender: cFE name of the application that sent it, "host" for a message from outside the simulation.
         at_ns: virtual time.
     """
 
@@ -47,26 +44,26 @@ class Heard:
 
     @classmethod
     def of(cls, message: TopicMessage, decoder: MessageDecoder) -> Heard:
-        """A message on a topic.
+        """Return a message on a topic.
 
         Args:
             message: as it was sent.
-            decoder: makes what nodes get of it, when that is asked for.
+            decoder: decodes it as for nodes, on request.
         """
         node = message.header.get("callerid", "")
         return cls(message.topic, node, message.at_ns, lambda: decoder.decode(message))
 
     @property
     def t(self) -> float:
-        """Virtual time of its sending in s."""
+        """Virtual time of sending in s."""
         return self.at_ns / NS_PER_S
 
     @property
     def msg(self) -> Any:
-        """The message, as a node gets it; of a packet its fields (`Fields`).
+        """The message as a node receives it, or the fields of a packet (`Fields`).
 
         Raises:
-            UsageError: its type is not known, or its bytes are no such message.
+            UsageError: if its type is not known, or its bytes are not a valid message.
         """
         if self._message is None:
             self._message = self._read()
@@ -74,16 +71,16 @@ class Heard:
 
 
 class MessageWatch(Attachment):
-    """Shows messages when they are sent.
+    """Passes on messages when they are sent.
 
     Args:
         spec: the mission.
-        take: gets each; called inside the simulation, so it must not wait.
-        topics: names and patterns of ROS topics; none when it is empty.
-        packets: names of the dictionary, or MsgIds.
+        take: receives each; called inside the simulation, so it must not wait.
+        topics: names and patterns of ROS topics; empty for none.
+        packets: names in the dictionary, or MsgIds.
 
     Raises:
-        UsageError: the mission has no such packet.
+        UsageError: if the mission has no such packet.
     """
 
     def __init__(
@@ -118,7 +115,7 @@ class MessageWatch(Attachment):
             each.begin(mission)
 
     def _declared(self, name: str) -> tuple[int, int | None]:
-        """The MsgId of a packet, and the function code of a command."""
+        """Return the MsgId of a packet, and the function code of a command."""
         found: Any = self._dictionary.commands.get(name)
         found = self._dictionary.telemetry_of(name) if found is None else found
         return found.msg_id, found.code if isinstance(found, Command) else None

@@ -1,7 +1,7 @@
-"""A watch on a run from inside: which task has the processor, what the bus carries, and how long it waits there.
+"""Observation of a run from inside: which task has the processor, which packets are on the bus, and how long they wait.
 
-An `Observer` is an attachment that is called at each of these instants; it changes nothing in the run, so the trace is
-that of a run without it.
+An `Observer` is an attachment that is called at each of these events. It does not change the run, so the trace is the
+same as without it.
 """
 
 from __future__ import annotations
@@ -23,12 +23,11 @@ MESSAGE_LIMIT, PIPE_FULL, OLDEST = "message limit", "pipe full", "oldest made ro
 
 
 class Sent(NamedTuple):
-    """A packet that was given to the bus.
+    """A packet that was passed to the bus.
 
     Attributes:
-        number: of the transmission, from 1.
+        number: number of the transmission, from 1.
         at_ns: virtual time.
-        msg_id, sequence, size: of the packet; its sequence count as subscribers see it, its length in bytes.
         task: the sender.
     """
 
@@ -41,7 +40,7 @@ class Sent(NamedTuple):
 
 
 class Observer(Attachment):
-    """Is told what happens; a subclass overrides what it wants to know. All times are virtual, in ns."""
+    """Is called at events of a run; subclasses override the methods they need. All times are virtual, in ns."""
 
     def __init__(self) -> None:
         self.mission: Mission
@@ -53,47 +52,48 @@ class Observer(Attachment):
         self._by_mark: dict[bytes, Task] = {}
         self._is_console = False
 
-    # -- what subclasses override ------------------------------------------------------------------------------------
+    # -- overridden by subclasses
+    # ---------------------------------------------------------------------------------------
 
     def on_run(self, task: Task, at_ns: int) -> None:
         """A task got the processor."""
 
     def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
-        """A task gave the processor away: it waits for something, or another task goes first."""
+        """A task gave up the processor: it waits, or another task goes first."""
 
     def on_ready(self, task: Task, at_ns: int) -> None:
-        """What a task waited for is there; not called when its time was over."""
+        """A task's wait has ended; not called if it timed out."""
 
     def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
-        """A packet is about to go to its subscribers."""
+        """A packet is about to be sent to its subscribers."""
 
     def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
-        """A task has taken a packet out of a pipe; `sent` is None when it was not seen to come."""
+        """A task has taken a packet out of a pipe; `sent` is None if it was sent before the observation."""
 
     def on_drop(self, msg_id: int, pipe: Pipe, why: str, at_ns: int) -> None:
-        """A packet did not get into a pipe, or had to leave it for a newer one."""
+        """A packet did not get into a pipe, or was removed from it for a newer one."""
 
     def on_depth(self, pipe: Pipe, at_ns: int) -> None:
-        """Packets were put into a pipe or taken out: `len(pipe.items)` wait in it now."""
+        """Packets were put into a pipe or taken out; `len(pipe.items)` are in it now."""
 
     def on_console(self, line: str, at_ns: int) -> None:
-        """A line went to the console."""
+        """A line was written to the console."""
 
     def on_note(self, text: str, at_ns: int) -> None:
-        """A text went into the trace that is no line of the console: what a tool has seen, or done to the run."""
+        """A text was added to the trace that is not a console line: a tool's observation or action."""
 
     # -- the attachment ----------------------------------------------------------------------------------------------
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        """A Software Bus that tells of what passes it."""
+        """Return a Software Bus that reports its packets."""
         return _observed(self, base)
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """A kernel that tells of its waits."""
+        """Return a kernel that reports its waits."""
         return wrapping(base, {"block": self._blocking})
 
     def begin(self, mission: Mission) -> None:
-        """Listen to what the console, the trace and the kernel record."""
+        """Observe the records of the console, the trace and the kernel."""
         self.mission = mission
         self._kernel = kernel = mission.kernel
         trace, console = mission.trace, mission.console
@@ -103,12 +103,12 @@ class Observer(Attachment):
             kernel.record = self._recording(kernel.record)
 
     def power_up(self, processor: Processor) -> None:
-        """A reset: no packet of before will arrive."""
+        """After a reset, drop earlier packets, which can no longer arrive."""
         self._under_way.clear()
         self._running = None
 
     def _noting(self, append: Callable[[bytes], object]) -> Callable[[bytes], None]:
-        """The trace's `append`, which texts go through."""
+        """Return the trace's `append`, called for each text."""
 
         def note(record: bytes) -> None:
             append(record)
@@ -118,7 +118,7 @@ class Observer(Attachment):
         return note
 
     def _writing(self, record: Callable[[str], object]) -> Callable[[str], None]:
-        """The console's `record`, which notes its lines in the trace."""
+        """Return the console's `record`, which adds its lines to the trace."""
 
         def write(line: str) -> None:
             self._is_console = True
@@ -131,7 +131,7 @@ class Observer(Attachment):
         return write
 
     def _recording(self, record: Callable[[bytes], object]) -> Callable[[bytes], None]:
-        """The kernel's `record`, which every change of task and every end of a wait goes through."""
+        """Return the kernel's `record`, called at every change of task and every end of a wait."""
 
         def look(mark: bytes) -> None:
             record(mark)
@@ -144,7 +144,7 @@ class Observer(Attachment):
         return look
 
     def _blocking(self, block: Callable[[Kernel], Any]) -> Callable[[Kernel], Any]:
-        """The kernel's `block`, in which every wait takes place; a task that follows itself leaves no other trace."""
+        """Return the kernel's `block`, called for every wait; if a task follows itself there is no other record."""
 
         def wait(kernel: Kernel) -> Any:
             task: Task = kernel.current
@@ -209,7 +209,7 @@ class Observer(Attachment):
         found = None
         while under_way and found is None:
             oldest = under_way.popleft()
-            found = oldest if oldest.sequence == sequence else None  # others made room, or never got in
+            found = oldest if oldest.sequence == sequence else None  # others were removed, or never got in
         self.on_receive(found, pipe, bus.kernel.current, bus.kernel.now)
         self.on_depth(pipe, bus.kernel.now)
 
@@ -225,7 +225,7 @@ class Observer(Attachment):
 
 def _observed(observer: Observer, base: type[SoftwareBus]) -> type[SoftwareBus]:
     class ObservedBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
-        """A Software Bus that tells an observer what passes it."""
+        """A Software Bus that reports its packets to an observer."""
 
         def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
             if not PRIMARY_HEADER_SIZE < len(packet) <= self.config.sb_max_msg_size:
@@ -261,5 +261,5 @@ def _observed(observer: Observer, base: type[SoftwareBus]) -> type[SoftwareBus]:
 
 
 def app_of(task: Task) -> str:
-    """Name of the application that a task works for; "host" outside of any."""
+    """Return the name of the application of a task; "host" if it has none."""
     return HOST if task.owner is None else str(task.owner.name)

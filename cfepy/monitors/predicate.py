@@ -1,6 +1,6 @@
-"""A predicate over messages as a mission file has it: one Python expression, checked when it is read.
+"""A predicate over messages in a mission file: one Python expression, checked when it is read.
 
-The names that it may use are known, so a misspelt one is found before the mission boots; when one does not hold, the
+Its allowed names are known, so a misspelt one is found before the mission boots. If a predicate does not hold, the
 values that it used can be shown.
 """
 
@@ -20,7 +20,7 @@ from cfepy.reading.marked_yaml import Marked
 from cfepy.reading.suggestions import did_you_mean
 
 LATEST = "latest"
-MOST_SHOWN = 120  # characters of a value in a text
+MOST_SHOWN = 120  # maximum number of characters of a value in a text
 _LIBRARY: dict[str, Any] = {"math": math}
 
 
@@ -30,8 +30,8 @@ class Predicate:
 
     Attributes:
         source: its text, on one line.
-        place: where it stands: `file:line: field`.
-        topics: the topics that it asks `latest` for.
+        place: its place: `file:line: field`.
+        topics: topics that it reads from `latest`.
     """
 
     source: str
@@ -42,14 +42,14 @@ class Predicate:
 
     @classmethod
     def read(cls, entry: Marked, names: Iterable[str]) -> Predicate:
-        """The predicate in a mission file.
+        """Return the predicate in a mission file.
 
         Args:
             entry: its text.
-            names: what it may name besides Python's built-in functions and `math`.
+            names: names that it may use in addition to Python's built-in functions and `math`.
 
         Raises:
-            UsageError: it is no expression, or names something else.
+            UsageError: if it is not an expression, or uses another name.
         """
         source = _one_line(entry)
         if len(source) > EXPRESSION_CHARACTERS:
@@ -65,36 +65,36 @@ class Predicate:
         return cls(source, place, tuple(dict.fromkeys(_asked(tree))), code, tuple(dict.fromkeys(_looked_at(tree))))
 
     def holds(self, names: Mapping[str, Any]) -> bool:
-        """Whether it holds.
+        """Return whether it holds.
 
         Args:
-            names: the values of what it may name.
+            names: values of the names that it may use.
 
         Raises:
-            Exception: whatever its evaluation raises.
+            Exception: raised by its evaluation.
         """
         assert self._code is not None
         return bool(eval(self._code, {"__builtins__": builtins, **_LIBRARY, **names}))
 
     def values(self, names: Mapping[str, Any]) -> str:
-        """What it looked at, for the text about one that did not hold: "msg.data is 5, last.data is 3"."""
+        """Return the values that it used, for the text about a violation: "msg.data is 5, last.data is 3"."""
         found = []
         for source in self._shown:
             try:
                 value = eval(source, {"__builtins__": builtins, **_LIBRARY, **names})
             except Exception:
-                continue  # a part that was not reached, such as last.data when last is None
+                continue  # not evaluated, such as last.data if last is None
             found.append(f"{source} is {short(value)}")
         return ", ".join(found)
 
 
 def short(value: Any) -> str:
-    """A value on one line, cut off when it is long."""
+    """Return a value on one line, truncated if it is long."""
     return shortened(" ".join(repr(value).split()))
 
 
 def shortened(text: str) -> str:
-    """A text, cut off when it is long."""
+    """Return a text, truncated if it is long."""
     return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."
 
 
@@ -116,7 +116,7 @@ def _check_names(entry: Marked, tree: ast.AST, names: tuple[str, ...]) -> None:
 
 
 def _asked(tree: ast.AST) -> Iterator[str]:
-    """Topics in `latest["/name"]` and `latest.get("/name")`."""
+    """Return the topics in `latest["/name"]` and `latest.get("/name")`."""
     for node in ast.walk(tree):
         key: ast.expr | None = None
         if isinstance(node, ast.Subscript) and _is_latest(node.value):
@@ -132,7 +132,7 @@ def _is_latest(node: ast.AST) -> bool:
 
 
 def _looked_at(tree: ast.Expression) -> Iterator[str]:
-    """The names, fields and items that an expression reads, outermost ones only, without variables of loops."""
+    """Return the names, fields and items that an expression reads, outermost ones only, without loop variables."""
     loops = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
     waiting: list[ast.AST] = [tree.body]
     while waiting:

@@ -1,9 +1,8 @@
-"""`RaceWatch`: two accesses of mission code to one thing, one of them a write, that nothing orders.
+"""`RaceWatch`: finds two unordered accesses of mission code to the same thing, at least one of them a write.
 
-It looks on at one run with vector clocks (`cfepy.schedules.vector_clocks`). What orders tasks is what hands something
-on: a lock, a semaphore, a queue, a message, a table, the start of a task, the call of a waker. That one task happened
-to run before another is no order; on a computer with more cores, or with another load, they might run the other way
-round.
+It observes one run with vector clocks (`cfepy.schedules.vector_clocks`). Tasks are ordered by passing something on: a
+lock, a semaphore, a queue, a message, a table, the start of a task, the call of a waker. That one task happened to run
+before another is not an order: on a computer with more cores, or with another load, they might run the other way round.
 """
 
 from __future__ import annotations
@@ -24,9 +23,9 @@ from cfepy.schedules import ExploringKernel, Race, RaceSide, VectorClocks
 
 Frames = tuple[tuple[CodeType, int], ...]
 Key = Callable[[tuple[Any, ...]], Hashable]
-"""What a call orders by, from its arguments."""
+"""Returns the objects by which a call orders tasks, from its arguments."""
 
-_ANY_ITEM = "[*]"  # all items of a container, where all of it is meant
+_ANY_ITEM = "[*]"  # all items of a container
 
 
 def _first(arguments: tuple[Any, ...]) -> Hashable:
@@ -53,8 +52,7 @@ _LETS_GO: dict[str, Key] = {
     **dict.fromkeys(("setParam", "deleteParam"), _always("parameters")),
     **dict.fromkeys(("run_loop", "wait_for_startup_sync", "wait_for_system_state"), _always("startup")),
 }
-"""What calls of services, and of nodes to the parameter server, hand on: who takes it later knows what the caller did
-before."""
+"""Things passed on by service calls and calls of the parameter server: the receiver is ordered after the caller."""
 _ASKING = ("getParam", "hasParam", "searchParam", "getParamNames")
 _ENDING = ("delete_child_task", "task_delete")
 _TAKES: dict[str, Key] = {
@@ -69,11 +67,11 @@ _TAKES: dict[str, Key] = {
     **dict.fromkeys(_TABLES, _always("tables")),
     **dict.fromkeys(("wait_for_startup_sync", "wait_for_system_state"), _always("startup")),
 }
-"""What calls that came back have taken."""
+"""Things that returned calls have taken."""
 
 
 class _Seen(NamedTuple):
-    """The last access of a task: its clock, what it was, and where."""
+    """Last access of a task: its clock, the access, and the place."""
 
     clock: int
     touch: Touch
@@ -82,7 +80,7 @@ class _Seen(NamedTuple):
 
 
 class _Place:
-    """What was done to one attribute, item or variable, by each task: the last read and the last write."""
+    """Accesses to one attribute, item or variable, by task: the last read and the last write."""
 
     __slots__ = ("reads", "writes")
 
@@ -92,23 +90,24 @@ class _Place:
 
 
 class RaceWatch(Attachment):
-    """Finds the races of a run, and tells the mission's record of them. It wants a kernel that explores.
+    """Finds the races of a run, and adds them to the mission's record. It needs a kernel that explores.
 
     Attributes:
-        racing: the numbers of the objects, and the keys, that were raced for.
+        racing: numbers of the objects, and keys, with races.
     """
 
     def __init__(self) -> None:
         self.racing: set[tuple[int, str]] = set()
         self._clocks = VectorClocks()
         self._things: dict[int, dict[str, _Place]] = {}
-        self._inner: set[int] = set()  # numbers of locks that order nothing
+        self._inner: set[int] = set()  # numbers of locks that do not order tasks
         self._told: set[str] = set()
         self._waiting: dict[Pipe, deque[tuple[bytes, dict[Task, int]]]] = {}
         self._mission: Mission | None = None
         self._is_over = False
 
-    # -- what orders ---------------------------------------------------------------------------------------------------
+    # -- what orders tasks
+    # -----------------------------------------------------------------------------------------------
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         made: type[SoftwareBus] = listened(base, self)
@@ -124,7 +123,7 @@ class RaceWatch(Attachment):
         mission.accesses.on_gone(self._gone)
 
     def conclude(self) -> None:
-        """How nodes end when they are asked to is no part of what is judged."""
+        """Stop: the shutdown of nodes is not checked."""
         self._is_over = True
 
     @property
@@ -133,7 +132,7 @@ class RaceWatch(Attachment):
         return self._mission.kernel.current
 
     def _woken(self, task: Task) -> None:
-        """The running task lets another one go on."""
+        """The running task wakes another one."""
         self._clocks.hand(self._task, task)
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
@@ -160,7 +159,7 @@ class RaceWatch(Attachment):
             self._clocks.take(self._task, _TAKES[call](args))
 
     def failed(self, subject: Any, call: str) -> None:
-        """The call has taken nothing, so it orders nothing."""
+        """The call has taken nothing, so it does not order tasks."""
 
     def _lock(self, lock: Any) -> Hashable:
         assert self._mission is not None
@@ -168,7 +167,7 @@ class RaceWatch(Attachment):
         return ("lock of its own", self._task) if number in self._inner else ("lock", number)
 
     def _made(self, lock: Any) -> None:
-        """A lock of Python's own, for its lists of threads and log handlers, orders nothing that a program means."""
+        """Python's own locks, for its lists of threads and log handlers, do not count as order."""
         assert self._mission is not None
         frame: FrameType | None = sys._getframe(2)
         while frame is not None and frame.f_globals.get("__name__", "").startswith("cfepy."):
@@ -189,7 +188,7 @@ class RaceWatch(Attachment):
         """A packet was sent."""
 
     def put(self, packet: bytes, pipe: Pipe) -> None:
-        """A packet carries what its sender knows into a pipe."""
+        """A packet passes its sender's clock into a pipe."""
         self._waiting.setdefault(pipe, deque()).append((packet, self._clocks.send(self._task)))
 
     def dropped(self, packet: bytes, pipe: Pipe) -> None:
@@ -197,7 +196,7 @@ class RaceWatch(Attachment):
         self._out(packet, pipe)
 
     def taken(self, packet: bytes, pipe: Pipe) -> None:
-        """The running task has a packet; its callbacks are those that were given to the node before."""
+        """The running task took a packet; the callbacks it runs are those that were given to the node before."""
         task = self._task
         known = self._out(packet, pipe)
         if known is not None:
@@ -209,7 +208,7 @@ class RaceWatch(Attachment):
         self._waiting.pop(pipe, None)
 
     def _out(self, packet: bytes, pipe: Pipe) -> dict[Task, int] | None:
-        """What a packet in a pipe carries; one that faults have changed is the oldest."""
+        """Return the clock that a packet in a pipe carries; for one changed by faults, the clock of the oldest."""
         waiting = self._waiting.get(pipe)
         if not waiting:
             return None
@@ -222,7 +221,7 @@ class RaceWatch(Attachment):
     # -- accesses ------------------------------------------------------------------------------------------------------
 
     def _gone(self, thing: int) -> None:
-        """An object is no more."""
+        """An object was freed."""
         self._things.pop(thing, None)
         self._clocks.forget(("lock", thing))
         self._inner.discard(thing)
@@ -241,7 +240,7 @@ class RaceWatch(Attachment):
             place = places[touch.key] = _Place()
         mine = (place.writes if touch.is_write else place.reads).get(task)
         if mine is not None and mine.clock == known[task]:
-            return  # nothing that another did since then was missed: it looked at this one
+            return  # later accesses of others were not missed: they were compared with this one
         seen = _Seen(known[task], touch, self._frames(), kernel.now)
         self._compare(place, known, seen)
         key = touch.key
@@ -257,7 +256,7 @@ class RaceWatch(Attachment):
         (place.writes if seen.touch.is_write else place.reads)[seen.touch.task] = seen
 
     def _compare(self, place: _Place, known: dict[Task, int], now: _Seen) -> None:
-        """Whether another task has done something there that nothing orders before this."""
+        """Return whether another task has made an access there that is not ordered before this one."""
         mine = now.touch.task
         for seen in (place.writes, place.reads) if now.touch.is_write else (place.writes,):
             for task, before in seen.items():
@@ -266,7 +265,7 @@ class RaceWatch(Attachment):
                     return
 
     def _frames(self) -> Frames:
-        """The lines of mission code that the running task is in, innermost first, up to what called it."""
+        """Return the lines of mission code of the running task, innermost first."""
         assert self._mission is not None
         files = self._mission.accesses.files
         found = []
@@ -275,7 +274,7 @@ class RaceWatch(Attachment):
             if frame.f_code.co_filename in files:
                 found.append((frame.f_code, frame.f_lineno))
             elif found:
-                break  # what lies below costs time, and is seldom more of the mission
+                break  # frames below cost time, and are rarely mission code
             frame = frame.f_back
         return tuple(found)
 
@@ -293,7 +292,7 @@ class RaceWatch(Attachment):
 
 
 def _side(seen: _Seen) -> RaceSide:
-    """One side of a race."""
+    """Return one side of a race."""
     places = [f"{code.co_qualname} ({PurePath(code.co_filename).name}:{line})" for code, line in seen.frames]
     here = places[0] if places else seen.touch.place
     return RaceSide(here, seen.touch.is_write, seen.touch.task.name, tuple(places[:0:-1]), seen.at_ns)

@@ -1,7 +1,7 @@
-"""What monitors write into the record of a run: how deadlines were kept, which invariants did not hold, inversions.
+"""Monitors' part of a run's record: deadlines, violated invariants and priority inversions.
 
-`RunRecord.part` keeps a `DeadlineRecord`, an `InvariantRecords` and an `InversionRecord` for each run, over all resets
-of the processor.
+`RunRecord.part` keeps a `DeadlineRecord`, an `InvariantRecords` and an `InversionRecord` for each run, across all
+resets of the processor.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ KEPT_INVERSIONS = 1000
 
 @dataclass(slots=True)
 class DeadlineRecord:
-    """The deadlines of a run: the checks as in the mission file, and the first overruns of each."""
+    """Deadlines of a run: the checks as in the mission file, and the first overruns of each."""
 
     checks: list[Check] = field(default_factory=list)
     overruns: list[Overrun] = field(default_factory=list)
@@ -27,7 +27,7 @@ class DeadlineRecord:
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """An invariant did not hold: what was wrong, when in virtual ns, the sender, and the message."""
+    """Violation of an invariant: text, virtual time in ns, sender, and message."""
 
     text: str
     at_ns: int
@@ -37,7 +37,7 @@ class Violation:
 
 @dataclass(slots=True)
 class InvariantRecord:
-    """What became of an invariant: `place` is `file:line`, `judged` and `violated` count messages."""
+    """Result of an invariant: `place` is `file:line`, `judged` and `violated` count messages."""
 
     name: str
     place: str
@@ -47,19 +47,17 @@ class InvariantRecord:
 
 
 class InvariantRecords(dict[str, InvariantRecord]):
-    """The invariants of a run, by name, as in the mission file."""
+    """Invariants of a run, by name, as in the mission file."""
 
 
 class Inversion(NamedTuple):
     """One wait with a priority inversion. Times in virtual ns.
 
     Attributes:
-        at_ns: when the wait began.
-        victim, victim_priority: the task that waited.
-        what: for what, such as "semaphore SELECT".
-        holder, holder_priority: the task that had it when the wait began.
-        waited_ns: how long the wait was.
-        others: name, priority and time of each task that ran meanwhile, without being more urgent than the victim.
+        at_ns: start of the wait.
+        what: lock, such as "semaphore SELECT".
+        waited_ns: duration of the wait.
+        others: name, priority and time of each task that ran meanwhile without being more urgent than the victim.
     """
 
     at_ns: int
@@ -78,12 +76,12 @@ class Inversion(NamedTuple):
 
     @property
     def lost_ns(self) -> int:
-        """How long others ran in that time."""
+        """Time for which others ran during the wait."""
         return sum(time_ns for _, _, time_ns in self.others)
 
     @property
     def text(self) -> str:
-        """One sentence."""
+        """Description in one sentence."""
         ran = " and ".join(f"{name} (priority {it}) ran for {time_text(ns)}" for name, it, ns in self.others)
         waited = f"{self.victim} (priority {self.victim_priority}) waited {time_text(self.waited_ns)} for {self.what}"
         return f"{waited} held by {self.holder} (priority {self.holder_priority}) while {ran}"
@@ -91,7 +89,7 @@ class Inversion(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class InversionResult:
-    """The worst priority inversion of a victim, and how many it had. Times in virtual s."""
+    """The worst priority inversion of a victim, and the number of all. Times in virtual s."""
 
     victim: str
     what: str
@@ -103,10 +101,10 @@ class InversionResult:
 
 
 class InversionRecord(list[Inversion]):
-    """The priority inversions of a run, the first 1000, in the order in which they ended."""
+    """Priority inversions of a run, the first 1000, ordered by their end."""
 
     def results(self) -> list[InversionResult]:
-        """For each victim and lock the worst, in the order in which they came first."""
+        """Return the worst of each victim and lock, in order of first occurrence."""
         groups: dict[tuple[str, str, str], list[Inversion]] = {}
         for each in self:
             groups.setdefault(each.group, []).append(each)

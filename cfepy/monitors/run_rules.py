@@ -1,7 +1,7 @@
-"""What a mission file demands of a run: `invariants`, `results`, `deadlines` and `inversions`, and their monitors.
+"""Rules of a mission file for a run: `invariants`, `results`, `deadlines` and `inversions`, and their monitors.
 
-The mission keeps these sections as they stand (`MissionSpec.demands`). Here is the table of their readers, for a run,
-which raises the first mistake, and for `cfepy check`, which keeps all.
+The mission stores these sections unread (`MissionSpec.demands`). The table of their readers is here; a run raises the
+first mistake, and `cfepy check` collects all.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Demands:
-    """What a mission file demands.
+    """Rules of a mission file.
 
     Attributes:
-        invariants: what must hold of messages.
-        results: those that must not depend on the schedule.
-        deadlines: how quick applications must answer, and how fresh topics must be.
-        inversions: virtual ns from which on a priority inversion is told; None looks for none.
+        invariants: rules for messages.
+        results: results that must not depend on the schedule.
+        deadlines: time limits of applications and topics.
+        inversions: minimum duration of a reported priority inversion in virtual ns; None for no search.
     """
 
     invariants: tuple[Invariant, ...] = ()
@@ -38,35 +38,35 @@ class Demands:
 
 
 def read_demands(sections: Mapping[str, Marked], mistakes: Mistakes) -> Demands:
-    """Read the sections of a mission file, without what is wrong in them.
+    """Read the sections of a mission file, without invalid entries.
 
     Args:
-        sections: by name, those that there are.
-        mistakes: takes what is wrong.
+        sections: existing sections by name.
+        mistakes: collects unknown keys and invalid values.
     """
     return Demands(**{name: _READERS[name](section, mistakes) for name, section in sections.items()})
 
 
 def demands_of(spec: MissionSpec) -> Demands:
-    """What a mission demands.
+    """Return the rules of a mission.
 
     Args:
         spec: the mission.
 
     Raises:
-        UsageError: something in its mission file is wrong.
+        UsageError: if there is a mistake in its mission file.
     """
     return read_demands(spec.demands, Mistakes())
 
 
 def judges_of(spec: MissionSpec) -> list[Attachment]:
-    """What watches over a mission's invariants, deadlines and priority inversions; only one that has some imports it.
+    """Return the monitors of a mission's invariants, deadlines and priority inversions; each is loaded only if needed.
 
     Args:
         spec: the mission.
 
     Raises:
-        UsageError: something in its mission file is wrong, or an invariant names a packet that it does not have.
+        UsageError: if there is a mistake in its mission file, or an invariant names a packet that it does not have.
     """
     demands = demands_of(spec)
     judges: list[Attachment] = []
@@ -107,4 +107,4 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "deadlines": read_deadlines,
     "inversions": _inversions,
 }
-"""What reads each section; the results are the attributes of `Demands`."""
+"""The reader of each section; the results are the attributes of `Demands`."""

@@ -1,6 +1,6 @@
-"""The results of a mission that must not depend on the schedule: the section `results` of a mission file.
+"""Results of a mission that must not depend on the schedule: the section `results` of a mission file.
 
-`cfepy explore` compares them with those of the run under the default schedule. docs/exploration.md describes them.
+`cfepy explore` compares them with the results under the default schedule. See docs/exploration.md.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ FILE, OUTPUT = "file", "output"
 OF_MESSAGES = (LAST, SEQUENCE, ANY_ORDER, COUNT)
 COMPARISONS = (*OF_MESSAGES, FILE, OUTPUT)
 TIMES = ("header.stamp", "header.seq")
-"""Left out of messages unless `ignore` says otherwise: a few microseconds more or less are no other result."""
+"""Fields ignored by default: a difference of a few microseconds is not another result."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,9 +24,9 @@ class SelectedResult:
     """A result.
 
     Attributes:
-        name: a topic, a packet of the dictionary or MsgId, a file of the mission, or an application's name.
+        name: a topic, a packet in the dictionary or MsgId, a file of the mission, or an application's name.
         compare: one of COMPARISONS.
-        ignore: fields of messages that may differ, as paths such as "header.stamp"; in nested messages, too.
+        ignore: fields of messages that may differ, as paths such as "header.stamp"; also in nested messages.
     """
 
     name: str
@@ -35,16 +35,16 @@ class SelectedResult:
 
     @property
     def is_of_packet(self) -> bool:
-        """Whether its messages are packets of the dictionary, not those of a topic."""
+        """Whether its messages are packets of the dictionary and not of a topic."""
         return self.compare in OF_MESSAGES and not self.name.startswith(("/", "*"))
 
 
 def read_selected_results(section: Marked, mistakes: Mistakes) -> tuple[SelectedResult, ...]:
-    """The section `results:`, without those that are wrong.
+    """Return the section `results:`, without invalid entries.
 
     Args:
         section: its value.
-        mistakes: takes an unknown field or comparison.
+        mistakes: collects unknown keys and invalid values.
     """
     entries = mistakes.mapping(section).items()
     found = (mistakes.attempt(partial(_selected_result, name, entry)) for name, entry in entries)
@@ -52,7 +52,7 @@ def read_selected_results(section: Marked, mistakes: Mistakes) -> tuple[Selected
 
 
 def _selected_result(name: str, entry: Marked) -> SelectedResult:
-    """One of them: how it is compared, or a mapping with `compare` and `ignore`."""
+    """Return one result: how it is compared, or a mapping with `compare` and `ignore`."""
     fields = entry.mapping(("compare", "ignore")) if isinstance(entry.value, dict) else {"compare": entry}
     if "compare" not in fields:
         raise entry.fail("does not say what of it is compared; add `compare: last`")

@@ -1,6 +1,6 @@
-"""What the bus carries in a run, pipe by pipe: how often each message came, from when to when, and how long it took.
+"""Bus traffic of a run, by pipe: number of messages, first and last time, and latency.
 
-The first half second in operation does not count: nodes find each other then, and what waited for that comes at once.
+The first half second of operation does not count: nodes find each other then, and queued messages come all at once.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from cfepy.sb import Pipe
 from cfepy.units import NS_PER_S
 
 SETTLE_NS = NS_PER_S // 2
-SILENCE = 2.0  # periods of the rate seen that may pass until the end without a message
+SILENCE = 2.0  # number of periods of the observed rate without a message, at the end, that count as silence
 
 
 @dataclass(slots=True)
@@ -29,7 +29,7 @@ class Arrivals:
     longest_ns: int = 0
 
     def add(self, sent_ns: int, at_ns: int) -> None:
-        """One more."""
+        """Count a message."""
         if not self.count:
             self.first_ns = at_ns
         self.count += 1
@@ -38,7 +38,7 @@ class Arrivals:
         self.longest_ns = max(self.longest_ns, at_ns - sent_ns)
 
     def rate_hz(self, end_ns: int) -> float:
-        """Messages a second, from the first to the last; to the end of the run, if they stopped before it."""
+        """Return messages per second, from first to last, or to the end of the run if they stopped before it."""
         if self.count < 2:
             return 0.0
         span_ns = self.last_ns - self.first_ns
@@ -49,12 +49,11 @@ class Arrivals:
 
 
 class TrafficWatch(Observer):
-    """Counts and times what is sent when the mission is OPERATIONAL and has settled, until the time of the run is over.
+    """Measures messages once the mission is OPERATIONAL and has settled, until the end of the run.
 
     Attributes:
-        arrivals: by MsgId and the name of a pipe.
-        sent, lost: by MsgId, how many messages were sent, and how often a pipe did not take one or had to give it up.
-        end_ns: virtual time at which the run was over.
+        arrivals: by MsgId and pipe name.
+        end_ns: virtual time of the end of the run.
     """
 
     def __init__(self) -> None:

@@ -1,8 +1,8 @@
 """CCSDS packets as cFE builds them (CFE_MSG): headers, payload layouts, command dispatch.
 
-What belongs here are pure functions on bytes, and declarations of commands and telemetry, usable without a mission.
-What sends or receives packets belongs to `cfepy.sb`, what only a ground system knows of them to `cfepy.ground`. The
-central file is `cfepy/msg/header.py`.
+Pure functions on bytes, and declarations of commands and telemetry that work without a mission, belong here. Sending
+and receiving packets belongs to `cfepy.sb`, and the ground system's knowledge of them to `cfepy.ground`. The central
+file is `cfepy/msg/header.py`.
 """
 
 from __future__ import annotations
@@ -174,7 +174,7 @@ __all__ = [
     "verification_action",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

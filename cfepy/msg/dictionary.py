@@ -1,6 +1,6 @@
-"""Commands and telemetry by name: what an app declares once, for its own dispatch and for every tool on the ground.
+"""Commands and telemetry by name: declarations that an app makes once, for its own dispatch and for all ground tools.
 
-A service or an app has its declarations in one module, gathered in `COMMANDS` and `TELEMETRY`; an app offers these two
+A service or an app has its declarations in one module, collected in `COMMANDS` and `TELEMETRY`. An app offers these two
 names next to its entry point, where tools find them.
 """
 
@@ -23,11 +23,11 @@ class Command:
     """A command, or a request without function codes such as the one for housekeeping.
 
     Args:
-        name: as ground tools know it, NASA's without the ending: "CFE_ES_NOOP".
+        name: its name in ground tools, NASA's name without the suffix: "CFE_ES_NOOP".
         msg_id: its MsgId.
-        code: the function code; None for a message that has none.
-        payload: layout of what follows the 8-byte header.
-        text: what it does, for tools.
+        code: the function code; None for a message without one.
+        payload: layout of the payload after the 8-byte header.
+        text: description for tools.
     """
 
     name: str
@@ -38,33 +38,33 @@ class Command:
 
     @property
     def length(self) -> int:
-        """Bytes of the whole packet."""
+        """The bytes of the whole packet."""
         return CMD_HEADER_SIZE + self.payload.size
 
     def packet(self, values: Mapping[str, Any] | None = None, /, **more: Any) -> bytes:
-        """The command as bytes, checksum included; a field not given is zero.
+        """Return the command as bytes, with its checksum; missing fields are zero.
 
         Raises:
-            UsageError: an unknown field, or a value that does not fit.
+            UsageError: for an unknown field or a value that does not fit.
         """
         return bytes(command(self.msg_id, self.code or 0, self.payload.pack(values, **more)))
 
     def read(self, packet: bytes | bytearray | memoryview) -> dict[str, Any]:
-        """The payload's fields.
+        """Return the payload's fields.
 
         Raises:
-            CfeError: CFE_STATUS_WRONG_MSG_LENGTH when the packet is too short.
+            CfeError: CFE_STATUS_WRONG_MSG_LENGTH if the packet is too short.
         """
         return self.payload.unpack(packet, CMD_HEADER_SIZE)
 
     def read_name(self, packet: bytes | bytearray | memoryview, field: str) -> str:
-        """A name as a service takes it from the payload: into a C buffer of the field's size.
+        """Return a name as a service reads it from the payload, into a C buffer of the field's size.
 
-        A name that fills its field has no NUL, and loses its last character to the one of the buffer
+        A name that fills its field has no NUL, and loses its last character to the NUL of the buffer
         (CFE_SB_MessageStringGet).
 
         Raises:
-            CfeError: CFE_STATUS_WRONG_MSG_LENGTH when the packet is too short.
+            CfeError: CFE_STATUS_WRONG_MSG_LENGTH if the packet is too short.
         """
         return message_string_get(to_bytes(self.read(packet)[field]), self.payload.sizes[field])
 
@@ -74,11 +74,11 @@ class Telemetry:
     """A telemetry packet.
 
     Args:
-        name: as ground tools know it, NASA's without the ending: "CFE_ES_HK_TLM".
+        name: its name in ground tools, NASA's name without the suffix: "CFE_ES_HK_TLM".
         msg_id: its MsgId.
-        payload: layout of what follows the 16-byte header.
-        text: what it tells, for tools.
-        first: of packets that share their MsgId, the value of the first byte of the payload, which tells them apart.
+        payload: layout of the payload after the 16-byte header.
+        text: description for tools.
+        first: value of the first payload byte, which distinguishes packets that share their MsgId.
         variants: the other packets that have this MsgId.
     """
 
@@ -91,26 +91,26 @@ class Telemetry:
 
     @property
     def length(self) -> int:
-        """Bytes of the whole packet."""
+        """The bytes of the whole packet."""
         return TLM_HEADER_SIZE + self.payload.size
 
     def packet(self, values: Mapping[str, Any] | None = None, /, **more: Any) -> bytes:
-        """The packet as bytes, its time 0 until it is sent; a field not given is zero.
+        """Return the packet as bytes; its time is 0 until it is sent, and missing fields are zero.
 
         Raises:
-            UsageError: an unknown field, or a value that does not fit.
+            UsageError: for an unknown field or a value that does not fit.
         """
         return bytes(telemetry(self.msg_id, self.payload.pack(values, **more)))
 
     def read(self, packet: bytes | bytearray | memoryview) -> dict[str, Any]:
-        """The payload's fields.
+        """Return the payload's fields.
 
         Raises:
-            CfeError: CFE_STATUS_WRONG_MSG_LENGTH when the packet is too short.
+            CfeError: CFE_STATUS_WRONG_MSG_LENGTH if the packet is too short.
         """
         return self.payload.unpack(packet, TLM_HEADER_SIZE)
 
     def variant_of(self, packet: bytes | bytearray | memoryview) -> Telemetry:
-        """Which of the packets with this MsgId a packet is; this one when none fits."""
+        """Return which of the telemetry packets with this MsgId a packet is, or this one if none matches."""
         first = packet[TLM_HEADER_SIZE] if len(packet) > TLM_HEADER_SIZE else None
         return next((each for each in self.variants if each.first == first), self)

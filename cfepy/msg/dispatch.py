@@ -1,7 +1,7 @@
-"""Which handler a command packet goes to: message id, then function code, then length, each checked in that order.
+"""Dispatch of command packets to handlers: message id, function code and length are checked, in this order.
 
-Every service and app dispatches like this and sends its own event when one of the checks fails; so the table calls the
-handler or says what was wrong, and sends nothing itself.
+Every service and app dispatches in this way, and sends its own event if a check fails. So the table calls the handler
+or reports the failed check, and sends no event itself.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ BAD_LENGTH = 3
 
 
 class Dispatch(NamedTuple):
-    """What became of a packet, with all that an event text wants to tell.
+    """The result of a dispatch, with all data for an event text.
 
-    `outcome` is DONE, BAD_MSG_ID, BAD_CODE or BAD_LENGTH; `length` and `expected` are bytes of the whole packet
-    (`expected` 0 when unknown); `fcn_code` is 0 for telemetry; `result` is the handler's.
+    `outcome` is DONE, BAD_MSG_ID, BAD_CODE or BAD_LENGTH. `length` and `expected` are bytes of the whole packet
+    (`expected` is 0 if unknown). `fcn_code` is 0 for telemetry. `result` is the handler's result.
     """
 
     outcome: int
@@ -36,7 +36,7 @@ class Dispatch(NamedTuple):
     result: object = None
 
     def length_text(self) -> str:
-        """What the event of a core service says of a packet of the wrong length (TBL has words of its own)."""
+        """Return the event text of a core service for a packet of the wrong length (TBL has its own text)."""
         sizes = f"Len = {self.length}, Expected = {self.expected}"
         return f"Invalid msg length: ID = 0x{self.msg_id:X},  CC = {self.fcn_code}, {sizes}"
 
@@ -44,8 +44,8 @@ class Dispatch(NamedTuple):
 class CommandTable:
     """Handlers by message id and function code.
 
-    A handler gets the whole packet as bytes. Give the handlers of declared commands at once, or fill the table with
-    `handle`, `add` and `add_message`; then `dispatch`.
+    A handler gets the whole packet as bytes. Pass the handlers of declared commands to the constructor, or add them
+    with `handle`, `add` and `add_message`. Then call `dispatch`.
 
     Args:
         handlers: declared commands, each with its handler.
@@ -63,12 +63,12 @@ class CommandTable:
         """Handle a declared command.
 
         Args:
-            command: its MsgId, function code and length count.
+            command: the command; its MsgId, function code and length are used.
             handler: called with the packet.
-            any_length: take packets of any length, for handlers that look for themselves.
+            any_length: accept packets of any length, for handlers that check it themselves.
 
         Raises:
-            CfeError: CFE_MSG_BAD_ARGUMENT when it has a handler already.
+            CfeError: CFE_MSG_BAD_ARGUMENT if it already has a handler.
         """
         length = 0 if any_length else command.length
         if command.code is None:
@@ -82,11 +82,11 @@ class CommandTable:
         Args:
             msg_id: the message id.
             fcn_code: 0..127.
-            length: bytes of the whole packet, header included.
+            length: bytes of the whole packet, including the header.
             handler: called with the packet.
 
         Raises:
-            CfeError: CFE_MSG_BAD_ARGUMENT when the same command, or a plain message of that id, is there already.
+            CfeError: CFE_MSG_BAD_ARGUMENT if the same command, or a plain message of that id, already has a handler.
         """
         if msg_id in self._messages or fcn_code in self._commands.get(msg_id, ()):
             raise CfeError(CFE_MSG_BAD_ARGUMENT, f"command 0x{msg_id:04X}/{fcn_code} has a handler already")
@@ -101,7 +101,7 @@ class CommandTable:
             handler: called with the packet.
 
         Raises:
-            CfeError: CFE_MSG_BAD_ARGUMENT when the id has a handler already.
+            CfeError: CFE_MSG_BAD_ARGUMENT if the id has a handler already.
         """
         if msg_id in self._messages or msg_id in self._commands:
             raise CfeError(CFE_MSG_BAD_ARGUMENT, f"message 0x{msg_id:04X} has a handler already")
@@ -127,5 +127,5 @@ class CommandTable:
 
 
 def _fcn_code(packet: Packet) -> int:
-    """The function code where there is one, else 0, as CFE_MSG_GetFcnCode leaves it."""
+    """Return the function code, or 0 without one, as CFE_MSG_GetFcnCode leaves it."""
     return packet[6] & 0x7F if len(packet) > PRIMARY_HEADER_SIZE and packet[0] & 0x18 == 0x18 else 0

@@ -1,9 +1,9 @@
 """The CCSDS primary header of a packet (CFE_MSG, Space Packet Protocol CCSDS 133.0-B): six bytes, big-endian.
 
-Every function works on the packet's own bytes: getters on anything that reads like bytes, setters on a bytearray in
+Every function works on the bytes of the packet. Getters take any bytes-like object, and setters change a bytearray in
 place. Message ids are "version 1": the first 16 bits of the packet.
 
-There are no extended headers ("version 2"), as in cFE's default configuration: the functions about their fields raise
+As in cFE's default configuration there are no extended headers ("version 2"). The functions for their fields raise
 CFE_MSG_NOT_IMPLEMENTED.
 """
 
@@ -33,7 +33,7 @@ class MsgType(IntEnum):
 
 
 class SegmentationFlag(IntEnum):
-    """Place of a packet in a sequence of segments (CFE_MSG_SegmentationFlag_t)."""
+    """The position of a packet in a sequence of segments (CFE_MSG_SegmentationFlag_t)."""
 
     INVALID = 0
     CONTINUE = 1
@@ -51,12 +51,12 @@ _FLAG_OF_BITS = (
 
 
 def bad_argument(text: str) -> CfeError:
-    """The error of a value that does not fit its field, or of a packet too short to have it."""
+    """Return the error for a value that does not fit its field, or for a packet too short for the field."""
     return CfeError(CFE_MSG_BAD_ARGUMENT, text)
 
 
 def check_range(name: str, value: int, highest: int, lowest: int = 0) -> int:
-    """`value` itself when it lies within lowest..highest.
+    """Return `value` if it is within lowest..highest.
 
     Raises:
         CfeError: CFE_MSG_BAD_ARGUMENT otherwise.
@@ -79,19 +79,19 @@ def _put(packet: bytearray, offset: int, mask: int, bits: int) -> None:
 
 
 def is_valid_msg_id(msg_id: int) -> bool:
-    """Whether a message id lies within 1..0x1FFF (CFE_SB_IsValidMsgId)."""
+    """Return whether a message id lies within 1..0x1FFF (CFE_SB_IsValidMsgId)."""
     return 0 < msg_id <= HIGHEST_VALID_MSG_ID
 
 
 def init(msg_id: int, size: int) -> bytearray:
-    """A new packet: all zero but for message id, size and "unsegmented" (CFE_MSG_Init).
+    """Return a new packet: all zero except message id, size and "unsegmented" (CFE_MSG_Init).
 
     Args:
         msg_id: 1..0x1FFF.
-        size: bytes of the whole packet, headers included.
+        size: bytes of the whole packet, including the headers.
 
     Raises:
-        CfeError: CFE_MSG_BAD_ARGUMENT for a bad id or size.
+        CfeError: CFE_MSG_BAD_ARGUMENT for an invalid id or size.
     """
     packet = bytearray(check_range("packet size", size, 0xFFFF + _LENGTH_OFFSET, _LENGTH_OFFSET))
     set_msg_id(packet, msg_id)
@@ -101,7 +101,7 @@ def init(msg_id: int, size: int) -> bytearray:
 
 
 def get_msg_id(packet: Packet) -> int:
-    """The message id (CFE_MSG_GetMsgId)."""
+    """Return the message id (CFE_MSG_GetMsgId)."""
     return _word(packet, 0)
 
 
@@ -113,7 +113,7 @@ def set_msg_id(packet: bytearray, msg_id: int) -> None:
 
 
 def get_header_version(packet: Packet) -> int:
-    """The CCSDS packet version number, 0..7 (CFE_MSG_GetHeaderVersion)."""
+    """Return the CCSDS packet version number, 0..7 (CFE_MSG_GetHeaderVersion)."""
     return _word(packet, 0) >> 13
 
 
@@ -123,29 +123,29 @@ def set_header_version(packet: bytearray, version: int) -> None:
 
 
 def get_type(packet: Packet) -> MsgType:
-    """Command or telemetry (CFE_MSG_GetType)."""
+    """Return whether the packet is a command or telemetry (CFE_MSG_GetType)."""
     return MsgType.CMD if _word(packet, 0) & 0x1000 else MsgType.TLM
 
 
 def set_type(packet: bytearray, msg_type: int) -> None:
-    """Make it a command or telemetry (CFE_MSG_SetType)."""
+    """Set the type to command or telemetry (CFE_MSG_SetType)."""
     if msg_type not in (MsgType.CMD, MsgType.TLM):
         raise bad_argument(f"message type is {msg_type}, it must be MsgType.CMD or MsgType.TLM")
     _put(packet, 0, 0x1000, 0x1000 if msg_type == MsgType.CMD else 0)
 
 
 def get_has_secondary_header(packet: Packet) -> bool:
-    """Whether a secondary header follows (CFE_MSG_GetHasSecondaryHeader)."""
+    """Return whether a secondary header follows (CFE_MSG_GetHasSecondaryHeader)."""
     return bool(_word(packet, 0) & 0x0800)
 
 
 def set_has_secondary_header(packet: bytearray, present: bool) -> None:
-    """Say whether a secondary header follows (CFE_MSG_SetHasSecondaryHeader)."""
+    """Set whether a secondary header follows (CFE_MSG_SetHasSecondaryHeader)."""
     _put(packet, 0, 0x0800, 0x0800 if present else 0)
 
 
 def get_ap_id(packet: Packet) -> int:
-    """The application process id, 0..0x7FF (CFE_MSG_GetApId)."""
+    """Return the application process id, 0..0x7FF (CFE_MSG_GetApId)."""
     return _word(packet, 0) & 0x07FF
 
 
@@ -155,17 +155,17 @@ def set_ap_id(packet: bytearray, ap_id: int) -> None:
 
 
 def get_segmentation_flag(packet: Packet) -> SegmentationFlag:
-    """Place in a sequence of segments (CFE_MSG_GetSegmentationFlag)."""
+    """Return the position in a sequence of segments (CFE_MSG_GetSegmentationFlag)."""
     return _FLAG_OF_BITS[_word(packet, 2) >> 14]
 
 
 def set_segmentation_flag(packet: bytearray, flag: int) -> None:
-    """Set the place in a sequence of segments, a SegmentationFlag (CFE_MSG_SetSegmentationFlag)."""
+    """Set the position in a sequence of segments, a SegmentationFlag (CFE_MSG_SetSegmentationFlag)."""
     _put(packet, 2, 0xC000, check_range("segmentation flag", flag, 4, 1) - 1 << 14)
 
 
 def get_sequence_count(packet: Packet) -> int:
-    """The sequence count, 0..0x3FFF (CFE_MSG_GetSequenceCount)."""
+    """Return the sequence count, 0..0x3FFF (CFE_MSG_GetSequenceCount)."""
     return _word(packet, 2) & MAX_SEQUENCE_COUNT
 
 
@@ -175,17 +175,17 @@ def set_sequence_count(packet: bytearray, count: int) -> None:
 
 
 def get_next_sequence_count(count: int) -> int:
-    """The count after `count`: one more, 0 after 0x3FFF (CFE_MSG_GetNextSequenceCount)."""
+    """Return the count after `count`: one more, 0 after 0x3FFF (CFE_MSG_GetNextSequenceCount)."""
     return count + 1 if count < MAX_SEQUENCE_COUNT else 0
 
 
 def get_size(packet: Packet) -> int:
-    """Bytes of the whole packet as its header says, 7..65542 (CFE_MSG_GetSize)."""
+    """Return the bytes of the whole packet according to its header, 7..65542 (CFE_MSG_GetSize)."""
     return _word(packet, 4) + _LENGTH_OFFSET
 
 
 def set_size(packet: bytearray, size: int) -> None:
-    """Set the header's size of the whole packet, 7..65542; the buffer stays as long as it is (CFE_MSG_SetSize)."""
+    """Set the size of the whole packet in the header, 7..65542; the buffer keeps its length (CFE_MSG_SetSize)."""
     _put(packet, 4, 0xFFFF, check_range("packet size", size, 0xFFFF + _LENGTH_OFFSET, _LENGTH_OFFSET) - _LENGTH_OFFSET)
 
 
@@ -194,50 +194,50 @@ def _absent(field: str) -> NoReturn:
 
 
 def get_eds_version(packet: Packet) -> NoReturn:
-    """CFE_MSG_GetEDSVersion: not with this header."""
+    """Refuse CFE_MSG_GetEDSVersion, which this header does not support."""
     _absent("the EDS version")
 
 
 def set_eds_version(packet: bytearray, version: int) -> NoReturn:
-    """CFE_MSG_SetEDSVersion: not with this header."""
+    """Refuse CFE_MSG_SetEDSVersion, which this header does not support."""
     _absent("the EDS version")
 
 
 def get_endian(packet: Packet) -> NoReturn:
-    """CFE_MSG_GetEndian: not with this header."""
+    """Refuse CFE_MSG_GetEndian, which this header does not support."""
     _absent("the byte order")
 
 
 def set_endian(packet: bytearray, endian: int) -> NoReturn:
-    """CFE_MSG_SetEndian: not with this header."""
+    """Refuse CFE_MSG_SetEndian, which this header does not support."""
     _absent("the byte order")
 
 
 def get_playback_flag(packet: Packet) -> NoReturn:
-    """CFE_MSG_GetPlaybackFlag: not with this header."""
+    """Refuse CFE_MSG_GetPlaybackFlag, which this header does not support."""
     _absent("the playback flag")
 
 
 def set_playback_flag(packet: bytearray, flag: int) -> NoReturn:
-    """CFE_MSG_SetPlaybackFlag: not with this header."""
+    """Refuse CFE_MSG_SetPlaybackFlag, which this header does not support."""
     _absent("the playback flag")
 
 
 def get_subsystem(packet: Packet) -> NoReturn:
-    """CFE_MSG_GetSubsystem: not with this header."""
+    """Refuse CFE_MSG_GetSubsystem, which this header does not support."""
     _absent("the subsystem")
 
 
 def set_subsystem(packet: bytearray, subsystem: int) -> NoReturn:
-    """CFE_MSG_SetSubsystem: not with this header."""
+    """Refuse CFE_MSG_SetSubsystem, which this header does not support."""
     _absent("the subsystem")
 
 
 def get_system(packet: Packet) -> NoReturn:
-    """CFE_MSG_GetSystem: not with this header."""
+    """Refuse CFE_MSG_GetSystem, which this header does not support."""
     _absent("the system")
 
 
 def set_system(packet: bytearray, system: int) -> NoReturn:
-    """CFE_MSG_SetSystem: not with this header."""
+    """Refuse CFE_MSG_SetSystem, which this header does not support."""
     _absent("the system")

@@ -1,14 +1,14 @@
-"""Payload layouts: a C struct declared once, then packed and unpacked as NASA's x86-64 build has it in memory.
+"""Payload layouts: a C struct declared once, then packed and unpacked like NASA's x86-64 build has it in memory.
 
-Natural C alignment, little-endian. A layout compiles to one `struct.Struct` over all its leaves, nested structs and
-arrays included; packing lines the values up for it, unpacking builds them into a dict again.
+Structs have natural C alignment and are little-endian. A layout compiles to one `struct.Struct` over all its leaves,
+including nested structs and arrays. Packing lines up the values for it, and unpacking builds a dict from them.
 
 A field's type is one of u8 i8 u16 i16 u32 i32 u64 i64 f32 f64 bool, `char[N]` (text of at most N bytes), another
-Layout, or an array of these: "u16[4]", "u8[2][3]", "char[4][20]" (4 texts of 20), `(Layout, 32)`. An integer whose
-values have names is `ValueNames("u8", SHORT=0, LONG=1)`: packing takes the names as well, unpacking gives the number.
+Layout, or an array of these: "u16[4]", "u8[2][3]", "char[4][20]" (4 texts of 20), `(Layout, 32)`. An integer with named
+values is `ValueNames("u8", SHORT=0, LONG=1)`. Packing also accepts the names; unpacking gives the number.
 
-Two things that every service's payloads contain are here too: a spacecraft time (`SYS_TIME`), and text in a field of
-fixed size (CFE_SB_MessageStringSet, CFE_SB_MessageStringGet): filled with NULs, not ended by one when it fills its
+Two types that all services use are here too. One is a spacecraft time (`SYS_TIME`). The other is text in a field of
+fixed size (CFE_SB_MessageStringSet, CFE_SB_MessageStringGet): it is padded with NULs, and has no NUL if it fills its
 field.
 """
 
@@ -41,12 +41,12 @@ _TYPE = re.compile(r"(\w+)((?:\[\d+\])*)")
 
 
 class ValueNames:
-    """An integer whose values have names: an enumeration in C, or bits of a mask.
+    """An integer with named values: an enumeration in C, or bits of a mask.
 
     Args:
-        type: of the integer, such as "u8".
-        flags: whether each value is a bit, so that several may be given as ERROR+CRITICAL.
-        values: the names, without what they have in common in C.
+        type: type of the integer, such as "u8".
+        flags: whether each value is a bit, so that several can be given, as in ERROR+CRITICAL.
+        values: the names, without their common prefix in C.
     """
 
     __slots__ = ("_texts", "flags", "type", "values")
@@ -58,10 +58,10 @@ class ValueNames:
         self._texts = {number: name for name, number in values.items()}
 
     def number(self, text: str) -> int:
-        """The value of a name, in capitals or not.
+        """Return the value of a name, in upper or lower case.
 
         Raises:
-            UsageError: there is none such.
+            UsageError: if there is no such name.
         """
         total = 0
         for part in text.split("+") if self.flags else [text]:
@@ -72,7 +72,7 @@ class ValueNames:
         return total
 
     def text(self, number: int) -> str:
-        """The name of a value, or the number when it has none."""
+        """Return the name of a value, or the number if it has none."""
         if not self.flags or not number:
             return self._texts.get(number, str(number))
         names = [name for name, value in self.values.items() if value & number]
@@ -83,7 +83,7 @@ class ValueNames:
 
 
 class Cell(NamedTuple):
-    """One number or text of a struct: `path` is "PacketID.AppName" or "Counts[3]", `type` "u16" or "char[20]"."""
+    """A number or text of a struct: `path` is "PacketID.AppName" or "Counts[3]", `type` is "u16" or "char[20]"."""
 
     path: str
     type: str
@@ -124,7 +124,7 @@ class _Scalar:
 
 
 class _Text:
-    """char[N]: text up to the first NUL; UTF-8, other bytes survive a round trip as surrogates."""
+    """char[N]: text up to the first NUL, in UTF-8; other bytes survive a round trip as surrogates."""
 
     __slots__ = ("align", "code", "leaves", "size")
 
@@ -154,7 +154,7 @@ class _Text:
 
 
 class _Array:
-    """A fixed number of equal items; a shorter sequence is filled up with zeros."""
+    """A fixed number of equal items; a shorter sequence is padded with zeros."""
 
     __slots__ = ("align", "code", "count", "item", "leaves", "size")
 
@@ -229,7 +229,7 @@ class Layout:
         self._struct = struct.Struct((">" if on_the_wire else "<") + self.code)
 
     def _place(self) -> None:
-        """Give every field its offset, with padding as a C compiler puts it."""
+        """Give every field its offset, with the padding of a C compiler."""
         self.offsets: dict[str, int] = {}
         codes: list[str] = []
         at = 0
@@ -244,11 +244,11 @@ class Layout:
 
     @property
     def fields(self) -> tuple[str, ...]:
-        """Field names in order."""
+        """The names of the fields, in order."""
         return tuple(self._fields)
 
     def pack(self, values: Mapping[str, Any] | None = None, /, **more: Any) -> bytes:
-        """The struct's bytes; a field not given is zero.
+        """Return the struct's bytes; a field not given is zero.
 
         Args:
             values: field values as a mapping, and
@@ -265,10 +265,10 @@ class Layout:
             raise self._misfit(given) from None
 
     def unpack(self, buffer: bytes | bytearray | memoryview, offset: int = 0) -> dict[str, Any]:
-        """The values of a struct that starts at `offset` of a buffer: numbers, texts, lists, dicts.
+        """Return the values of a struct that starts at `offset` of a buffer: numbers, texts, lists, dicts.
 
         Raises:
-            CfeError: CFE_STATUS_WRONG_MSG_LENGTH when the buffer ends too early.
+            CfeError: CFE_STATUS_WRONG_MSG_LENGTH if the buffer ends too early.
         """
         try:
             leaves = self._struct.unpack_from(buffer, offset)
@@ -278,7 +278,7 @@ class Layout:
         return self.build(iter(leaves))
 
     def flatten(self, value: Any, path: str) -> Iterator[Any]:
-        """The leaf values of this struct in order, for the struct around it."""
+        """Yield the leaf values of this struct in order, for the enclosing struct."""
         if not isinstance(value, Mapping):
             raise UsageError(f"{value!r} is not a mapping of the fields of {self.name}", field=path)
         prefix = f"{path}." if path else ""
@@ -289,14 +289,14 @@ class Layout:
             yield from kind.flatten(value[field] if field in value else kind.zero(), prefix + field)
 
     def build(self, leaves: Iterator[Any]) -> dict[str, Any]:
-        """This struct's values, taken from the leaves of the struct around it."""
+        """Return this struct's values, taken from the leaves of the enclosing struct."""
         return {field: kind.build(leaves) for field, kind in self._fields.items()}
 
     def cells(self, path: str = "", at: int = 0) -> Iterator[Cell]:
-        """Every number and text in order, those of nested structs and arrays too, for tools that show or fill it.
+        """Yield every number and text in order, including those of nested structs and arrays, for tools.
 
         Args:
-            path: of this struct in the one around it.
+            path: path of this struct in the enclosing struct.
             at: offset of this struct in bytes.
         """
         prefix = f"{path}." if path else ""
@@ -304,11 +304,11 @@ class Layout:
             yield from kind.cells(prefix + field, at + self.offsets[field])
 
     def zero(self) -> dict[str, Any]:
-        """What stands for an all-zero struct."""
+        """Return the value of an all-zero struct."""
         return {}
 
     def _misfit(self, value: Mapping[str, Any]) -> UsageError:
-        """Which field it was that did not fit: each is packed alone, down to the leaf."""
+        """Return the error for the first field that does not fit, found by packing each leaf alone."""
         for path, code, leaf in _leaves(self, value, ""):
             try:
                 struct.pack("<" + code, leaf)
@@ -341,7 +341,7 @@ def _parse_type(kind: Any, path: str) -> _Type:
 
 
 def _leaves(kind: _Type, value: Any, path: str) -> Iterator[tuple[str, str, Any]]:
-    """(path, struct code, value) of every leaf that was given."""
+    """Yield (path, struct code, value) of every given leaf."""
     if isinstance(kind, Layout):
         for field, inner in kind._fields.items():
             if field in value:
@@ -368,12 +368,12 @@ SYS_TIME = Layout("CFE_TIME_SysTime_t", [("Seconds", "u32"), ("Subseconds", "u32
 
 
 def sys_time_fields(time: tuple[int, int]) -> dict[str, int]:
-    """A time (seconds, subseconds of 2**-32 s) as the fields of SYS_TIME."""
+    """Return a time (seconds, subseconds of 2**-32 s) as the fields of SYS_TIME."""
     return {"Seconds": time[0], "Subseconds": time[1]}
 
 
 def message_string_set(text: str, size: int) -> bytes:
-    """The bytes of a text field: cut to `size`, or filled up with NULs (CFE_SB_MessageStringSet).
+    """Return the bytes of a text field: cut to `size`, or filled up with NULs (CFE_SB_MessageStringSet).
 
     Raises:
         CfeError: CFE_SB_BAD_ARGUMENT for a negative size.
@@ -384,12 +384,12 @@ def message_string_set(text: str, size: int) -> bytes:
 
 
 def message_string_get(field: Packet, size: int, default: str | None = None) -> str:
-    """The text of a field, short enough for a C buffer of `size` bytes (CFE_SB_MessageStringGet).
+    """Return the text of a field, short enough for a C buffer of `size` bytes (CFE_SB_MessageStringGet).
 
     Args:
         field: the bytes of the field; the text ends at the first NUL or where the field ends.
-        size: bytes of the buffer, the NUL at its end included.
-        default: taken when the field is empty.
+        size: bytes of the buffer, including its final NUL.
+        default: used if the field is empty.
 
     Raises:
         CfeError: CFE_SB_BAD_ARGUMENT for a size of 0.

@@ -1,6 +1,6 @@
 """cFE's secondary headers: function code and checksum of a command, time of a telemetry packet (CFE_MSG).
 
-Asking a packet for a field that its kind does not have raises CFE_MSG_WRONG_MSG_TYPE. A time here is (seconds,
+Reading a field that this kind of packet does not have raises CFE_MSG_WRONG_MSG_TYPE. A time here is (seconds,
 subseconds of 2**-32 s); the packet keeps the upper 16 bits of the subseconds.
 """
 
@@ -32,7 +32,7 @@ _FCN_CODE_MASK = 0x7F
 _KIND_MASK = 0xF8
 _CMD_KIND = 0x18
 _TLM_KIND = 0x08
-"""Top five bits of a packet: version 0, the type, "has a secondary header"."""
+"""The top five bits of a packet: version 0, the type, "has a secondary header"."""
 
 _FOLD_FROM = 32
 _TIME = slice(6, 12)
@@ -46,10 +46,10 @@ def _check_kind(packet: Packet, kind: int, size: int, what: str) -> None:
 
 
 def get_fcn_code(packet: Packet) -> int:
-    """The function code of a command, 0..127 (CFE_MSG_GetFcnCode).
+    """Return the function code of a command, 0..127 (CFE_MSG_GetFcnCode).
 
     Raises:
-        CfeError: CFE_MSG_WRONG_MSG_TYPE when it is no command with a secondary header.
+        CfeError: CFE_MSG_WRONG_MSG_TYPE if it is not a command with a secondary header.
     """
     _check_kind(packet, _CMD_KIND, PRIMARY_HEADER_SIZE + 1, "function code")
     return packet[PRIMARY_HEADER_SIZE] & _FCN_CODE_MASK
@@ -63,7 +63,9 @@ def set_fcn_code(packet: bytearray, fcn_code: int) -> None:
 
 
 def _fold(data: Packet) -> int:
-    """XOR of all bytes; long packets are folded in half as one big integer, which is much faster than byte by byte."""
+    """Return the XOR of all bytes; long packets are folded in half as one integer, which is much faster than byte by
+    byte.
+    """
     if len(data) <= _FOLD_FROM:
         return reduce(xor, data, 0)
     value = int.from_bytes(data, "little")
@@ -75,10 +77,10 @@ def _fold(data: Packet) -> int:
 
 
 def compute_checksum(packet: Packet) -> int:
-    """XOR of 0xFF and every byte that the header's size covers (CFE_MSG_ComputeCheckSum).
+    """Return the XOR of 0xFF and every byte within the header's size (CFE_MSG_ComputeCheckSum).
 
     Raises:
-        CfeError: CFE_MSG_BAD_ARGUMENT when the buffer is shorter than the header says.
+        CfeError: CFE_MSG_BAD_ARGUMENT if the buffer is shorter than the header's size.
     """
     size = get_size(packet)
     if size > len(packet):
@@ -94,16 +96,17 @@ def generate_checksum(packet: bytearray) -> None:
 
 
 def validate_checksum(packet: Packet) -> bool:
-    """Whether the checksum of a command is right (CFE_MSG_ValidateChecksum)."""
+    """Return whether the checksum of a command is right (CFE_MSG_ValidateChecksum)."""
     _check_kind(packet, _CMD_KIND, CMD_HEADER_SIZE, "checksum")
     return compute_checksum(packet) == 0
 
 
 def get_msg_time(packet: Packet) -> tuple[int, int]:
-    """The time of a telemetry packet as (seconds, subseconds), the latter a multiple of 2**16 (CFE_MSG_GetMsgTime).
+    """Return the time of a telemetry packet as (seconds, subseconds), the latter a multiple of 2**16
+    (CFE_MSG_GetMsgTime).
 
     Raises:
-        CfeError: CFE_MSG_WRONG_MSG_TYPE when it is no telemetry with a secondary header.
+        CfeError: CFE_MSG_WRONG_MSG_TYPE if it is not telemetry with a secondary header.
     """
     _check_kind(packet, _TLM_KIND, _TIME.stop, "time")
     stamp = int.from_bytes(packet[_TIME], "big")
@@ -119,12 +122,12 @@ def set_msg_time(packet: bytearray, time: tuple[int, int]) -> None:
 
 
 def origination_action(packet: bytearray, stamp: int) -> None:
-    """What the bus does to a packet where it starts: telemetry gets its time, a command its checksum.
+    """Complete a packet at its origin: set the time of telemetry or the checksum of a command.
 
-    A packet that has no such field is left alone (CFE_MSG_OriginationAction).
+    A packet without the field stays unchanged (CFE_MSG_OriginationAction).
 
     Args:
-        packet: changed in place.
+        packet: the packet, changed in place.
         stamp: the time as a 48-bit integer, seconds << 16 | upper 16 bits of the subseconds.
     """
     kind = packet[0] & _KIND_MASK
@@ -135,19 +138,19 @@ def origination_action(packet: bytearray, stamp: int) -> None:
 
 
 def verification_action(packet: Packet) -> bool:
-    """Whether the bus accepts a packet that comes in: always, as in NASA's default (CFE_MSG_VerificationAction)."""
+    """Return whether the bus accepts an incoming packet: always, as in NASA's default (CFE_MSG_VerificationAction)."""
     return True
 
 
 def get_type_from_msg_id(msg_id: int) -> MsgType:
-    """Command or telemetry, from the message id alone (CFE_MSG_GetTypeFromMsgId)."""
+    """Return whether a message id belongs to a command or telemetry (CFE_MSG_GetTypeFromMsgId)."""
     scratch = bytearray(PRIMARY_HEADER_SIZE)
     set_msg_id(scratch, msg_id)
     return get_type(scratch)
 
 
 def get_header_size(packet: Packet) -> int:
-    """Bytes before the user data: 6, 8 for a command, 16 for telemetry (CFE_SB_MsgHdrSize)."""
+    """Return the bytes of the headers: 6, 8 for a command, 16 for telemetry (CFE_SB_MsgHdrSize)."""
     first = packet[0] if packet else 0
     if not first & 0x08:
         return PRIMARY_HEADER_SIZE
@@ -155,12 +158,12 @@ def get_header_size(packet: Packet) -> int:
 
 
 def get_user_data(packet: Packet) -> memoryview:
-    """A view of the bytes after the headers (CFE_SB_GetUserData)."""
+    """Return a view of the bytes after the headers (CFE_SB_GetUserData)."""
     return memoryview(packet)[get_header_size(packet) :]
 
 
 def get_user_data_length(packet: Packet) -> int:
-    """Bytes after the headers, by the header's size (CFE_SB_GetUserDataLength)."""
+    """Return the bytes after the headers, by the header's size (CFE_SB_GetUserDataLength)."""
     return get_size(packet) - get_header_size(packet)
 
 
@@ -168,17 +171,17 @@ def set_user_data_length(packet: bytearray, length: int) -> None:
     """Set the header's size so that `length` bytes follow the headers (CFE_SB_SetUserDataLength).
 
     Raises:
-        CfeError: CFE_MSG_BAD_ARGUMENT when the packet would be larger than the 32768 bytes that the bus takes.
+        CfeError: CFE_MSG_BAD_ARGUMENT if the packet would exceed the bus's limit of 32768 bytes.
     """
     size = check_range("packet size", get_header_size(packet) + length, MAX_BUS_MSG_SIZE)
     set_size(packet, size)
 
 
 def command(msg_id: int, fcn_code: int, payload: bytes = b"") -> bytearray:
-    """A whole command packet with its checksum.
+    """Return a whole command packet with its checksum.
 
     Raises:
-        CfeError: the id is not a command's, or a value does not fit.
+        CfeError: if the id does not belong to a command, or a value does not fit.
     """
     packet = init(msg_id, CMD_HEADER_SIZE + len(payload))
     packet[CMD_HEADER_SIZE:] = payload
@@ -188,7 +191,7 @@ def command(msg_id: int, fcn_code: int, payload: bytes = b"") -> bytearray:
 
 
 def telemetry(msg_id: int, payload: bytes = b"") -> bytearray:
-    """A whole telemetry packet, its time still 0."""
+    """Return a whole telemetry packet, its time still 0."""
     packet = init(msg_id, TLM_HEADER_SIZE + len(payload))
     packet[TLM_HEADER_SIZE:] = payload
     return packet

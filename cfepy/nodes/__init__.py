@@ -1,12 +1,12 @@
-"""Unmodified Python programs on the simulated computer: one module universe per node.
+"""Unmodified Python programs on the simulated computer, each with its own module table ("universe").
 
 A ROS node expects a process of its own. Here it gets its own module table, clock, threads, environment and random
-numbers instead, all on the kernel; nothing of the host interpreter is patched. What makes a program a process belongs
-here: the universe, how modules are found and executed, which modules are refused, and how tracebacks are shown. What a
-program sees of the standard library is in `cfepy.nodes.stdlib`. Nothing here knows of ROS: rospy and the message
-packages come in as factories of synthetic modules.
+numbers instead, all on the kernel; the host interpreter is not patched. Everything that makes a program a process
+belongs here: the universe, finding and executing modules, refused modules, and tracebacks. Replacements for the
+standard library are in `cfepy.nodes.stdlib`. This package does not know ROS: rospy and the message packages come in as
+factories of modules.
 
-The names below are loaded when they are first used: a mission without nodes pays nothing for them. The central file is
+The names below are loaded on first use, so a mission without nodes does not load them. The central file is
 `cfepy/nodes/universe.py`.
 """
 
@@ -66,7 +66,7 @@ __all__ = [
     "reaches",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

@@ -1,9 +1,9 @@
-"""`Accesses`: what the tasks of a run touch in mission code, told to observers, and points before that.
+"""`Accesses`: reports the reads and writes of tasks in mission code to observers, with optional scheduling points.
 
-Code that is compiled by `cfepy.nodes.instrument` calls the hooks of a run right before it reads or writes an attribute,
-an item of a container, or a variable that several functions share. The object has a number, in the order in which
-objects were first seen, so the same run tells the same numbers. While nobody observes and no points are asked for, code
-is compiled as it is, and none of this is in its way.
+Code compiled by `cfepy.nodes.instrument` calls the hooks of a run just before it reads or writes an attribute, an item
+of a container, or a variable that several functions share. Each object gets a number in order of first access, so the
+same run always reports the same numbers. If there are no observers and no points, code is compiled unchanged and this
+module has no cost.
 """
 
 from __future__ import annotations
@@ -25,24 +25,24 @@ if TYPE_CHECKING:
     from cfepy.schedules import CallPointKernel
 
 WHOLE = "*"
-"""The key of an access to all of a container: its length, its order, what it has."""
+"""Key of an access to a whole container: its length, order or membership."""
 T = TypeVar("T")
-_HEAP_TYPE = 1 << 9  # Py_TPFLAGS_HEAPTYPE: a class of Python's; objects of others have no attributes to share
+_HEAP_TYPE = 1 << 9  # Py_TPFLAGS_HEAPTYPE: a class defined in Python; other objects have no attributes to share
 _SIMPLE = (str, int, float, bool, bytes, type(None))
 _SWEEP_AT = 512
 
 
 class Touch(NamedTuple):
-    """Something that a task is about to do.
+    """One access that a task is about to make.
 
     Attributes:
-        task: which one.
-        thing: the number of the object: one with attributes, a container, a module's or a function's variables.
-        key: of an attribute or variable its name, of an item `[key]`, of all of a container WHOLE.
-        is_write: whether it changes it.
-        name: in words: `Arm.position`, `self.goals['x']`.
-        code: that does it.
-        line: of its file.
+        task: the task.
+        thing: number of the object: an object with attributes, a container, or the variables of a module or function.
+        key: name of an attribute or variable, `[key]` for an item, WHOLE for a whole container.
+        is_write: whether it is a write.
+        name: readable name: `Arm.position`, `self.goals['x']`.
+        code: the code that makes the access.
+        line: line number in its file.
     """
 
     task: Task
@@ -55,12 +55,12 @@ class Touch(NamedTuple):
 
     @property
     def file(self) -> str:
-        """The source file, as the mission sees it."""
+        """Source file, as the mission sees it."""
         return self.code.co_filename
 
     @property
     def place(self) -> str:
-        """`Arm.move (arm.py:12)`."""
+        """Place of the access, such as `Arm.move (arm.py:12)`."""
         return f"{self.code.co_qualname} ({PurePath(self.code.co_filename).name}:{self.line})"
 
 
@@ -68,17 +68,17 @@ Observer = Callable[[Touch], object]
 
 
 class ThingNumbers:
-    """ThingNumbers of objects, in the order of first sight. They keep no object alive for long."""
+    """Numbers of objects, in order of first access. Objects are not kept alive for long."""
 
     def __init__(self) -> None:
         self._last = 0
         self.on_gone: Callable[[int], object] = lambda number: None
         self._weak: dict[int, tuple[int, ref[Any]]] = {}
-        self._kept: dict[int, tuple[int, Any]] = {}  # those that take no weak references
+        self._kept: dict[int, tuple[int, Any]] = {}  # objects that do not support weak references
         self._sweep_at = _SWEEP_AT
 
     def of(self, thing: Any) -> int:
-        """The number of an object, from 1."""
+        """Return the number of an object, from 1."""
         address = id(thing)
         found = self._weak.get(address) or self._kept.get(address)
         if found is not None:
@@ -98,7 +98,7 @@ class ThingNumbers:
             self.on_gone(found[0])
 
     def _sweep(self) -> None:
-        """Let go of objects that nobody else has: they are never seen again."""
+        """Drop objects that are referenced only here; they can never be accessed again."""
         entry: tuple[int, Any] = (0, object())
         alone = sys.getrefcount(entry[1])
         gone = [address for address, entry in self._kept.items() if sys.getrefcount(entry[1]) <= alone]
@@ -108,14 +108,14 @@ class ThingNumbers:
 
 
 class Accesses:
-    """The hooks of one run.
+    """Hooks of one run.
 
     Args:
-        kernel: of the mission; its policy says which points there are.
+        kernel: kernel of the mission; its policy determines the scheduling points.
 
     Attributes:
-        observers: get each access; set before the mission boots.
-        files: the source files whose code has hooks.
+        observers: receive each access; set before the mission boots.
+        files: source files whose code has hooks.
     """
 
     def __init__(self, kernel: Kernel) -> None:
@@ -125,11 +125,11 @@ class Accesses:
         self._points = Points.parse("" if kernel.policy is None else kernel.policy.points)
         self._point = None if kernel.policy is None else _point_of(kernel)
         self._has_points = self._points.kind == ATTRIBUTES
-        self._loading: dict[Task, int] = {}  # tasks that execute the body of a module
+        self._loading: dict[Task, int] = {}  # tasks that are executing the body of a module
         self._covered: dict[str, bool] = {}
         self._local: dict[type, bool] = {}
         self._numbers = ThingNumbers()
-        self._modules: dict[int, str] = {}  # by number of their variables
+        self._modules: dict[int, str] = {}  # names of modules, by number of their variables
         self._held: dict[tuple[int, int], tuple[Any, ...]] = {}
 
     @property
@@ -138,11 +138,11 @@ class Accesses:
         return bool(self.observers or self._points.kind)
 
     def kinds(self, file: str, is_main: bool) -> Kinds | None:
-        """What the code of a file has hooks at; None for nothing.
+        """Return which hooks the code of a file gets; None for none.
 
         Args:
             file: the source file.
-            is_main: it is a node's script.
+            is_main: whether it is a node's script.
         """
         kind = self._points.kind if self._points.cover(file) else ""
         if not (self.observers or kind):
@@ -153,19 +153,19 @@ class Accesses:
         return Kinds(bool(self.observers) or kind == ATTRIBUTES, kind == LINES, kind == CALLS, is_main)
 
     def number(self, thing: object) -> int:
-        """The number of an object, from 1."""
+        """Return the number of an object, from 1."""
         return self._numbers.of(thing)
 
     def on_gone(self, action: Callable[[int], object]) -> None:
-        """Have something done with the number of each object that is no more, at any time after its end."""
+        """Call `action` with the number of each object that has been freed, at some time after it was freed."""
         self._numbers.on_gone = action
 
     def hooks(self) -> dict[str, Callable[..., Any]]:
-        """What code with hooks needs among its builtins."""
+        """Return the hooks that instrumented code needs among its builtins."""
         return {f"__{name}__": getattr(self, name) for name in _HOOKS}
 
     def adopt(self, variables: dict[str, Any]) -> None:
-        """The variables of a module of the mission, which is about to be executed."""
+        """Register the variables of a mission module that is about to be executed."""
         name = variables.get("__name__", "")
         if name == "__main__" or "." not in name:
             name = PurePath(variables.get("__file__") or name).stem
@@ -173,7 +173,9 @@ class Accesses:
 
     @contextmanager
     def loading(self) -> Iterator[None]:
-        """The current task executes the body of a module: it holds the lock of an import, so there are no points."""
+        """Mark the current task as executing a module body: it holds an import lock, so there are no
+        scheduling points.
+        """
         task = self._kernel.current
         self._loading[task] = self._loading.get(task, 0) + 1
         try:
@@ -186,7 +188,7 @@ class Accesses:
     # -- telling -------------------------------------------------------------------------------------------------------
 
     def _let_in(self, frame: FrameType) -> None:
-        """Others may run before an access."""
+        """Let other tasks run before an access."""
         if (
             self._has_points
             and self._point is not None
@@ -202,7 +204,7 @@ class Accesses:
         return found
 
     def _tell(self, frame: FrameType, thing: int, key: str, is_write: bool, name: str) -> None:
-        """Let others run, then tell of an access."""
+        """Let other tasks run, then report an access."""
         if self._has_points:
             self._let_in(frame)
         self._tell_now(frame, thing, key, is_write, name)
@@ -221,7 +223,7 @@ class Accesses:
             self._point()
 
     def called(self, value: T) -> T:
-        """A call came back: others may run, if it has been in cfepy, so that what it found out may be old by now."""
+        """Let other tasks run after a call that entered cfepy, because its result may be out of date."""
         kernel = cast("CallPointKernel", self._kernel)
         task = kernel.current
         if kernel.entered.pop(task, False) and task not in self._loading:
@@ -246,7 +248,7 @@ class Accesses:
         return thing
 
     def updates_attribute(self, thing: T, name: str, site: int) -> T:
-        """An attribute is about to be read, in order to be set to what is made of it."""
+        """An attribute is about to be read for an augmented assignment."""
         frame = sys._getframe(1)
         self._held.pop((id(frame), site), None)
         found = self._attribute(thing, name, is_write=False)
@@ -259,7 +261,7 @@ class Accesses:
         return thing
 
     def updated(self, value: T, site: int) -> T:
-        """What was read is about to be set."""
+        """The result of an augmented assignment is about to be stored."""
         frame = sys._getframe(1)
         held = self._held.pop((id(frame), site), None)
         if held is not None:
@@ -268,7 +270,7 @@ class Accesses:
         return value
 
     def _attribute(self, thing: Any, name: str, is_write: bool) -> tuple[int, str] | None:
-        """The number of the object that has an attribute, and its key; None for what is no state of the mission."""
+        """Return the number of the object that has an attribute, and the key; None if it is not mission state."""
         kind = type(thing)
         if kind is ModuleType:
             number = self._numbers.of(vars(thing))
@@ -291,13 +293,13 @@ class Accesses:
         if isinstance(value, MemberDescriptorType):
             return self._numbers.of(thing), name
         if hasattr(type(value), "__set__"):
-            return None  # a property: its own code tells what it does
+            return None  # a property: its own code reports its accesses
         if is_write or name in _variables(thing):
             return self._numbers.of(thing), name
         return None if _is_code(value) else (self._numbers.of(owner), name)
 
     def _is_local(self, kind: type) -> bool:
-        """Whether objects of a class are `threading.local`, of which each thread has attributes of its own."""
+        """Return whether a class is a `threading.local`, whose attributes are separate for each thread."""
         found = self._local.get(kind)
         if found is None:
             found = any(each.__name__ == "_local" and each.__module__ == "_thread" for each in kind.__mro__)
@@ -324,12 +326,12 @@ class Accesses:
         return thing
 
     def updates_item(self, thing: T, key: Any, text: str, site: int) -> T:
-        """An item is about to be read, in order to be set."""
+        """An item is about to be read for an augmented assignment."""
         self._update(sys._getframe(1), thing, key, text, site)
         return thing
 
     def updates_all(self, thing: T, text: str, site: int) -> T:
-        """A part of a container is about to be read, in order to be set."""
+        """A slice of a container is about to be read for an augmented assignment."""
         frame = sys._getframe(1)
         self._held.pop((id(frame), site), None)
         if _is_container(thing):
@@ -338,12 +340,12 @@ class Accesses:
         return thing
 
     def holds(self, thing: T, text: str, site: int) -> T:
-        """An item of this is about to be used; its key is still to be found out."""
+        """Hold a container whose item is about to be accessed, until its key has been evaluated."""
         self._held[id(sys._getframe(1)), site] = thing, text
         return thing
 
     def reads_key(self, key: T, site: int) -> T:
-        """The key of an item that is about to be read."""
+        """Return the key of an item that is about to be read."""
         frame = sys._getframe(1)
         thing, text = self._held.pop((id(frame), site))
         if _is_container(thing):
@@ -351,7 +353,7 @@ class Accesses:
         return key
 
     def writes_key(self, key: T, site: int) -> T:
-        """The key of an item that is about to be set."""
+        """Return the key of an item that is about to be set."""
         frame = sys._getframe(1)
         thing, text = self._held.pop((id(frame), site))
         if _is_container(thing):
@@ -359,7 +361,7 @@ class Accesses:
         return key
 
     def updates_key(self, key: T, site: int) -> T:
-        """The key of an item that is about to be read, in order to be set."""
+        """Return the key of an item that is about to be read, in order to be set."""
         frame = sys._getframe(1)
         thing, text = self._held.pop((id(frame), site))
         self._update(frame, thing, key, text, site)
@@ -373,11 +375,11 @@ class Accesses:
             self._held[id(frame), site] = self._numbers.of(thing), item, _item_name(text, item)
 
     def _tell_written(self, frame: FrameType, thing: Any, key: Any, text: str) -> None:
-        """An item is set: one that a dictionary does not have changes all of it."""
+        """Report a write to an item: a new key of a dictionary changes the whole dictionary."""
         self._let_in(frame)
         try:
             item = WHOLE if issubclass(type(thing), dict) and key not in thing else self._item(thing, key)
-        except TypeError:  # no key of a dictionary, as the program is about to find out
+        except TypeError:  # not a valid key; the program is about to get the error itself
             return
         self._tell_now(frame, self._numbers.of(thing), item, True, _item_name(text, item))
 
@@ -385,7 +387,7 @@ class Accesses:
         self._tell(frame, self._numbers.of(thing), item, is_write, _item_name(text, item))
 
     def _item(self, thing: Any, key: Any) -> str:
-        """The key of an item as a text: simple ones as they are, others by their number."""
+        """Return the key of an item as text: simple keys as they are, others by their number."""
         if type(key) is int and key < 0 and issubclass(type(thing), MutableSequence):
             key += len(thing)
         if type(key) is tuple and all(type(each) in _SIMPLE for each in key):
@@ -397,7 +399,7 @@ class Accesses:
     # -- containers as a whole -----------------------------------------------------------------------------------------
 
     def looks_into(self, thing: T, text: str, site: int = 0) -> T:
-        """A container is about to be gone through, counted or asked what it has."""
+        """A container is about to be iterated, counted or searched."""
         frame = sys._getframe(1)
         if _is_container(thing):
             self._tell_item(frame, thing, WHOLE, False, text)
@@ -408,7 +410,7 @@ class Accesses:
         return thing
 
     def looks_again(self, site: int) -> None:
-        """The next one of a container is there."""
+        """The next item of an iterated container is about to be used."""
         frame = sys._getframe(1)
         held = self._held.get((id(frame), site))
         if held is not None:
@@ -422,17 +424,17 @@ class Accesses:
         return thing
 
     def calls_method(self, thing: T, name: str, text: str) -> T:
-        """A method is about to be called that a container may have."""
+        """A method is about to be called that containers may have."""
         self._tell_call(sys._getframe(1), thing, name, text)
         return thing
 
     def holds_method(self, thing: T, name: str, text: str, site: int) -> T:
-        """Such a method is going to be called; its arguments are still to be found out."""
+        """Hold such a method until its arguments have been evaluated."""
         self._held[id(sys._getframe(1)), site] = thing, name, text
         return thing
 
     def calls_held(self, value: T, site: int) -> T:
-        """The last argument of such a method is there."""
+        """The last argument of such a method has been evaluated."""
         frame = sys._getframe(1)
         self._tell_call(frame, *self._held.pop((id(frame), site)))
         return value
@@ -458,7 +460,7 @@ class Accesses:
         self._tell_variable(sys._getframe(1), name, user, True)
 
     def wrote_variable(self, name: str, user: FunctionType | None = None) -> None:
-        """A variable was set, among others."""
+        """A variable was set as one of several targets."""
         self._tell_variable(sys._getframe(1), name, user, True)
 
     def writes_variable(self, value: T, name: str, user: FunctionType | None = None) -> T:
@@ -478,7 +480,7 @@ class Accesses:
 
 
 def _point_of(kernel: Kernel) -> Callable[[], object]:
-    """What lets others in, of a kernel with a policy; a run without one does not import the other kernel."""
+    """Return the scheduling point of a kernel with a policy; a run without one does not load that kernel."""
     from cfepy.schedules import ExploringKernel
 
     assert isinstance(kernel, ExploringKernel)
@@ -491,21 +493,21 @@ _HOOKS = (
     *("looks_again", "changes", "calls_method", "holds_method", "calls_held", "read_variable", "write_variable"),
     *("wrote_variable", "writes_variable"),
 )
-"""Methods of `Accesses` that code calls, between two underscores on each side."""
+"""Methods of `Accesses` that instrumented code calls, with two underscores on each side."""
 
 
 def _class_with(kind: type, name: str) -> type | None:
-    """The class that an attribute of a class is found in."""
+    """Return the class that an attribute of a class is found in."""
     return next((each for each in kind.__mro__ if name in each.__dict__), None)
 
 
 def _is_code(value: object) -> bool:
-    """Whether a class has a function, or what is looked up like one, and no value."""
+    """Return whether a class attribute is a function or another descriptor, and not a value."""
     return hasattr(type(value), "__get__")
 
 
 def _variables(thing: Any) -> dict[str, Any]:
-    """The attributes of an object itself."""
+    """Return the attributes of the object itself."""
     try:
         found: dict[str, Any] = object.__getattribute__(thing, "__dict__")
     except AttributeError:
@@ -514,7 +516,7 @@ def _variables(thing: Any) -> dict[str, Any]:
 
 
 def _is_container(thing: Any) -> bool:
-    """Whether something has items that can be changed, by itself and not by code of the mission's."""
+    """Return whether an object is a mutable container that is not implemented in mission code."""
     kind = type(thing)
     if kind in (dict, list, set):
         return True
@@ -524,5 +526,5 @@ def _is_container(thing: Any) -> bool:
 
 
 def _item_name(text: str, item: str) -> str:
-    """What an item, or all of a container, is called."""
+    """Return the name of an item, or of a whole container."""
     return text if item == WHOLE else f"{text}{item}"

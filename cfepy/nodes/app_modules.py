@@ -1,9 +1,9 @@
-"""What applications have in place of Python's modules that open files: the same stand-ins as nodes have.
+"""Replacements for Python's modules that open files, for applications in Python; they are the same as those of nodes.
 
-An application in Python is the simulated computer's own code and runs among the host's modules, with the host's
-threads, clocks and packages. Its files alone are the run's: its `open`, and the modules that open files, which are made
-or executed afresh for all applications of a processor together, as they share a process. All of it is made when an
-application first opens a file or imports such a module; the others pay nothing.
+An application in Python is part of the simulated computer and runs with the host's modules, threads, clocks and
+packages. Only its files belong to the run: its `open`, and the modules that open files, which are made or executed once
+for all applications of a processor, since they share a process. They are made when an application first opens a file or
+loads such a module.
 """
 
 from __future__ import annotations
@@ -34,18 +34,18 @@ REPLACED = frozenset({
     "sndhdr", "sqlite3", "sunau", "tarfile", "tempfile", "tokenize", "uu", "wave", "xml", "zipapp", "zipfile",
 })
 # fmt: on
-"""Modules, by their first name, that an application has over the run's files."""
+"""Top-level names of modules that work on the run's files for an application."""
 
 
 class AppModules:
-    """The modules of the applications of one processor.
+    """Modules of the applications of one processor.
 
     Args:
-        make: makes the universe whose modules that open files they have, and whose other modules are the host's.
-        accesses: what their code tells of what it touches; None for nothing.
+        make: makes the universe that has the modules that open files; all others are the host's.
+        accesses: where the accesses of their code are reported; None for no reports.
 
     Attributes:
-        builtins: what their code has as `__builtins__`.
+        builtins: `__builtins__` of their code.
     """
 
     def __init__(self, make: Callable[[], Universe], accesses: Accesses | None = None) -> None:
@@ -64,11 +64,11 @@ class AppModules:
         """Run the code of an application's new module.
 
         Args:
-            module: as `importlib.util.module_from_spec` makes it; it has source.
+            module: a module made by `importlib.util.module_from_spec`, with source.
 
         Raises:
-            UsageError: it would have the files of the computer.
-            BaseException: what its code raises.
+            UsageError: if it would work on the host's files.
+            BaseException: raised by its code.
         """
         check_own_builtins()
         loader = module.__loader__
@@ -86,7 +86,7 @@ class AppModules:
             exec(code, vars(module))
 
     def close(self) -> None:
-        """The processor has come to its end: close what its applications left open."""
+        """Close the files that applications left open, at the end of the processor."""
         if self._made is not None:
             self._made.files.close_all()
             self._made = None
@@ -121,7 +121,7 @@ class AppModules:
     ) -> ModuleType:
         """`__import__` of an application."""
         if level:
-            with suppress(ImportError):  # which Python's own import is about to raise
+            with suppress(ImportError):  # Python's own import is about to raise it
                 self._load_parts(name, globals or {}, fromlist or (), level)
         elif name.partition(".")[0] in REPLACED:
             return self._universe.importer.import_name(name, globals, locals, fromlist)
@@ -157,7 +157,7 @@ class AppModules:
 
 
 def os_module(universe: Universe) -> ModuleType:
-    """`os` of applications: the host's, over the files of the run."""
+    """Return the host's `os` for applications, working on the files of the run."""
     from cfepy.nodes.made_modules import rebind
     from cfepy.nodes.stdlib.os_module import paths
     from cfepy.nodes.stdlib.users import identity
@@ -168,7 +168,7 @@ def os_module(universe: Universe) -> ModuleType:
             universe.overlay.wrote(fd)
         return written
 
-    forked = {"register_at_fork": lambda **hooks: None}  # explorations fork, not apps
+    forked = {"register_at_fork": lambda **hooks: None}  # explorations fork, applications do not
     own = {**paths(universe), **identity(universe), "write": write, **forked}
     module = rebind(os, **own)
     modules = universe.importer.modules
@@ -179,7 +179,7 @@ def os_module(universe: Universe) -> ModuleType:
 
 
 def numpy_module(universe: Universe) -> ModuleType:
-    """The host's NumPy, whose functions that take paths see the run's files."""
+    """Return the host's NumPy, with functions for paths that work on the run's files."""
     import numpy
 
     from cfepy.nodes.files.shared import array_files
@@ -189,7 +189,7 @@ def numpy_module(universe: Universe) -> ModuleType:
 
 
 def logging_module(universe: Universe) -> ModuleType:
-    """The host's `logging`, whose handlers write the run's files; the loggers are the host's."""
+    """Return the host's `logging` with handlers that write the run's files; the loggers are the host's."""
     import logging
 
     from cfepy.nodes.made_modules import rebind
@@ -209,7 +209,7 @@ def logging_module(universe: Universe) -> ModuleType:
 
 
 def importlib_module(universe: Universe) -> ModuleType:
-    """The host's `importlib`, whose `import_module` gives an application its own modules."""
+    """Return the host's `importlib`; its `import_module` gives an application its own modules."""
     from cfepy.nodes.made_modules import proxy
 
     def import_module(name: str, package: str | None = None) -> ModuleType:
@@ -220,12 +220,12 @@ def importlib_module(universe: Universe) -> ModuleType:
 
 
 def sys_module(universe: Universe) -> ModuleType:
-    """The host's `sys` itself."""
+    """Return the host's `sys` itself."""
     return sys
 
 
 def make_app_universe(**options: Any) -> Universe:
-    """A universe for `AppModules`.
+    """Return a universe for `AppModules`.
 
     Args:
         options: of `Universe`.

@@ -1,11 +1,10 @@
-"""The import system of a universe: its `__import__`, module table and search path.
+"""Import system of a universe: its `__import__`, module table and search path.
 
-Names are looked up in this order: the node's table; modules that were given to the universe (rospy, message packages);
-modules made for it (`time`, `_thread`, `os`, ...); the node's own folders; the libraries that its owner provides; the
-standard library and the installed packages, executed afresh or shared as `cfepy.nodes.module_origins` says. The host's
-`sys.modules` is never changed. A few modules are late: their code runs when a name in them is first looked for, as with
-`importlib.util.LazyLoader`. A thread that imports a module which another thread is still executing waits for it, as in
-Python itself.
+Names are looked up in this order: the node's table; modules given to the universe (rospy, message packages); modules
+made for it (`time`, `_thread`, `os`, ...); the node's own folders; libraries of its owner; the standard library and the
+installed packages, executed again or shared as `cfepy.nodes.module_origins` determines. The host's `sys.modules` is not
+changed. A few modules are lazy: their code runs when a name in them is first needed, as with
+`importlib.util.LazyLoader`. A thread that loads a module which another thread is executing waits for it, as in Python.
 """
 
 from __future__ import annotations
@@ -41,7 +40,7 @@ class LateModule(ModuleType):
     """A module before its code has run."""
 
     def __getattr__(self, name: str) -> Any:
-        if name == "__path__":  # asked of every module that something is imported from; a package is never late
+        if name == "__path__":  # requested of every module that something is loaded from; a package is never lazy
             raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
         _wake(self)
         return getattr(self, name)
@@ -60,10 +59,10 @@ class LateModule(ModuleType):
 
 
 def postpone(module: ModuleType, run: Callable[[], object]) -> ModuleType:
-    """Have the code of a module run later.
+    """Delay the execution of a module's code until its first use.
 
     Args:
-        module: one that nothing has happened to yet.
+        module: a new module.
         run: executes its code.
     """
     vars(module)[_RUN] = run
@@ -72,7 +71,7 @@ def postpone(module: ModuleType, run: Callable[[], object]) -> ModuleType:
 
 
 def _wake(module: ModuleType) -> None:
-    """Run the module's code; while it runs, it is a module like any other."""
+    """Run the module's code; meanwhile it is an ordinary module."""
     run = vars(module).pop(_RUN)
     object.__setattr__(module, "__class__", ModuleType)
     try:
@@ -83,10 +82,10 @@ def _wake(module: ModuleType) -> None:
 
 
 class ImportLocks:
-    """The modules that threads are executing.
+    """Modules that threads are executing.
 
     Args:
-        kernel: whose tasks import.
+        kernel: kernel of the importing tasks.
     """
 
     def __init__(self, kernel: Kernel) -> None:
@@ -101,7 +100,7 @@ class ImportLocks:
 
     @contextmanager
     def loading(self, name: str) -> Iterator[None]:
-        """The current task executes the module `name`."""
+        """Mark the module `name` as being executed by the current task."""
         waits = WaitList(f"the import of {name}")
         self._loading[name] = self._kernel.current, waits
         try:
@@ -124,7 +123,7 @@ class ImportLocks:
             del self._waiting[current]
 
     def _is_circular(self, loader: Task) -> bool:
-        """Whether `loader` is, or waits for, the current task."""
+        """Return whether `loader` is, or waits for, the current task."""
         current: Task | None = loader
         while current is not None and current is not self._kernel.current:
             name = self._waiting.get(current)
@@ -137,14 +136,14 @@ class Importer:
     """Finds and executes the modules of one universe.
 
     Args:
-        universe: whose modules they are.
+        universe: universe of the modules.
         folders: the node's own folders, searched first.
-        libraries: folders of packages that are executed afresh for the node, searched next.
-        fallbacks: folders of what is found there when it is nowhere else.
-        ordered: set displays in the node's code make ordered sets.
-        provision: what it has in place of the host's modules.
-        find_factory: asked for names of modules of which the provision has no factory; None is "not mine".
-        accesses: what the node's own code tells of what it touches; None for nothing.
+        libraries: folders of packages that are executed for each node, searched next.
+        fallbacks: folders that are searched last.
+        ordered: whether set displays in the node's code make ordered sets.
+        provision: replacements for the host's modules.
+        find_factory: looks up names for which the provision has no factory; None if it does not know the name.
+        accesses: where the accesses of the node's own code are reported; None for no reports.
     """
 
     def __init__(
@@ -173,7 +172,7 @@ class Importer:
         self._shared: set[str] = set()
         self._locks = ImportLocks(universe.kernel)
 
-    # -- what the node calls -----------------------------------------------------------------------------------------
+    # -- called by the node --------------------------------------------------------------------------------------------
 
     def import_name(
         self,
@@ -183,7 +182,7 @@ class Importer:
         fromlist: Sequence[str] | None = (),
         level: int = 0,
     ) -> ModuleType:
-        """`__import__`, which every import statement of the node ends in."""
+        """`__import__`, called by every import statement of the node."""
         if level:
             name = _absolute(name, globals or {}, level)
         module = self.modules.get(name)
@@ -223,17 +222,17 @@ class Importer:
         return PathFinder.find_spec(name, self._node_folders() + self._libraries) or importlib.util.find_spec(name)
 
     def has_own(self, name: str) -> bool:
-        """Whether the node's own folders have the code of a module or package called `name`."""
+        """Return whether the node's own folders have the code of a module or package called `name`."""
         found = PathFinder.find_spec(name, self._node_folders())
         return found is not None and found.loader is not None
 
     # -- loading -----------------------------------------------------------------------------------------------------
 
     def load(self, name: str) -> ModuleType:
-        """The module called `name`, from the table or loaded now.
+        """Return the module called `name`, from the table or newly loaded.
 
         Raises:
-            ImportError: there is none, or it cannot be had in a node.
+            ImportError: if there is none, or it is not available in a node.
         """
         self._locks.wait_for(name)
         module = self.modules.get(name)
@@ -251,17 +250,17 @@ class Importer:
         return module
 
     def load_standard(self, name: str) -> ModuleType:
-        """A module of the standard library; what factories of such a module stand on."""
+        """Return a module of the standard library, for factories that build on it."""
         module = self.modules.get(name)
         return self._from_spec(_library_spec(name), own=False) if module is None else module
 
     def load_file(self, name: str, file: str, folder: str | None = None) -> ModuleType:
-        """Execute a source file as the module `name` of this universe; what factories of whole packages use.
+        """Execute a source file as the module `name` of this universe, for factories of whole packages.
 
         Args:
             name: the full module name.
             file: the source file.
-            folder: for a package, where its submodules are.
+            folder: for a package, the folder of its submodules.
         """
         locations = None if folder is None else [folder]
         loader = SourceFileLoader(name, file)
@@ -289,7 +288,9 @@ class Importer:
         return self._from_spec(spec, self._is_own(spec.origin))
 
     def _library_part(self, name: str) -> ModuleSpec | None:
-        """A part that the node's own copy of a library lacks, as sources do whose compiled half was not built."""
+        """Return a submodule that the node's own copy of a library lacks, such as the compiled part of an unbuilt
+        source.
+        """
         *packages, _ = name.split(".")
         return PathFinder.find_spec(name, [os.path.join(folder, *packages) for folder in self._libraries])
 
@@ -307,7 +308,7 @@ class Importer:
             return self._late(standard) if name in sharing.LATE else self._from_spec(standard, own=False)
         if name in sharing.HOST_PACKAGES:
             return self._share(name)
-        spec = importlib.util.find_spec(name) or found  # a mere folder of the node comes last, as in Python
+        spec = importlib.util.find_spec(name) or found  # a folder of the node without code comes last, as in Python
         spec = spec or PathFinder.find_spec(name, self._fallbacks)
         if spec is None:
             error = ModuleNotFoundError(f"No module named {name!r}", name=name)
@@ -316,7 +317,7 @@ class Importer:
         return self._from_spec(spec, own=False) if self._provision.executes_package(spec) else self._share(name)
 
     def _from_spec(self, spec: ModuleSpec, own: bool) -> ModuleType:
-        """A module from a file; it is in the table, and in its package, before its code runs."""
+        """Return a module from a file; it is added to the table and its package before its code runs."""
         name = spec.name
         module = _empty_module(spec)
         if spec.origin is not None:
@@ -338,7 +339,7 @@ class Importer:
         return self.modules.get(name, module)
 
     def _late(self, spec: ModuleSpec) -> ModuleType:
-        """A module of the standard library whose code runs when it is first used."""
+        """Return a module of the standard library whose code runs on first use."""
 
         def run() -> None:
             self._execute(module, spec, own=False)
@@ -368,22 +369,22 @@ class Importer:
                 exec(code, vars(module))
 
     def own_code(self, file: str, name: str, is_main: bool = False) -> CodeType:
-        """The code of a source file of the node; errors as `code_of_file`.
+        """Return the code of a source file of the node; see `code_of_file` for the errors.
 
         Args:
-            file: where it is.
-            name: what the code believes to be its file.
-            is_main: it is the node's script.
+            file: the file.
+            name: file name that the code sees.
+            is_main: whether it is the node's script.
         """
         kinds = None if self._accesses is None else self._accesses.kinds(name, is_main)
         return code_of_file(file, self._ordered, name, kinds)
 
     def _is_shared(self, package: str) -> bool:
-        """Whether the modules in a package are the host's."""
+        """Return whether the modules in a package are shared with the host."""
         return package in self._shared or package.partition(".")[0] in sharing.HOST_BELOW
 
     def _share(self, name: str, package: ModuleType | None = None) -> ModuleType:
-        """The host's own module; a copy of its names where a node that replaces one must not be seen by others."""
+        """Return the host's own module, or a copy of its names if changes by the node must not affect others."""
         builtins.__import__(name)
         module = sys.modules[name]
         if self._provision.copies(name):
@@ -400,7 +401,7 @@ class Importer:
         return self._provision.factories.get(name) or self._find_factory(name)
 
     def _node_folders(self) -> list[str]:
-        """The folders of the search path that are the node's: given to it, or added by itself."""
+        """Return the folders of the search path that belong to the node or were added by it."""
         return [
             place
             for folder in self.path
@@ -409,7 +410,7 @@ class Importer:
         ]
 
     def _is_own(self, origin: str | None) -> bool:
-        """Whether a file belongs to the node, and not to the standard library or an installed package."""
+        """Return whether a file belongs to the node, and not to the standard library or an installed package."""
         return origin is not None and origin.startswith(tuple(os.path.join(f, "") for f in self._node_folders()))
 
     def _import_parts(self, module: ModuleType, name: str, parts: Sequence[str]) -> None:
@@ -427,7 +428,7 @@ class Importer:
 
 
 def _library_spec(name: str) -> ModuleSpec:
-    """Where the source of a module of the standard library is; some of them are frozen into the interpreter."""
+    """Return the spec of a standard library module with its source file; some are frozen into the interpreter."""
     spec = copy(_found_in_library(name))
     if spec.submodule_search_locations is not None:
         spec.submodule_search_locations = list(spec.submodule_search_locations)
@@ -436,7 +437,7 @@ def _library_spec(name: str) -> ModuleSpec:
 
 @cache
 def _found_in_library(name: str) -> ModuleSpec:
-    """Looked for once; the standard library does not change while Python runs."""
+    """Return the spec, cached because the standard library does not change."""
     spec = PathFinder.find_spec(name, [os.path.dirname(os.__file__)])
     if spec is None:
         raise ModuleNotFoundError(f"No module named {name!r}", name=name)
@@ -455,7 +456,7 @@ def _empty_module(spec: ModuleSpec) -> ModuleType:
 
 
 def _absolute(name: str, names: Mapping[str, Any], level: int) -> str:
-    """The full name that a relative import means."""
+    """Return the full name that a relative import means."""
     package = names.get("__package__")
     if package is None:
         package = names.get("__name__", "")

@@ -1,10 +1,10 @@
-"""The transformation that makes mission code tell of what it touches, and lets others run between its steps.
+"""Transformation that makes mission code report its accesses and lets other tasks run between its steps.
 
-Python code is compiled from a syntax tree in which calls of hooks (`cfepy.nodes.accesses`) stand beside what the
-program does. A hook is called right before an access, with what it is about, and gives that back: `self.n` becomes
-`__reads_attribute__(self, "n").n`. So every operation stays where it was, is done once, and fails in the program's own
-line; what a program computes does not change. Bodies of modules and classes are left alone, as nobody else is there
-yet, but for that of a node's script, which is its main program.
+Python code is compiled from a syntax tree with added calls of hooks (`cfepy.nodes.accesses`). A hook is called just
+before an access, with the object as argument, and returns it: `self.n` becomes `__reads_attribute__(self, "n").n`.
+Every operation thus stays in place, is done once, and fails in the program's own line; results do not change. Bodies of
+modules and classes are left unchanged, because no other task can use them yet, except that of a node's script, which is
+its main program.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ READING_METHODS = frozenset(
         *("items", "keys", "most_common", "symmetric_difference", "union", "values"),
     }
 )
-"""Methods of Python's containers that look into them."""
+"""Methods of Python's containers that read them."""
 CHANGING_METHODS = frozenset(
     {
         *("add", "append", "appendleft", "clear", "difference_update", "discard", "extend", "extendleft", "insert"),
@@ -49,25 +49,25 @@ _QUIET = frozenset(
         *("__delattr__", "__dir__", "__reduce__", "__reduce_ex__", "__getstate__", "__setstate__", "__index__"),
     }
 )
-"""Methods that anybody's code may call without knowing it, that of cfepy too: they are left as they are."""
+"""Methods that are left unchanged because any code, including cfepy, may call them."""
 _NEVER_AWAY = frozenset(
     name for name in dir(builtins) if name not in ("__import__", "eval", "exec", "input", "open", "print")
 )
-"""Built-in functions, which never lead into cfepy; what they call back does so in its own lines."""
+"""Built-in functions, which never enter cfepy; functions they call back have their own hooks."""
 _CONTAINERS = (ast.Name, ast.Attribute, ast.Subscript)
-_TEXT = 60  # characters of a container's name
+_TEXT = 60  # maximum length of a container's name
 
 E = TypeVar("E", bound=ast.expr)
 
 
 class Kinds(NamedTuple):
-    """What the code of a file has hooks at.
+    """Which hooks the code of a file gets.
 
     Attributes:
-        accesses: attributes, items, and variables of modules and functions that several tasks may share.
-        lines: the beginning of each statement.
-        calls: the end of each call.
-        is_main: the module's own statements count, too.
+        accesses: at attributes, items, and variables of modules and functions that several tasks may share.
+        lines: at the start of each statement.
+        calls: at the end of each call.
+        is_main: the module's own statements get hooks too.
     """
 
     accesses: bool = False
@@ -82,8 +82,8 @@ def compile_with_hooks(source: bytes | str, file: str, kinds: Kinds, ordered: bo
     Args:
         source: its text.
         file: its name.
-        kinds: where it calls hooks, which its builtins have to have.
-        ordered: set displays in it make ordered sets.
+        kinds: which hooks it calls; its builtins must contain them.
+        ordered: whether set displays in it make ordered sets.
 
     Raises:
         SyntaxError: as `compile` does.
@@ -106,7 +106,7 @@ class _Hooking(ast.NodeTransformer):
     # -- making calls of hooks -----------------------------------------------------------------------------------------
 
     def _call(self, hook: str, at: ast.AST, *arguments: ast.expr | str | int | None) -> ast.Call:
-        """A call of a hook, with the place of a node of the source."""
+        """Return a call of a hook, with the place of a node of the source."""
         given = [each if isinstance(each, ast.expr) else ast.Constant(each) for each in arguments]
         call = ast.copy_location(ast.Call(ast.Name(hook, ast.Load()), given, []), at)
         for each in (call.func, *(each for each in given if isinstance(each, ast.Constant))):
@@ -199,7 +199,7 @@ class _Hooking(ast.NodeTransformer):
     # -- statements ----------------------------------------------------------------------------------------------------
 
     def _body(self, nodes: Sequence[ast.stmt]) -> list[ast.stmt]:
-        """The statements of a block, with hooks before and behind them."""
+        """Return the statements of a block, with hooks before and after them."""
         found: list[ast.stmt] = []
         for number, node in enumerate(nodes):
             is_docstring = not number and isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
@@ -216,7 +216,7 @@ class _Hooking(ast.NodeTransformer):
         return found
 
     def generic_visit(self, node: ast.AST) -> ast.AST:
-        """Visit what a node has, but for types, patterns, and names of parameters; bodies get hooks."""
+        """Visit the fields of a node, except types, patterns and parameter names; bodies get hooks."""
         for name, value in ast.iter_fields(node):
             if name in ("annotation", "returns", "type_params", "pattern"):
                 continue
@@ -229,7 +229,7 @@ class _Hooking(ast.NodeTransformer):
         return node
 
     def _before(self, node: ast.stmt) -> list[ast.stmt]:
-        """What is told before a statement: variables that it deletes, or reads in order to change them."""
+        """Return the reports before a statement: variables that it deletes or updates."""
         if isinstance(node, ast.AugAssign):
             return self._told("__read_variable__", [node.target], node)
         if isinstance(node, ast.Delete):
@@ -237,7 +237,7 @@ class _Hooking(ast.NodeTransformer):
         return []
 
     def _behind(self, node: ast.stmt) -> list[ast.stmt]:
-        """What is told behind a statement: variables that it sets among others."""
+        """Return the reports after a statement: variables that it sets as one of several targets."""
         if isinstance(node, ast.Assign):
             several = [each for each in node.targets if not isinstance(each, ast.Name)]
             return self._told("__wrote_variable__", several, node)
@@ -335,7 +335,9 @@ class _Hooking(ast.NodeTransformer):
         return self._scope.function.kind in (FUNCTION, MODULE)
 
     def _cell(self, name: str, at: ast.AST) -> list[ast.expr]:
-        """What the cell of a variable of a function is found by: a function that uses it. For a global one, nothing."""
+        """Return a function that uses a variable of a function, by which its cell is found; nothing for a global
+        variable.
+        """
         if self._scope.owner(name).kind == MODULE:
             return []
         nothing = ast.arguments(posonlyargs=[], args=[], kwonlyargs=[], kw_defaults=[], defaults=[])
@@ -373,7 +375,7 @@ class _Hooking(ast.NodeTransformer):
         return node
 
     def _mangled(self, name: str) -> str:
-        """A private name as a class has it."""
+        """Return a private name as mangled by its class."""
         if not name.startswith("__") or not self._classes:
             return name
         plain = self._classes[-1].lstrip("_")
@@ -385,7 +387,9 @@ class _Hooking(ast.NodeTransformer):
         return self._hook_item(node, "write" if isinstance(node.ctx, ast.Store) else "change")
 
     def _hook_item(self, node: ast.Subscript, how: str, site: int = 0) -> ast.AST:
-        """An item: a key that has no say in what happens is given to the hook with the container, another follows."""
+        """Return an item access with its hook: a key without side effects is passed with the container, others after
+        it.
+        """
         container, key = node.value, node.slice
         text = _text(container)
         node.value = self.visit(container)
@@ -410,7 +414,7 @@ class _Hooking(ast.NodeTransformer):
         return node
 
     def _visit_key(self, key: ast.expr) -> ast.expr:
-        """The key of an item; a slice is no expression of its own."""
+        """Return the visited key of an item; a slice is not an expression."""
         if isinstance(key, ast.Slice):
             self.generic_visit(key)
             return key
@@ -420,7 +424,7 @@ class _Hooking(ast.NodeTransformer):
     # -- containers as a whole -----------------------------------------------------------------------------------------
 
     def _looked_into(self, node: ast.expr, site: int | None = None) -> ast.expr:
-        """An expression whose value is looked into, if it is a container that may be shared."""
+        """Return an expression with a report that its value is read, if it may be a shared container."""
         text = _text(node)
         visited: ast.expr = self.visit(node)
         if not (self._is_on and self._kinds.accesses and isinstance(node, _CONTAINERS)):
@@ -432,7 +436,7 @@ class _Hooking(ast.NodeTransformer):
         return self._looked_into(node, site)
 
     def _tested(self, node: ast.expr) -> ast.expr:
-        """A condition: an empty container is no truth."""
+        """Return a condition with a report, because the truth of a container depends on its length."""
         if isinstance(node, ast.BoolOp):
             node.values = [self._tested(each) for each in node.values]
             return node
@@ -491,7 +495,7 @@ class _Hooking(ast.NodeTransformer):
             node.args[0] = self._call("__changes__", node.args[0], node.args[0], text)
 
     def _hook_method(self, node: ast.Call, function: ast.Attribute) -> None:
-        """A method that a container may have: it counts when its arguments are there."""
+        """Add a hook to a method call that may be a container's; it reports once the arguments are evaluated."""
         receiver = function.value
         text = _text(receiver)
         function.value = self.visit(receiver)
@@ -512,7 +516,7 @@ class _Hooking(ast.NodeTransformer):
 
 
 def _bare_names(target: ast.expr) -> list[ast.Name]:
-    """The names that a target binds."""
+    """Return the names that a target binds."""
     if isinstance(target, ast.Name):
         return [target]
     if isinstance(target, ast.Starred):
@@ -523,7 +527,7 @@ def _bare_names(target: ast.expr) -> list[ast.Name]:
 
 
 def _has_slice(key: ast.expr) -> bool:
-    """Whether a key can stand between brackets alone."""
+    """Return whether a key is valid only between brackets."""
     parts = key.elts if isinstance(key, ast.Tuple) else [key]
     return any(isinstance(each, ast.Slice | ast.Starred) for each in parts)
 
@@ -533,19 +537,19 @@ def _is_future(node: ast.stmt) -> bool:
 
 
 def _is_super(node: ast.expr) -> bool:
-    """`super()`, which looks at the function that it stands in."""
+    """Return whether a node is `super()`, which depends on the enclosing function."""
     return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "super"
 
 
 def _is_plain(node: ast.expr) -> bool:
-    """Whether an expression can be evaluated twice, and nothing happens."""
+    """Return whether an expression can be evaluated twice without side effects."""
     if isinstance(node, ast.UnaryOp):
         return isinstance(node.operand, ast.Constant)
     return isinstance(node, ast.Constant | ast.Name)
 
 
 def _again(node: ast.expr) -> ast.expr:
-    """The same plain expression once more."""
+    """Return the same plain expression once more."""
     if isinstance(node, ast.UnaryOp):
         return ast.copy_location(ast.UnaryOp(node.op, _again(node.operand)), node)
     if isinstance(node, ast.Name):
@@ -555,6 +559,6 @@ def _again(node: ast.expr) -> ast.expr:
 
 
 def _text(node: ast.expr) -> str:
-    """What a container is called, for reports."""
+    """Return the name of a container, for reports."""
     text = ast.unparse(node)
     return text if len(text) <= _TEXT else f"{text[: _TEXT - 3]}..."

@@ -1,6 +1,7 @@
-"""Making modules that are not files: a copy of a host module with some names replaced, and one with functions rebound.
+"""Making modules that are not files: a copy of a host module with some names replaced, optionally with its functions
+rebound.
 
-Both leave the host's module as it is. They share its classes and constants, so that objects pass freely between a node
+Both leave the host's module unchanged. They share its classes and constants, so objects can be passed between a node
 and the host's libraries.
 """
 
@@ -14,14 +15,14 @@ _OWN = ("__builtins__", "__loader__", "__spec__")
 
 
 def made(name: str, **names: Any) -> ModuleType:
-    """A new module with these names in it."""
+    """Return a new module with these names in it."""
     module = ModuleType(name)
     vars(module).update(names)
     return module
 
 
 def proxy(real: ModuleType, **names: Any) -> ModuleType:
-    """A copy of `real` in which some names stand for something else."""
+    """Return a copy of `real` with some names replaced."""
     module = ModuleType(real.__name__, real.__doc__)
     copied = vars(real).copy()
     for name in _OWN:
@@ -32,12 +33,12 @@ def proxy(real: ModuleType, **names: Any) -> ModuleType:
 
 
 def rebind(real: ModuleType, only: Collection[str] = (), **names: Any) -> ModuleType:
-    """A copy of `real` whose own functions also see the replaced names as their globals.
+    """Return a copy of `real` in which its own functions also use the replaced names as globals.
 
     Args:
         real: the host's module.
-        only: the functions to do this to; all when empty. The others stay the host's very own.
-        names: what is replaced.
+        only: functions to rebind; all if empty. The others stay the host's.
+        names: replaced names.
     """
     module = proxy(real, **names)
     theirs, ours = vars(real), vars(module)

@@ -1,10 +1,10 @@
-"""The origin of each module of a node: made for the node, executed afresh for it, or shared with the host.
+"""Origin of each module of a node: made for the node, executed for it, or shared with the host.
 
-Modules that see a clock, threads, entropy, the environment or a module-wide state are the node's own; the rest of the
-standard library (re, math, collections, ...) is the same for all nodes: its functions and classes are the host's,
-in a module of the node's own, so that a node may replace one for itself. An installed
-package is executed afresh if it is pure Python, because it may well import `time` or `threading`; one with extension
-modules (NumPy, PyYAML) can only exist once per process and is shared.
+Modules that use a clock, threads, entropy, the environment or module-wide state are the node's own. The rest of the
+standard library (re, math, collections, ...) is common to all nodes: its functions and classes are the host's, in a
+module of the node's own, so a node can replace one for itself. An installed package is executed for each node if it is
+pure Python, because it may use `time` or `threading`; one with extension modules (NumPy, PyYAML) can exist only once
+per process and is shared.
 """
 
 from __future__ import annotations
@@ -35,20 +35,20 @@ FRESH = frozenset({
     "xmlrpc", "zipapp", "zipfile",
 })
 # fmt: on
-"""Modules of the standard library, by their first name, that each node executes for itself."""
+"""Top-level names of standard library modules that each node executes for itself."""
 
 LATE = frozenset({"traceback", "warnings"})
-"""Those of them that much of the rest imports and hardly ever uses: their code runs when it is needed."""
+"""Modules of `FRESH` that are often imported but rarely used: their code runs on first use."""
 
 HOST_SUBMODULES = frozenset({"urllib.parse", "urllib.error"})
 
 HOST_BELOW = frozenset({"importlib", "numpy"})
-"""Packages that are made for the node, while their submodules are the host's."""
+"""Packages that are made for the node, with the host's submodules."""
 
 WITHOUT_ACCELERATOR = frozenset(
     {"_pickle", "_queue", "_uuid", "_warnings", "_posixsubprocess", "_asyncio", "_dbm", "_gdbm"}
 )
-"""C halves of the above that would keep state per process, block a real thread or open files themselves."""
+"""C parts of the modules above that would keep state per process, block a real thread or open files."""
 
 HOST_PACKAGES = frozenset({"cfepy", "greenlet", "hypothesis", "_pytest", "pkg_resources", "pytest", "setuptools"})
 
@@ -66,14 +66,14 @@ _pure: dict[str, bool] = {}
 
 @dataclass(frozen=True, slots=True)
 class Provision:
-    """What a program has in place of the host's modules.
+    """A program's replacements for the host's modules.
 
     Attributes:
         factories: of modules that are made for it, by full name.
-        fixes: what is done to modules of the standard library that were executed afresh, by full name.
-        fresh: modules of the standard library that are, by their first name.
-        is_process: it has a process of its own: packages in pure Python are executed afresh for it too, and names that
-            it gives to shared modules stay with it. Otherwise both are the host's.
+        fixes: changes to standard library modules after they were executed for it, by full name.
+        fresh: top-level names of standard library modules that are executed for it.
+        is_process: whether it has a process of its own. If so, pure Python packages are executed for it too and names
+            that it sets in shared modules stay local. Otherwise both are the host's.
     """
 
     factories: Mapping[str, Callable[[Universe], ModuleType]]
@@ -82,21 +82,21 @@ class Provision:
     is_process: bool = True
 
     def executes(self, name: str) -> bool:
-        """Whether it executes a module of the standard library, given by its full name, afresh."""
+        """Return whether a standard library module, given by its full name, is executed for the program."""
         return name.partition(".")[0] in self.fresh and name not in HOST_SUBMODULES
 
     def executes_package(self, spec: ModuleSpec) -> bool:
-        """Whether it executes an installed package, found by `spec`, afresh."""
+        """Return whether an installed package, found by `spec`, is executed for the program."""
         return self.is_process and is_pure_python(spec)
 
     def copies(self, name: str) -> bool:
-        """Whether a module of the host's gets a module of the program's to hold its names."""
+        """Return whether the program gets its own module with the names of a host module."""
         top = name.partition(".")[0]
         return self.is_process and (top == "numpy" or is_stdlib(top))
 
 
 def refused_modules() -> Mapping[str, Callable[[Universe], ModuleType]]:
-    """The factories of the modules that refuse their use, by name."""
+    """Return the factories of the modules that refuse their use, by name."""
     named = {
         "multiprocessing": refused.multiprocessing_module,
         "subprocess": refused.subprocess_module,
@@ -107,18 +107,18 @@ def refused_modules() -> Mapping[str, Callable[[Universe], ModuleType]]:
     named["multiprocessing.pool"] = refused.pool_module
     named.update({name: refused.dummy_module(name) for name in _THREADS_AS_PROCESSES})
     named.update({name: refused.refused_import(name, "it is not needed") for name in WITHOUT_ACCELERATOR})
-    # Nodes import it for speed. To pickle itself, which asks while it is being loaded, it lacks all that matters.
+    # Nodes load it for speed. `pickle`, which tries it while it is being loaded, does not find its contents.
     named["_pickle"] = lambda universe: universe.importer.load("pickle")
     return named
 
 
 def is_stdlib(top: str) -> bool:
-    """Whether the first part of a module name belongs to the standard library."""
+    """Return whether the first part of a module name belongs to the standard library."""
     return top in sys.stdlib_module_names
 
 
 def is_pure_python(spec: ModuleSpec) -> bool:
-    """Whether an installed module or package, found by `spec`, has no extension module anywhere below it."""
+    """Return whether a module or package, found by `spec`, has no extension modules."""
     origin = spec.origin or ""
     known = _pure.get(origin)
     if known is None:

@@ -1,8 +1,7 @@
-"""Code objects of files: compiled once per process, shared by all universes, since code objects are immutable.
+"""Code objects of files: compiled once per process and shared by all universes, since code objects are immutable.
 
-The key holds the size and time stamp of a node's file, so that an edited file is compiled anew; for a file of an
-application it is the text. Modules of the standard library and installed packages come from Python's own byte code
-cache.
+The key contains the size and time stamp of a node's file, so an edited file is compiled again; for a file of an
+application it is the text. Modules of the standard library and installed packages come from Python's byte code cache.
 """
 
 from __future__ import annotations
@@ -22,14 +21,15 @@ from cfepy.reading.input_limits import PYTHON_BYTES
 if TYPE_CHECKING:
     from cfepy.nodes.instrument import Kinds
 
-SOURCES = 512  # texts of applications that are kept
-AGAIN = "cfepy.source"  # Python's audit hooks are told of a file that was compiled before, as they are of opened ones
+SOURCES = 512  # number of application texts that are kept
+# raised as Python audit event for a file that was compiled before, like the event for an opened one
+AGAIN = "cfepy.source"
 
 _compiled: dict[tuple[object, ...], CodeType] = {}
 
 
 class Doubt(NamedTuple):
-    """What the compiler warns of: the text, its category, the line."""
+    """A compiler warning: text, category and line."""
 
     text: str
     category: type[Warning]
@@ -40,17 +40,17 @@ _doubts: dict[CodeType, tuple[Doubt, ...]] = {}
 
 
 def code_of_file(path: str, ordered: bool, name: str, kinds: Kinds | None = None) -> CodeType:
-    """The code of a source file of a node.
+    """Return the code of a source file of a node.
 
     Args:
         path: the file.
-        ordered: set displays in it make ordered sets.
-        name: what the code believes to be its file.
-        kinds: where it calls hooks; None for nowhere.
+        ordered: whether set displays in it make ordered sets.
+        name: file name that the code sees.
+        kinds: which hooks it calls; None for none.
 
     Raises:
-        OSError: it cannot be read.
-        SyntaxError: it cannot be compiled.
+        OSError: if it cannot be read.
+        SyntaxError: if it cannot be compiled.
     """
     stat = os.stat(path)
     key = (path, stat.st_mtime_ns, stat.st_size, ordered, kinds)
@@ -59,7 +59,7 @@ def code_of_file(path: str, ordered: bool, name: str, kinds: Kinds | None = None
         sys.audit(AGAIN, path)
         return code
     source = read_limited(path, PYTHON_BYTES)
-    with warnings.catch_warnings(record=True) as seen:  # they are for who reads the node's output
+    with warnings.catch_warnings(record=True) as seen:  # they are shown in the node's output
         warnings.simplefilter("default")
         _compiled[key] = code = _compile(source, name, ordered, kinds)
     if seen:
@@ -68,26 +68,26 @@ def code_of_file(path: str, ordered: bool, name: str, kinds: Kinds | None = None
 
 
 def doubts_of(code: CodeType) -> tuple[Doubt, ...]:
-    """What the compiler warned of as it made the code of a file."""
+    """Return the compiler's warnings for the code of a file."""
     return _doubts.get(code, ())
 
 
 def own_files() -> list[str]:
-    """The source files of nodes that were read so far, in that order."""
+    """Return the source files of nodes that were read so far, in that order."""
     return list(dict.fromkeys(str(key[0]) for key in _compiled if len(key) > 1))
 
 
 @functools.lru_cache(maxsize=SOURCES)
 def code_of_source(source: bytes, name: str, kinds: Kinds | None = None) -> CodeType:
-    """The code of a text, which the same text has again.
+    """Return the code of a text, cached by text.
 
     Args:
-        source: the text of a module.
-        name: what the code believes to be its file.
-        kinds: where it calls hooks; None for nowhere.
+        source: text of a module.
+        name: file name that the code sees.
+        kinds: which hooks it calls; None for none.
 
     Raises:
-        SyntaxError: it cannot be compiled.
+        SyntaxError: if it cannot be compiled.
     """
     return _compile(source, name, False, kinds)
 
@@ -105,10 +105,10 @@ def _compile(source: bytes, path: str, ordered: bool, kinds: Kinds | None) -> Co
 
 
 def code_of_library(spec: importlib.machinery.ModuleSpec) -> CodeType:
-    """The code of a module of the standard library or of an installed package.
+    """Return the code of a module of the standard library or of an installed package.
 
     Raises:
-        ImportError: the module has no Python code.
+        ImportError: if the module has no Python code.
     """
     key = (spec.origin,)
     code = _compiled.get(key)
@@ -116,7 +116,7 @@ def code_of_library(spec: importlib.machinery.ModuleSpec) -> CodeType:
         loader = spec.loader
         if not isinstance(loader, importlib.machinery.SourceFileLoader):
             raise ImportError(f"{spec.name} is not a Python source file, so it cannot be loaded into a node")
-        in_cache = not sys.flags.optimize  # otherwise the code there has no asserts
+        in_cache = not sys.flags.optimize  # otherwise the cached code has no asserts
         code = loader.get_code(spec.name) if in_cache else compiled(loader.get_data(loader.path), loader.path)
         if code is None:
             raise ImportError(f"{spec.name} has no code")

@@ -1,4 +1,4 @@
-"""Tracebacks as the author of a node expects them: the lines of the node and its libraries, none of the simulator."""
+"""Tracebacks of nodes: lines of the node and its libraries, without lines of the simulator."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from traceback import TracebackException
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-_MESSAGES = os.path.join(os.path.dirname(_PACKAGE), "rospy_shim", "types", "msgs", "")  # at work while a node imports
+# active while a node loads messages
+_MESSAGES = os.path.join(os.path.dirname(_PACKAGE), "rospy_shim", "types", "msgs", "")
 _CFEPY = os.path.join(_PACKAGE, "")
 _ROSPY = tuple(
     os.path.join(os.path.dirname(_PACKAGE), "rospy_shim", each) for each in ("runtime.py", "client", "graph")
@@ -26,12 +27,12 @@ _HIDDEN = (
 
 
 def is_hidden(file: str) -> bool:
-    """Whether a source file belongs to the machinery below a node."""
+    """Return whether a source file belongs to the simulator."""
     return source_file(file).startswith(_HIDDEN)
 
 
 def traceback_text(error: BaseException) -> str:
-    """The traceback of an error as Python prints it, without the simulator's frames."""
+    """Return the traceback of an error as Python prints it, without the simulator's frames."""
     return "".join(traceback_parts(error))
 
 
@@ -45,7 +46,7 @@ def traceback_parts(error: BaseException) -> list[str]:
 
 
 def strip(report: TracebackException, hidden: Callable[[str], bool]) -> None:
-    """Take the frames of hidden source files out of a traceback, and out of those of its causes."""
+    """Remove the frames of hidden source files from a traceback and those of its causes."""
     waiting, seen = [report], {id(report)}
     while waiting:
         each = waiting.pop()
@@ -74,10 +75,10 @@ def _without_hidden(walker: Callable[[Any], Iterable[Any]]) -> Callable[[Any], I
 
 
 def _own_stack(walker: Callable[[Any], Iterable[Any]]) -> Callable[[Any], Iterator[Any]]:
-    """`walk_stack` up to the node's outermost frame: what lies below is another on threads than on greenlets."""
+    """`walk_stack` up to the node's outermost frame; the frames below it differ between threads and greenlets."""
 
     def walk_stack(start: Any) -> Iterator[Any]:
-        if start is None:  # the caller of who goes through the frames for it, as the original has it
+        if start is None:  # the caller of the function that walks the frames, as in the original
             start = sys._getframe().f_back.f_back.f_back.f_back  # type: ignore[union-attr]
         steps = [step for step in walker(start) if not step[0].f_code.co_filename.startswith(_CFEPY)]
         while steps and steps[-1][0].f_code.co_filename.startswith(_ROSPY):

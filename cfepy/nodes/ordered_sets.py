@@ -1,8 +1,8 @@
-"""Sets that iterate in insertion order, and the transformation that makes a program's set displays build them.
+"""Sets that iterate in insertion order, and the transformation that makes a program's set displays use them.
 
-The order of a plain set shows the hash seed of the process and the addresses of objects; a program that iterates one
-then behaves differently from run to run. With ordered sets switched on for a node, `set(...)`, `{a, b}` and
-`{x for ...}` in its code make the class below. `frozenset`, and sets that C code makes (`d.keys() & e`), stay plain.
+The order of a plain set depends on the hash seed of the process and on addresses, so a program that iterates one may
+behave differently from run to run. With ordered sets switched on for a node, `set(...)`, `{a, b}` and `{x for ...}` in
+its code create the class below. `frozenset`, and sets made by C code (`d.keys() & e`), stay plain.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class _AnySet(type):
 
 
 class OrderedSet(set[Any], metaclass=_AnySet):
-    """A set in insertion order. The plain set below it is kept in step, for readers written in C."""
+    """A set in insertion order. The plain set in its base class is kept in step, for readers written in C."""
 
     __slots__ = ("_order",)
 
@@ -153,7 +153,7 @@ def _is_set(value: object) -> bool:
 
 
 class _SetLiterals(ast.NodeTransformer):
-    """`{a, b}` and `{x for ...}` become calls; the right side of `in` stays, as its order cannot be seen."""
+    """Turns `{a, b}` and `{x for ...}` into calls; the right side of `in` stays, because its order is not visible."""
 
     def visit_Compare(self, node: ast.Compare) -> ast.AST:
         node.left = self.visit(node.left)
@@ -187,6 +187,6 @@ def compile_ordered(source: bytes | str, file: str) -> CodeType:
 
 
 def with_ordered_sets(tree: ast.Module) -> ast.Module:
-    """A module whose set displays make ordered sets."""
+    """Return a module whose set displays make ordered sets."""
     made: ast.Module = _SetLiterals().visit(tree)
     return made

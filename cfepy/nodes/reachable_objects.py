@@ -1,8 +1,8 @@
-"""What the code of a task can still get hold of: whether any way leads from there to an object.
+"""Which objects the code of a task can still reach.
 
-It is for telling whether somebody is left who could release a lock. The answer errs on the side of yes: all that an
-object holds counts as reached, and all that a function names, whether or not it will be executed. Of a function that
-has begun, what lies behind it does not count, as far as its bytecode shows that it cannot go back there.
+Used to decide whether any task is left that could release a lock. When in doubt the answer is yes: everything that an
+object holds counts as reached, and everything that a function names, whether or not it will be executed. In a function
+that has started, code before the current place does not count if its bytecode cannot jump back there.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from weakref import ReferenceType
 _ANYTHING = frozenset(
     ["__dict__", "__import__", "eval", "exec", "get_objects", "globals", "import_module", "locals", "modules", "vars"]
 )
-"""What names one of these may get hold of all that its module knows."""
+"""Names through which code can reach everything in its module."""
 _OPAQUE = frozenset([*sys.stdlib_module_names, "cfepy", "numpy", "ros_libraries", "rospy_shim"])
 _WITH = ("BEFORE_WITH", "BEFORE_ASYNC_WITH", "LOAD_SPECIAL")
 _JUMPS = frozenset((*dis.hasjrel, *dis.hasjabs))
@@ -40,14 +40,14 @@ _PLAIN = frozenset([str, bytes, bytearray, bool, int, float, complex, type(None)
 
 
 def reaches(roots: Iterable[object], subject: object, closed: Iterable[object] = ()) -> bool:
-    """Whether a way leads from one of the roots to the subject.
+    """Return whether a path of references leads from one of the roots to the subject.
 
     Args:
-        roots: where ways begin.
-        subject: where they may lead.
-        closed: what no way leads through.
+        roots: where paths start.
+        subject: the object to reach.
+        closed: objects that no path may pass.
     """
-    seen = {id(each): each for each in closed}  # the values keep what is made here, so that no number comes twice
+    seen = {id(each): each for each in closed}  # the values keep temporary objects alive, so that ids are not reused
     ahead = deque(roots)
     while ahead:
         here = ahead.popleft()
@@ -61,9 +61,9 @@ def reaches(roots: Iterable[object], subject: object, closed: Iterable[object] =
 
 
 def held_by(frame: FrameType | None) -> Iterator[object]:
-    """What a task that stands in a frame, the innermost, and goes on from there has in its hands.
+    """Yield the objects held by a task with this innermost frame.
 
-    The frames of the simulator itself do not count: they only lead back to the program from where it is.
+    Frames of the simulator do not count: they only lead back to the program at its current place.
     """
     while frame is not None:
         if not frame.f_globals.get("__name__", "").startswith("cfepy."):
@@ -72,13 +72,13 @@ def held_by(frame: FrameType | None) -> Iterator[object]:
 
 
 def is_private(subject: object, code: CodeType, functions: Iterable[object], closed: Iterable[object]) -> bool:
-    """Whether no other code than this knows of an object: none of these functions and classes reaches it."""
+    """Return whether only this code can reach an object: none of the other functions and classes does."""
     others = (each for each in functions if getattr(each, "__code__", None) is not code)
     return not reaches(others, subject, closed)
 
 
 def _next(here: object) -> Iterator[object]:
-    """What an object leads to; its type decides, since an object may pretend to be of another."""
+    """Yield the objects that an object refers to, by its real type, since `__class__` can be overridden."""
     kind = type(here)
     if issubclass(kind, FunctionType):
         yield from _from_function(here)  # type: ignore[arg-type]  # as mypy sees no more than the object's type
@@ -109,7 +109,7 @@ def _from_function(function: FunctionType) -> Iterator[object]:
 
 
 def _is_opaque(module: object) -> bool:
-    """Whether the variables of a module lead to nothing of a program's own, as far as its code uses them."""
+    """Return whether a module's variables are ignored because they do not lead to objects of the program."""
     return isinstance(module, str) and module.partition(".")[0] in _OPAQUE
 
 
@@ -136,20 +136,21 @@ def _all_names(code: CodeType) -> frozenset[str]:
 
 @lru_cache(1000)
 def _names_ahead(code: CodeType, place: int) -> frozenset[str]:
-    """The names that are used from a place on, with those of the statement there.
+    """Return the names used from a place on, including those of the statement there.
 
     Args:
-        code: what is executed.
-        place: offset of the instruction that is.
+        code: the executed code.
+        place: offset of the current instruction.
     """
     instructions = list(dis.get_instructions(code))
     lines = {each.offset: _line(each) for each in instructions}
-    here = lines[max(offset for offset in lines if offset <= max(place, 0))]  # within a call it is behind its start
+    # during a call the offset is after the start of the instruction
+    here = lines[max(offset for offset in lines if offset <= max(place, 0))]
     start = min(offset for offset, line in lines.items() if line == here)
     while (earlier := _back_from(instructions, start)) < start:
         start = earlier
     if any(each.opname in _WITH for each in instructions if each.offset < start):
-        return _all_names(code)  # what leaves the block is not named again
+        return _all_names(code)  # the exit of the block is not named again
     names: set[str] = set()
     for each in instructions:
         if each.offset >= start:
@@ -158,12 +159,12 @@ def _names_ahead(code: CodeType, place: int) -> frozenset[str]:
 
 
 def _back_from(instructions: list[dis.Instruction], start: int) -> int:
-    """How far what is executed from a place on goes back: to the start of the loops that it is in."""
+    """Return how far execution from a place on can go back: to the start of the enclosing loops."""
     ahead = [each for each in instructions if each.offset >= start]
     first: int = min([start, *(each.argval for each in ahead if each.opcode in _JUMPS)])
     if not any(each.opname == "FOR_ITER" for each in ahead):
         return first
-    # What a loop iterates over lies on the stack, and is named where the loop begins.
+    # The iterator of a loop is on the stack; it is named where the loop starts.
     begins = [each for each in instructions if each.opname == "GET_ITER" and each.offset < start]
     loop = [each.offset for each in instructions if begins and _line(each) == _line(begins[-1])]
     return min([first, *loop])

@@ -1,7 +1,7 @@
-"""What a node on the simulated computer cannot use: processes, and sockets in virtual time; refused by name.
+"""Modules that a node on the simulated computer cannot use: processes, and sockets in virtual time.
 
-The modules can be imported, because many programs import them without need; the first use says what to do instead.
-A flight computer under an RTOS has no processes either.
+The modules can be loaded, because many programs load them without need; the error at first use gives an alternative. A
+flight computer with an RTOS has no processes either.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ _MULTIPROCESSING_ERRORS = ("AuthenticationError", "BufferTooShort", "ProcessErro
 
 
 class RefusedError(OSError):
-    """A node asked for something that the simulated computer does not have; the text says what to do instead.
+    """Error for something that the simulated computer does not have; the text gives an alternative.
 
     Args:
         what: the function or class.
-        advice: what to do instead.
+        advice: the alternative.
         node: the caller.
     """
 
@@ -45,7 +45,7 @@ class RefusedError(OSError):
 
 
 def _caller() -> str:
-    """File and line of the node's code that is being executed, libraries aside."""
+    """Return file and line of the node's code that is being executed, ignoring libraries."""
     frame: FrameType | None = sys._getframe(1)
     innermost = ""
     while frame is not None:
@@ -59,7 +59,7 @@ def _caller() -> str:
 
 
 def refusal(universe: Universe, what: str, advice: str) -> Callable[..., NoReturn]:
-    """A callable that refuses whatever it is called with."""
+    """Return a callable that refuses whatever it is called with."""
 
     def refuse(*args: object, **options: object) -> NoReturn:
         raise RefusedError(what, advice, universe.name)
@@ -68,12 +68,12 @@ def refusal(universe: Universe, what: str, advice: str) -> Callable[..., NoRetur
 
 
 def refused_class(universe: Universe, module: str, name: str, advice: str) -> type:
-    """A class that can be named, derived from and tested against, but has no instances."""
+    """Return a class that can be named, derived from and tested against, but has no instances."""
     return type(name, (), {"__init__": refusal(universe, f"{module}.{name}", advice), "__module__": module})
 
 
 def refused_import(name: str, advice: str) -> Callable[[Universe], ModuleType]:
-    """The factory of a module that cannot even be imported; libraries that try it cope with ImportError."""
+    """Return the factory of a module that cannot be loaded at all; libraries that try it handle the ImportError."""
 
     def factory(universe: Universe) -> ModuleType:
         raise ModuleNotFoundError(f"{name} is not available on the simulated computer; {advice}", name=name)
@@ -82,7 +82,7 @@ def refused_import(name: str, advice: str) -> Callable[[Universe], ModuleType]:
 
 
 def subprocess_module(universe: Universe) -> ModuleType:
-    """`subprocess`: its constants and errors; nothing can be started."""
+    """`subprocess`: its constants and errors; it cannot start anything."""
     import subprocess
 
     functions = ("run", "call", "check_call", "check_output", "getoutput", "getstatusoutput")
@@ -94,7 +94,7 @@ def subprocess_module(universe: Universe) -> ModuleType:
 
 
 def multiprocessing_module(universe: Universe) -> ModuleType:
-    """`multiprocessing`: every name can be imported; a processor has one core and no processes."""
+    """`multiprocessing`: every name can be loaded, but a processor has one core and no processes."""
     import multiprocessing
 
     def lookup(name: str) -> object:
@@ -115,14 +115,16 @@ def multiprocessing_submodule(universe: Universe) -> ModuleType:
 
 
 def pool_module(universe: Universe) -> ModuleType:
-    """`multiprocessing.pool`: threads can be had."""
+    """`multiprocessing.pool`, with threads."""
     return universe.importer.load_file(
         "multiprocessing.pool", os.path.join(os.path.dirname(__file__), "stdlib", "thread_pool.py")
     )
 
 
 def dummy_module(name: str) -> Callable[[Universe], ModuleType]:
-    """The factory of `multiprocessing.dummy`, threads under the names of processes, or of its part `connection`."""
+    """Return the factory of `multiprocessing.dummy`, threads under the names of processes, or of its part
+    `connection`.
+    """
 
     def factory(universe: Universe) -> ModuleType:
         folder = os.path.join(_LIBRARIES, "multiprocessing", "dummy")

@@ -1,9 +1,4 @@
-"""`Universe`: what a Python program finds in its process: modules, threads, environment, streams, signals, entropy.
-
-A Universe belongs to one node of one simulated computer. The modules that it makes (`cfepy.nodes.stdlib`) call back
-into it; two universes share no mutable state. It stands for the process that `rosrun` starts, from `__main__` to
-its exit status.
-"""
+"""`Universe`: the process environment of a Python program: modules, threads, environment, streams, signals, entropy."""
 
 from __future__ import annotations
 
@@ -45,47 +40,16 @@ __all__ = ["Factory", "StartThread", "Universe"]
 
 StartThread = Callable[[str, Callable[[], object], int], Task]
 
-# A signal waits for the main task to wait, at most a virtual millisecond: better there than in the middle of a call.
+# A signal is delivered while the main task waits, at most one virtual millisecond later, not in the middle of a call.
 _LOOKS = 100
 _LOOK_NS = 10_000
 _TERMINAL = "/dev/tty"
 _KEPT_ENVIRONMENT = ("HOME", "PATH")
-EXIT_BITS = 0xFF  # what of a program's exit status its parent gets to see
+EXIT_BITS = 0xFF  # bits of a program's exit status that its parent sees
 
 
 class Universe:
-    """The world of one unmodified program.
-
-    Args:
-        kernel: the simulated computer's kernel.
-        name: the node's name: in output, task names, and (with `seed`) where its random numbers come from.
-        script: path of the program.
-        argv: its arguments, without the program itself.
-        env: its environment; None gives it the host's HOME and PATH and nothing else.
-        cwd: its working directory; None is the host's.
-        search_paths: folders for its imports, after the script's own.
-        library_paths: folders of libraries, after all folders of the node's.
-        fallback_paths: folders of stand-ins for what may not be installed, after everything else.
-        seed: of the run.
-        epoch_ns: the time of day in ns since 1970 (UTC) when the kernel's clock is 0.
-        call_cost_ns: virtual CPU time of a call that polls (clock, lock, event); with 0 a polling loop never ends.
-        stdout: takes each line that the program prints, with the node's name before it; None keeps the lines in
-            `output`.
-        provision: what it has in place of the host's modules; None is what a node has.
-        modules: factories of further modules by name, such as rospy; a name with dots needs its package to be there.
-        find_module: asked for a factory of any name that `modules` does not have; None is "not mine".
-        priority: of its tasks, 0 to 255.
-        ordered_sets: sets in the node's code iterate in insertion order.
-        keys: what is typed at its terminal (`cfepy.nodes.stdlib.terminal`); None leaves it without one, and
-            its input at the end.
-        network: what its sockets are plugged into; None refuses them.
-        root: folder that stands for the computer's root: what is there is taken from there, and the program believes
-            that it is where it was ("" for none).
-        overlay: the files of its run, in which that root counts already; None lets it read and write the computer's.
-        accesses: what its code tells of what it touches; None for nothing.
-        on_thread_start: `(task name, entry, priority) -> Task`, starts the task of a thread, so that the owner of the
-            node also owns its threads; None uses `Kernel.spawn`.
-    """
+    """Environment of one unmodified program."""
 
     def __init__(
         self,
@@ -127,13 +91,13 @@ class Universe:
         self.priority = priority
         self.cwd = self.shown(os.path.abspath(cwd if cwd is not None else os.getcwd()))
         self.rng = random.Random(f"{seed}/{name}")
-        self.serial = 0  # of locks and threads, which hash by it
-        # The current task made a call that polls: it takes virtual CPU time, and others get their turn.
+        self.serial = 0  # serial number of locks and threads, by which they hash
+        # The current task polled: it uses virtual CPU time, and others get their turn.
         self.charge: Callable[[], object] = partial(kernel.charge, call_cost_ns) if call_cost_ns else _free
         self.ordered_sets = ordered_sets
         self.main_task: Task | None = None
         self.exit_status: int | None = None
-        self.error: BaseException | None = None  # what ended the script
+        self.error: BaseException | None = None  # error that ended the script
         self.thread_errors: list[BaseException] = []
         self.thread_count = 0
         self.exit_hooks: list[tuple[Callable[..., Any], tuple[Any, ...], dict[str, Any]]] = []
@@ -176,20 +140,11 @@ class Universe:
         self.importer.load("sys")
 
     def run_script(self) -> int:
-        """Execute the script as `__main__` in the current task, until its last non-daemon thread has ended.
-
-        It runs once.
-
-        Returns:
-            The exit status: 0, what `sys.exit` was given, or 1 after an uncaught error, which is in `error`.
-
-        Raises:
-            TaskExit: the task was ended from outside; the node's threads are ended too, its exit hooks do not run.
-        """
+        """Execute the script as `__main__` in the current task, until its last non-daemon thread has ended."""
         return _run_script(self)
 
     def adopts(self, variables: dict[str, Any]) -> None:
-        """The variables of the script's module are the mission's."""
+        """Register the variables of the script's module as mission variables."""
         if self._adopt is not None:
             self._adopt(variables)
 
@@ -198,7 +153,7 @@ class Universe:
         return self.kernel.spawn(self.name, self.run_script, self.priority)
 
     def _make_terminal(self, keys: Sequence[Key]) -> Terminal:
-        from cfepy.nodes.stdlib.terminal import Terminal  # not on every system, and rarely needed
+        from cfepy.nodes.stdlib.terminal import Terminal  # not available on every system, and rarely needed
 
         return Terminal(self, keys, self.deliver_signal)
 
@@ -220,7 +175,7 @@ class Universe:
         return self._finished_cpu_ns + sum(task.cpu_ns for task in self._tasks)
 
     def start_thread(self, entry: Callable[[], object]) -> Task:
-        """Start a thread of the node: a task at its starter's priority, that its owner can end."""
+        """Start a thread of the node: a task at its creator's priority that its owner can end."""
         self.thread_count += 1
         name = f"{self.name}.{self.thread_count}"
         current = self.kernel.current
@@ -238,15 +193,15 @@ class Universe:
         start = self._start if self._start is not None else self.kernel.spawn
         task = start(name, body, priority)
         if not task.done:
-            self._tasks[task] = None  # one that is ended before it ever ran does not adopt itself
+            self._tasks[task] = None  # a task that is ended before its first run does not register itself
         return task
 
     def adopt_current(self) -> None:
-        """The current task belongs to the node from now on."""
+        """Add the current task to the node."""
         self._tasks[self.kernel.current] = None
 
     def release_current(self) -> None:
-        """The current task is about to end: forget what it kept, and let those go on that join it."""
+        """Clean up for the current task, which is about to end: drop its data and release those that join it."""
         task = self.kernel.current
         for forget in self._thread_ends.pop(task.ident, ()):
             forget()
@@ -254,11 +209,11 @@ class Universe:
         self._tasks.pop(task, None)
 
     def at_thread_end(self, ident: int, action: Callable[[], None]) -> None:
-        """Have something done when the thread `ident` ends."""
+        """Run an action when the thread `ident` ends."""
         self._thread_ends.setdefault(ident, []).append(action)
 
     def end_threads(self) -> None:
-        """End all tasks of the node but the current one, which may itself be ended because of this: do it once."""
+        """End all tasks of the node except the current one, which this may end too, so it is done only once."""
         if self._ending:
             return
         self._ending = True
@@ -275,7 +230,9 @@ class Universe:
         raise TaskExit
 
     def run_exit_hooks(self) -> None:
-        """Run what was registered with `atexit`, last one first; an error in one is shown, and the rest still run."""
+        """Run the functions registered with `atexit`, last one first; an error in one is shown, and the rest
+        still run.
+        """
         while self.exit_hooks:
             function, args, options = self.exit_hooks.pop()
             try:
@@ -286,10 +243,7 @@ class Universe:
                 self.print_error(f"Exception ignored in atexit callback {function!r}:\n{traceback_text(error)}")
 
     def deliver_signal(self, number: int) -> None:
-        """Let the node's handler of a signal run in the current task, which must be one of the node's.
-
-        What it raises, the KeyboardInterrupt of SIGINT among it, comes out of the call that the main task waits in.
-        """
+        """Run the node's handler of a signal in the current task, which must belong to the node."""
         try:
             self.signals.deliver(number)
         except (Exception, NodeInterrupt, SystemExit) as error:
@@ -303,22 +257,14 @@ class Universe:
             self.kernel.interrupt(main, error)
 
     def absolute(self, path: Any) -> str:
-        """A path from the root on: relative ones start at the node's working directory.
-
-        Raises:
-            OSError: ENXIO, it is the host's terminal.
-        """
+        """Return an absolute path; relative paths start at the node's working directory."""
         plain = os.fsdecode(path)
         if plain == _TERMINAL:
             raise OSError(errno.ENXIO, os.strerror(errno.ENXIO), _TERMINAL)
         return plain if os.path.isabs(plain) else os.path.join(self.cwd, plain)
 
     def resolve(self, path: Any) -> Any:
-        """Where the host finds what the program has at a path, for reading.
-
-        Raises:
-            OSError: ENXIO, it is the host's terminal.
-        """
+        """Return the host path of a program's path, for reading."""
         if isinstance(path, int):
             return path
         whole = self.absolute(path)
@@ -329,7 +275,7 @@ class Universe:
         return os.fsencode(whole) if isinstance(path, bytes) else whole
 
     def places(self, folder: str) -> list[str]:
-        """Where the host finds what the program has in a folder: the run's own files come first."""
+        """Return the host paths of a program's folder, the run's own files first."""
         if self.overlay is None:
             return [self.resolve(folder)]
         try:
@@ -337,25 +283,23 @@ class Universe:
         except OSError:  # such as a path into an archive
             return [self.absolute(folder)]
         for place in found[:-1]:
-            sys.path_importer_cache.pop(place, None)  # which goes by the real time of the folder
+            sys.path_importer_cache.pop(place, None)  # the cache uses the real time of the folder
         return found
 
     def claimed(self, path: str) -> str:
-        """Where the host finds what the program has at a path, for changes of it.
-
-        Raises:
-            OSError: it cannot be changed.
-        """
+        """Return the host path of a program's path, for changes."""
         if self.overlay is None:
             return str(self.resolve(path))
         return self.overlay.claim(self.overlay.real(self.absolute(path)))
 
     def shown(self, path: str) -> str:
-        """A path of the host as the program sees it."""
+        """Return a path of the host as the program sees it."""
         return (path if self.overlay is None else self.overlay.shown(path)).removeprefix(self._root)
 
     def _below_root(self, path: Any) -> str:
-        """Where a path leads: below the root, if it or its folder is there; else it is the host's own."""
+        """Return the host path of a path: below the root, if it or its folder exists there, otherwise the
+        host's own.
+        """
         plain = os.fsdecode(path)
         inside = self._root + self.shown(plain)
         is_new = not os.path.lexists(plain) and os.path.isdir(os.path.dirname(inside))
@@ -372,13 +316,13 @@ class Universe:
                 raise
         else:
             target = os.path.normpath(self.resolve(path))
-            os.listdir(target)  # raises what os.chdir would
+            os.listdir(target)  # raises the errors of os.chdir
         self.cwd = self.shown(target)
 
     # -- output ------------------------------------------------------------------------------------------------------
 
     def print_error(self, text: str) -> None:
-        """Write to what the node has as `sys.stderr` now."""
+        """Write to the node's current `sys.stderr`."""
         stream = getattr(self.importer.modules["sys"], "stderr", None) or self.stderr
         stream.write(text)
         stream.flush()
@@ -388,46 +332,35 @@ class Universe:
 
 
 def process_number(name: str) -> int:
-    """The number that the process of a node has, unless another has it already.
-
-    Args:
-        name: of the node.
-    """
+    """Return the process number of a node, unless it is already taken."""
     return 1000 + zlib.crc32(name.encode()) % 30000
 
 
 class ProcessNumbers:
-    """The numbers of processes that are taken: each node of a mission has one of its own, also the port in its URIs.
-
-    Args:
-        taken: ports that are no node's.
+    """Return the process numbers that are taken: each node of a mission has its own, which is also the port in its
+    URIs.
     """
 
     def __init__(self, taken: Collection[int] = ()) -> None:
         self._taken = set(taken)
 
     def take(self, wanted: int) -> int:
-        """The next number from one on that no other node has.
-
-        Args:
-            wanted: see `process_number`.
-        """
+        """Return the next number that is not taken."""
         while wanted in self._taken:
             wanted += 1
         self._taken.add(wanted)
         return wanted
 
     def give(self, number: int) -> None:
-        """A node has ended: another may have its number."""
+        """Release the number of a node that has ended."""
         self._taken.remove(number)
 
 
 def _free() -> None:
-    """A call that takes no virtual time."""
+    """Do nothing, for calls without cost in virtual time."""
 
 
 def _run_script(universe: Universe) -> int:
-    """See `Universe.run_script`."""
     universe.main_task = universe.kernel.current
     universe.adopt_current()
     if universe.terminal is not None:
@@ -463,7 +396,7 @@ def _execute(universe: Universe) -> int:
     try:
         code = universe.importer.own_code(universe.resolve(universe.script), universe.script, is_main=True)
         universe.adopts(vars(module))
-        for doubt in doubts_of(code):  # of the program alone: modules come from Python's byte code cache
+        for doubt in doubts_of(code):  # only for the program itself: modules come from Python's byte code cache
             universe.importer.load("warnings").warn_explicit(doubt.text, doubt.category, universe.script, doubt.line)
         exec(code, vars(module))
     except BaseException as error:
@@ -472,7 +405,7 @@ def _execute(universe: Universe) -> int:
 
 
 def _status_of(universe: Universe, error: BaseException) -> int:
-    """The exit status that an error ends the program with; it is shown as Python does."""
+    """Return the exit status for an error that ends the program; it is shown as in Python."""
     if isinstance(error, SystemExit):
         return _exit_code(universe, error.code)
     if not isinstance(error, (Exception, NodeInterrupt)):
@@ -501,7 +434,7 @@ def _show(universe: Universe, error: BaseException) -> None:
 
 
 def _shut_down(universe: Universe) -> int:
-    """What the interpreter does at its end: join threads, run exit hooks."""
+    """Join threads and run exit hooks, as the interpreter does at its end."""
     threading = universe.importer.modules.get("threading")
     status = 0
     if threading is not None:

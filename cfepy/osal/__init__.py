@@ -1,8 +1,8 @@
 """The operating system abstraction layer (OSAL) on the simulated kernel, and the OS_* constants that its callers use.
 
-What belongs here is NASA's OSAL interface, a module for each of its headers, and what it stands on: the virtual file
-system (`filesystem`, `volumes`) and the virtual network (`network`). What only cFE knows, such as applications and
-tables, does not. All packages above use it through `Osal`. The central file is `cfepy/osal/osal.py`.
+NASA's OSAL interface belongs here, with a module for each of its headers, and the parts under it: the virtual file
+system (`filesystem`, `volumes`) and the virtual network (`network`). Concepts of cFE, such as applications and tables,
+do not belong here. All packages above use it through `Osal`. The central file is `cfepy/osal/osal.py`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """OSAL's clock and its time arithmetic (osapi-clock.h).
 
-OS_time_t is a plain integer here, `OsTime`, of ticks of 100 ns. The monotonic clock is the kernel's virtual clock; the
-local clock is that plus an offset that `set_local_time` changes. Divisions round towards zero, as C's do.
+OS_time_t is a plain integer here, `OsTime`, in ticks of 100 ns. The monotonic clock is the kernel's virtual clock. The
+local clock adds an offset that `set_local_time` changes. Divisions round towards zero, as in C.
 """
 
 from __future__ import annotations
@@ -31,113 +31,113 @@ def _quotient(number: int, divisor: int) -> int:
 
 
 def time_get_total_seconds(time: OsTime) -> int:
-    """Whole seconds (OS_TimeGetTotalSeconds)."""
+    """Return whole seconds (OS_TimeGetTotalSeconds)."""
     return _quotient(time, OS_TIME_TICKS_PER_SECOND)
 
 
 def time_from_total_seconds(seconds: int) -> OsTime:
-    """A time from seconds (OS_TimeFromTotalSeconds)."""
+    """Return a time from seconds (OS_TimeFromTotalSeconds)."""
     return OsTime(seconds * OS_TIME_TICKS_PER_SECOND)
 
 
 def time_get_total_milliseconds(time: OsTime) -> int:
-    """Whole milliseconds (OS_TimeGetTotalMilliseconds)."""
+    """Return whole milliseconds (OS_TimeGetTotalMilliseconds)."""
     return _quotient(time, OS_TIME_TICKS_PER_MSEC)
 
 
 def time_from_total_milliseconds(milliseconds: int) -> OsTime:
-    """A time from milliseconds (OS_TimeFromTotalMilliseconds)."""
+    """Return a time from milliseconds (OS_TimeFromTotalMilliseconds)."""
     return OsTime(milliseconds * OS_TIME_TICKS_PER_MSEC)
 
 
 def time_get_total_microseconds(time: OsTime) -> int:
-    """Whole microseconds (OS_TimeGetTotalMicroseconds)."""
+    """Return whole microseconds (OS_TimeGetTotalMicroseconds)."""
     return _quotient(time, OS_TIME_TICKS_PER_USEC)
 
 
 def time_from_total_microseconds(microseconds: int) -> OsTime:
-    """A time from microseconds (OS_TimeFromTotalMicroseconds)."""
+    """Return a time from microseconds (OS_TimeFromTotalMicroseconds)."""
     return OsTime(microseconds * OS_TIME_TICKS_PER_USEC)
 
 
 def time_get_total_nanoseconds(time: OsTime) -> int:
-    """Nanoseconds (OS_TimeGetTotalNanoseconds)."""
+    """Return nanoseconds (OS_TimeGetTotalNanoseconds)."""
     return time * OS_TIME_TICK_RESOLUTION_NS
 
 
 def time_from_total_nanoseconds(nanoseconds: int) -> OsTime:
-    """A time from nanoseconds, less than 100 of them dropped (OS_TimeFromTotalNanoseconds)."""
+    """Return a time from nanoseconds, rounded towards zero to 100 ns (OS_TimeFromTotalNanoseconds)."""
     return OsTime(_quotient(nanoseconds, OS_TIME_TICK_RESOLUTION_NS))
 
 
 def time_get_fractional_part(time: OsTime) -> int:
-    """Ticks beyond the whole seconds, with the sign of the time (OS_TimeGetFractionalPart)."""
+    """Return the ticks beyond the whole seconds, with the sign of the time (OS_TimeGetFractionalPart)."""
     return time - time_get_total_seconds(time) * OS_TIME_TICKS_PER_SECOND
 
 
 def time_get_subseconds_part(time: OsTime) -> int:
-    """The fraction of a second in units of 2**-32 s, rounded up (OS_TimeGetSubsecondsPart)."""
+    """Return the fraction of a second in units of 2**-32 s, rounded up (OS_TimeGetSubsecondsPart)."""
     raised = (time_get_fractional_part(time) << 30) + _QUARTER_SECOND
     return _quotient(raised - 1, _QUARTER_SECOND) & 0xFFFFFFFF
 
 
 def time_get_milliseconds_part(time: OsTime) -> int:
-    """Milliseconds beyond the whole seconds (OS_TimeGetMillisecondsPart)."""
+    """Return the milliseconds beyond the whole seconds (OS_TimeGetMillisecondsPart)."""
     return (time_get_fractional_part(time) & 0xFFFFFFFF) // OS_TIME_TICKS_PER_MSEC
 
 
 def time_get_microseconds_part(time: OsTime) -> int:
-    """Microseconds beyond the whole seconds (OS_TimeGetMicrosecondsPart)."""
+    """Return the microseconds beyond the whole seconds (OS_TimeGetMicrosecondsPart)."""
     return (time_get_fractional_part(time) & 0xFFFFFFFF) // OS_TIME_TICKS_PER_USEC
 
 
 def time_get_nanoseconds_part(time: OsTime) -> int:
-    """Nanoseconds beyond the whole seconds (OS_TimeGetNanosecondsPart)."""
+    """Return the nanoseconds beyond the whole seconds (OS_TimeGetNanosecondsPart)."""
     return (time_get_fractional_part(time) & 0xFFFFFFFF) * OS_TIME_TICK_RESOLUTION_NS & 0xFFFFFFFF
 
 
 def time_assemble_from_nanoseconds(seconds: int, nanoseconds: int) -> OsTime:
-    """A time from seconds and nanoseconds (OS_TimeAssembleFromNanoseconds)."""
+    """Return a time from seconds and nanoseconds (OS_TimeAssembleFromNanoseconds)."""
     return OsTime(seconds * OS_TIME_TICKS_PER_SECOND + nanoseconds // OS_TIME_TICK_RESOLUTION_NS)
 
 
 def time_assemble_from_microseconds(seconds: int, microseconds: int) -> OsTime:
-    """A time from seconds and microseconds, which wrap at 2**32 ticks (OS_TimeAssembleFromMicroseconds)."""
+    """Return a time from seconds and microseconds, which wrap at 2**32 ticks (OS_TimeAssembleFromMicroseconds)."""
     return OsTime(seconds * OS_TIME_TICKS_PER_SECOND + (microseconds * OS_TIME_TICKS_PER_USEC & _U32_MAX))
 
 
 def time_assemble_from_milliseconds(seconds: int, milliseconds: int) -> OsTime:
-    """A time from seconds and milliseconds, which wrap at 2**32 ticks (OS_TimeAssembleFromMilliseconds)."""
+    """Return a time from seconds and milliseconds, which wrap at 2**32 ticks (OS_TimeAssembleFromMilliseconds)."""
     return OsTime(seconds * OS_TIME_TICKS_PER_SECOND + (milliseconds * OS_TIME_TICKS_PER_MSEC & _U32_MAX))
 
 
 def time_assemble_from_subseconds(seconds: int, subseconds: int) -> OsTime:
-    """A time from seconds and units of 2**-32 s, rounded down (OS_TimeAssembleFromSubseconds)."""
+    """Return a time from seconds and units of 2**-32 s, rounded down (OS_TimeAssembleFromSubseconds)."""
     return OsTime(seconds * OS_TIME_TICKS_PER_SECOND + (subseconds * _QUARTER_SECOND >> 30))
 
 
 def time_add(first: OsTime, second: OsTime) -> OsTime:
-    """The sum (OS_TimeAdd)."""
+    """Return the sum (OS_TimeAdd)."""
     return OsTime(first + second)
 
 
 def time_subtract(first: OsTime, second: OsTime) -> OsTime:
-    """The difference (OS_TimeSubtract)."""
+    """Return the difference (OS_TimeSubtract)."""
     return OsTime(first - second)
 
 
 def time_equal(first: OsTime, second: OsTime) -> bool:
-    """Whether both are the same (OS_TimeEqual)."""
+    """Return whether two times are equal (OS_TimeEqual)."""
     return first == second
 
 
 def time_get_sign(time: OsTime) -> int:
-    """-1, 0 or 1 (OS_TimeGetSign)."""
+    """Return -1, 0 or 1 (OS_TimeGetSign)."""
     return (time > 0) - (time < 0)
 
 
 def time_compare(first: OsTime, second: OsTime) -> int:
-    """-1 when the first is earlier, 0 when equal, else 1 (OS_TimeCompare)."""
+    """Return -1 if the first time is earlier, 0 if both are equal, otherwise 1 (OS_TimeCompare)."""
     return time_get_sign(time_subtract(first, second))
 
 
@@ -172,13 +172,13 @@ class ClockApi(Core):
         self._local_offset = setup.epoch_ns // OS_TIME_TICK_RESOLUTION_NS
 
     def get_monotonic_time(self) -> OsTime:
-        """Time since the start of the run; never goes back (OS_GetMonotonicTime)."""
+        """Return the time since the start of the run, which never goes back (OS_GetMonotonicTime)."""
         if self._cost:
             self.kernel.charge(self._cost)
         return OsTime(self.kernel.now // OS_TIME_TICK_RESOLUTION_NS)
 
     def get_local_time(self) -> OsTime:
-        """The local clock (OS_GetLocalTime)."""
+        """Return the local clock (OS_GetLocalTime)."""
         if self._cost:
             self.kernel.charge(self._cost)
         return OsTime(self.kernel.now // OS_TIME_TICK_RESOLUTION_NS + self._local_offset)
@@ -194,7 +194,10 @@ class ClockApi(Core):
         self._local_offset = time - self.kernel.now // OS_TIME_TICK_RESOLUTION_NS
 
     def time_from_relative_milliseconds(self, milliseconds: int) -> OsTime:
-        """The local time so many ms from now; OS_PEND gives OS_TIME_MAX, OS_CHECK gives 0 (OS_TimeFromRelative...)."""
+        """Return the local time a number of ms from now (OS_TimeFromRelative...).
+
+        OS_PEND gives OS_TIME_MAX, and OS_CHECK gives 0.
+        """
         if milliseconds == OS_CHECK:
             return OS_TIME_ZERO
         if milliseconds < 0:
@@ -202,7 +205,9 @@ class ClockApi(Core):
         return time_add(self.get_local_time(), time_from_total_milliseconds(milliseconds))
 
     def time_to_relative_milliseconds(self, time: OsTime) -> int:
-        """Milliseconds left until a local time; OS_CHECK when it is over, OS_PEND when it is too far off to say."""
+        """Return the milliseconds left until a local time: OS_CHECK if it has passed, OS_PEND if the number is too
+        large.
+        """
         if time == OS_TIME_MAX:
             return OS_PEND
         left = time_subtract(time, self.get_local_time()) if time > 0 else time

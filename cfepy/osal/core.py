@@ -1,8 +1,8 @@
-"""What all parts of OSAL share: the records of objects, the tables that name them, and what a call costs.
+"""The common base of all parts of OSAL: the records of objects, the tables with their names, and the cost of calls.
 
-An OSAL object is a record in a table of its kind, under an id and a unique name, with the task that created it
-(osapi-idmap.c, OS_common_record_t). The parts of the interface are classes derived from `Core`, one module each, and
-`cfepy.osal.osal.Osal` is all of them together.
+An OSAL object is a record in a table of its kind. It has an id, a unique name and the task that created it
+(osapi-idmap.c, OS_common_record_t). Each part of the interface is a class derived from `Core` in a module of its own.
+`cfepy.osal.osal.Osal` combines them all.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from cfepy.writing.console import Console
 
 
 class Deleted:
-    """The type of `DELETED`, what a waiter is woken with when the thing it waits for goes away."""
+    """The type of `DELETED`, the value of a wait that ends because its object is deleted."""
 
     def __bool__(self) -> bool:
         return False
@@ -47,24 +47,24 @@ DELETED = Deleted()
 
 
 class Ledger(Protocol):
-    """The account of memory: the board's budget (`cfepy.psp.memory.MemoryBudget`)."""
+    """The memory accounting: the board's budget (`cfepy.psp.memory.MemoryBudget`)."""
 
     def claim(self, owner: str, kind: str, size: int) -> int:
-        """Take `size` bytes for an owner; a token to give them back with."""
+        """Claim `size` bytes for an owner; return a token to release them with."""
 
     def release(self, token: int) -> None:
-        """Give a claim back."""
+        """Release a claim."""
 
     @property
     def free(self) -> int | None:
-        """Bytes left; None where there is no limit."""
+        """Free bytes, or None if there is no limit."""
 
 
 @dataclass(frozen=True, slots=True)
 class ObjectSizes:
-    """Bytes of memory that the operating system of a board keeps for each object; all 0 where memory is not counted."""
+    """Bytes of memory that a board's operating system uses for each object; all 0 if memory is not accounted for."""
 
-    task: int = 0  # the control block; the stack comes on top
+    task: int = 0  # the control block, without the stack
     queue: int = 0
     queue_slot: int = 0  # added to the message size
     semaphore: int = 0
@@ -74,18 +74,18 @@ class ObjectSizes:
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """What an `Osal` is made of.
+    """The parts and settings of an `Osal`.
 
     Args:
         kernel: the simulated real-time kernel.
-        config: limits.
-        console: where OS_printf goes.
+        config: the limits.
+        console: the output of OS_printf.
         files: the virtual file system.
-        network: what sockets are plugged into.
-        memory: accounts for stacks and objects; None does not count.
-        sizes: what an object takes.
+        network: the virtual network of the sockets.
+        memory: the account for stacks and objects; None does not account.
+        sizes: memory used by each object.
         costs: virtual CPU time of a call, and of copying bytes through a queue, a file or a socket.
-        epoch_ns: local time at virtual time 0, in ns since the epoch of the mission's choice.
+        epoch_ns: local time at virtual time 0, in ns since the mission's epoch.
     """
 
     kernel: Kernel
@@ -111,21 +111,23 @@ class OsObject:
     def __init__(self, name: str) -> None:
         self.name = name
         self.id = 0
-        self.creator = 0  # id of the task that made it, 0 for the system
-        self.owner: Any = None  # the application that the creating task worked for
-        self.users: tuple[Any, ...] = ()  # the applications that asked for its id by its name
+        self.creator = 0  # id of the task that created it, 0 for the system
+        self.owner: Any = None  # the application that owned the creating task
+        self.users: tuple[Any, ...] = ()  # the applications that looked up its id by its name
         self.claim = 0
         self.deleted = False
 
     @property
     def resource_name(self) -> str:
-        """What OS_GetResourceName tells."""
+        """The result of OS_GetResourceName."""
         return self.name
 
 
 Record = TypeVar("Record", bound=OsObject)
 EventHandler = Callable[[int, int, Any], int | None]
-"""Told of every object: OS_EVENT_*, the id, None; a status other than 0 refuses a new one (OS_EventHandler_t)."""
+"""Called for every object with OS_EVENT_*, the id and None. A status other than 0 refuses a new object
+(OS_EventHandler_t).
+"""
 
 
 class OsObjectTable(IdTable[Record]):
@@ -134,8 +136,8 @@ class OsObjectTable(IdTable[Record]):
     Args:
         kind: for error texts, e.g. "queue".
         base: one of the OS_*_BASE numbers.
-        capacity: how many at most.
-        name_limit: length at which a name is too long.
+        capacity: maximum number of objects.
+        name_limit: number of bytes at which a name is too long.
     """
 
     __slots__ = ("kind", "lookup", "name_limit", "names")
@@ -148,7 +150,7 @@ class OsObjectTable(IdTable[Record]):
         self.lookup: Callable[[int], Record | None] = self.records.get
 
     def add(self, record: Record) -> int:
-        """Give a record an id.
+        """Add a record and return its id.
 
         Raises:
             OsalError: OS_ERR_NAME_TOO_LONG, OS_ERR_NAME_TAKEN or OS_ERR_NO_FREE_IDS.
@@ -159,25 +161,25 @@ class OsObjectTable(IdTable[Record]):
         return record.id
 
     def refuse(self, name: str, why: str) -> NoReturn:
-        """Raise OS_ERROR for an object that the operating system does not make; its id is used up by then."""
+        """Raise OS_ERROR for an object that the operating system refuses to create; this uses up its id."""
         self.check_free(name)
         self.skip()
         raise OsalError(OS_ERROR, why)
 
     def check_free(self, name: str) -> None:
-        """Raise OS_ERR_NAME_TOO_LONG or OS_ERR_NAME_TAKEN for a name that no new object can have."""
+        """Raise OS_ERR_NAME_TOO_LONG or OS_ERR_NAME_TAKEN for a name that a new object cannot have."""
         self.check_name(name)
         if name in self.names:
             raise OsalError(OS_ERR_NAME_TAKEN, f"there is a {self.kind} called {name!r} already")
 
     def drop(self, record: Record) -> None:
-        """Take a record out; its name is free again."""
+        """Remove a record and free its name."""
         self.delete(record.id)
         self.names.pop(record.name, None)
         record.deleted = True
 
     def named(self, name: str) -> int:
-        """The id of a name.
+        """Return the id of a name.
 
         Raises:
             OsalError: OS_ERR_NAME_NOT_FOUND or OS_ERR_NAME_TOO_LONG.
@@ -189,18 +191,18 @@ class OsObjectTable(IdTable[Record]):
         return found
 
     def check_name(self, name: str) -> None:
-        """Raise OS_ERR_NAME_TOO_LONG for a name that is, by default one of more than 19 bytes."""
+        """Raise OS_ERR_NAME_TOO_LONG for a name that is too long, by default more than 19 bytes."""
         if name_size(name) >= self.name_limit:
             raise OsalError(
                 OS_ERR_NAME_TOO_LONG, f"{self.kind} name {name!r} has more than {self.name_limit - 1} characters"
             )
 
     def missing(self, object_id: int) -> OsalError:
-        """The error for an id that is not in the table."""
+        """Return the error for an id that is not in the table."""
         return OsalError(OS_ERR_INVALID_ID, f"no {self.kind} has the id {object_id:#x}")
 
     def gone(self, record: Record) -> OsalError:
-        """The error for a task whose wait ended because the object was deleted."""
+        """Return the error for a task whose wait ended because the object was deleted."""
         return OsalError(OS_ERR_INVALID_ID, f"{self.kind} {record.name} was deleted by another task")
 
 
@@ -244,7 +246,7 @@ class Core:
         return object_id
 
     def _id_by_name(self, table: OsObjectTable[Record], name: str) -> int:
-        """The id of a name, for an application that may use the object from now on."""
+        """Return the id of a name, and record the caller's application as a user of the object."""
         object_id = table.named(name)
         record, owner = table.records[object_id], self.kernel.current.owner
         if owner not in record.users:
@@ -257,7 +259,7 @@ class Core:
         self._notify(OS_EVENT_RESOURCE_DELETED, record.id)
 
     def _announce(self, table: OsObjectTable[Record], record: Record) -> None:
-        """Tell the event handler of a new object, which it may refuse (OS_ObjectIdAllocateNew)."""
+        """Report a new object to the event handler, which can refuse it (OS_ObjectIdAllocateNew)."""
         status = self._notify(OS_EVENT_RESOURCE_ALLOCATED, record.id)
         if status:
             table.drop(record)
@@ -266,7 +268,7 @@ class Core:
         self._notify(OS_EVENT_RESOURCE_CREATED, record.id)
 
     def _notify(self, event: int, object_id: int) -> int:
-        """The event handler's answer, 0 when there is none (OS_NotifyEvent)."""
+        """Return the event handler's status, or 0 without a handler (OS_NotifyEvent)."""
         return 0 if self._event_handler is None else self._event_handler(event, object_id, None) or 0
 
     def _release(self, record: OsObject) -> None:
@@ -275,13 +277,13 @@ class Core:
             record.claim = 0
 
     def _refuse_in_callback(self, what: str) -> None:
-        """Timers must not be managed from a timer's callback (OS_ERR_INCORRECT_OBJ_STATE)."""
+        """Raise OS_ERR_INCORRECT_OBJ_STATE in a timer's callback, which must not manage timers."""
         if get_base(self._task_ids.get(self.kernel.current, 0)) == OS_TIMEBASE_BASE:
             raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"{what} cannot be called from a timer callback")
 
 
 def check_size(size: int, what: str) -> None:
-    """Raise OS_ERR_INVALID_SIZE for a size of 0 or one that no memory has."""
+    """Raise OS_ERR_INVALID_SIZE for a size of 0 or one that exceeds any memory."""
     if not 0 < size < SIZE_MAX:
         raise OsalError(OS_ERR_INVALID_SIZE, f"{what} of {size} bytes")
 

@@ -1,6 +1,6 @@
-"""OSAL's functions on whole file systems (osapi-filesys.h): making, mounting, measuring disks.
+"""OSAL's functions on whole file systems (osapi-filesys.h): create, mount and measure disks.
 
-/cf, the mission's folder, is a fixed map, and the RAM disk at /ram exists from the start as "/ramdev0", as after
+/cf, the mission's folder, is a fixed map. The RAM disk at /ram exists from the start as "/ramdev0", as after
 CFE_ES_InitializeFileSystems.
 """
 
@@ -35,7 +35,7 @@ UNLIMITED_BLOCKS = 0xFFFFFFFF
 
 
 class VolumeStat(NamedTuple):
-    """What `file_sys_stat_volume` tells (OS_statvfs_t)."""
+    """The result of `file_sys_stat_volume` (OS_statvfs_t)."""
 
     block_size: int
     total_blocks: int
@@ -43,7 +43,7 @@ class VolumeStat(NamedTuple):
 
 
 class FileSystemInfo(NamedTuple):
-    """What `get_fs_info` tells (os_fsinfo_t)."""
+    """The result of `get_fs_info` (os_fsinfo_t)."""
 
     max_fds: int
     free_fds: int
@@ -52,13 +52,13 @@ class FileSystemInfo(NamedTuple):
 
 
 class OsDisk(OsObject):
-    """The record of a file system; its name is that of the device, or the virtual path of a fixed map.
+    """The record of a file system, named after its device, or after the virtual path of a fixed map.
 
     Attributes:
         volume: its files.
-        physical: what OS_FS_GetPhysDriveName says.
-        mount_point: where it shows, "" nowhere.
-        is_known: whether NASA's Linux OSAL would know what kind of disk it is, and mount it.
+        physical: the result of OS_FS_GetPhysDriveName.
+        mount_point: where it is mounted; "" if it is not.
+        is_known: whether NASA's Linux OSAL would recognize the kind of disk and mount it.
     """
 
     __slots__ = ("block_size", "is_known", "mount_point", "physical", "volume")
@@ -83,7 +83,7 @@ class DiskApi(Core):
             "file system", OS_FILESYS_BASE, OS_MAX_FILE_SYSTEMS, OS_MAX_PATH_LEN
         )
         self._folder = Path()
-        """Where relative paths of the host begin: the folder behind /cf."""
+        """The base of relative host paths: the folder behind /cf."""
         for point in setup.files.mount_points():
             volume = setup.files.volume(point)
             if point == "/cf" and volume.host is not None:
@@ -92,14 +92,14 @@ class DiskApi(Core):
             self._disks.add(OsDisk(device, volume, RAM_BLOCK_BYTES, str(volume.host or ""), point))
 
     def mkfs(self, devname: str, volname: str, blocksize: int, numblocks: int, *, in_memory: bool = False) -> None:
-        """Make an empty RAM disk, not mounted yet (OS_mkfs).
+        """Create an empty, unmounted RAM disk (OS_mkfs).
 
         Args:
             devname: the device, e.g. "/ramdev1".
             volname: the volume; only one whose name begins with "RAM" can be mounted.
             blocksize: bytes of a block.
-            numblocks: how many blocks.
-            in_memory: the caller says where in memory it is, so it can be mounted whatever its name is.
+            numblocks: number of blocks.
+            in_memory: the caller provides its memory address, so it can be mounted under any name.
 
         Raises:
             OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_PATH_INVALID (an empty name), OS_ERR_NAME_TAKEN,
@@ -112,18 +112,18 @@ class DiskApi(Core):
         size = blocksize * numblocks
         disk = OsDisk(devname, Volume(capacity=size), blocksize, f"{volname}:{devname}")
         disk.is_known = in_memory or volname.startswith("RAM")
-        try:  # the board's own disk is memory beside the RAM that is counted
+        try:  # the board's own disk does not count as RAM
             self._register(self._disks, disk, "disk", 0 if devname == RAM_DEVICE else size)
         except OsalError as error:
             status = OS_FS_ERR_DEVICE_NOT_FREE if error.status == OS_ERR_NO_FREE_IDS else error.status
             raise OsalError(status, error.text) from error
 
     def initfs(self, devname: str, volname: str, blocksize: int, numblocks: int, *, in_memory: bool = False) -> None:
-        """As `mkfs`: a new RAM disk is always empty (OS_initfs)."""
+        """Initialize a RAM disk like `mkfs`; a new one is always empty (OS_initfs)."""
         self.mkfs(devname, volname, blocksize, numblocks, in_memory=in_memory)
 
     def rmfs(self, devname: str) -> None:
-        """Remove a file system with all that is in it, mounted or not (OS_rmfs).
+        """Remove a file system with all its files, mounted or not (OS_rmfs).
 
         Raises:
             OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND.
@@ -135,11 +135,11 @@ class DiskApi(Core):
         self._unregister(self._disks, disk)
 
     def mount(self, devname: str, mountpoint: str) -> None:
-        """Let a disk appear at a virtual path (OS_mount).
+        """Mount a disk at a virtual path (OS_mount).
 
         Raises:
-            OsalError: OS_FS_ERR_PATH_TOO_LONG; OS_ERR_NAME_NOT_FOUND for all else: there is no such disk, its volume is
-                no RAM disk ("RAM..."), it is mounted already, something else is mounted there, or the path is none.
+            OsalError: OS_FS_ERR_PATH_TOO_LONG; OS_ERR_NAME_NOT_FOUND if the disk does not exist, its volume is not a
+                RAM disk ("RAM..."), it is already mounted, another disk is mounted there, or the path is invalid.
         """
         self._check(devname, OS_FS_DEV_NAME_LEN)
         self._check(mountpoint, OS_MAX_PATH_LEN)
@@ -153,7 +153,7 @@ class DiskApi(Core):
         disk.mount_point = mountpoint
 
     def unmount(self, mountpoint: str) -> None:
-        """Take a disk out of the virtual paths, with its files (OS_unmount).
+        """Unmount a disk, which keeps its files (OS_unmount).
 
         Raises:
             OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND.
@@ -163,11 +163,11 @@ class DiskApi(Core):
         disk.mount_point = ""
 
     def file_sys_add_fixed_map(self, phys_path: str | Path, virt_path: str) -> int:
-        """Show a folder of the host at a virtual path for good (OS_FileSysAddFixedMap); it is only ever read.
+        """Map a folder of the host permanently to a virtual path (OS_FileSysAddFixedMap). The folder is only read.
 
         Args:
-            phys_path: the folder, from that of the mission on; one that does not exist shows as an empty one.
-            virt_path: where, e.g. "/data".
+            phys_path: the folder, relative to the mission's folder; a missing folder appears empty.
+            virt_path: the virtual path, e.g. "/data".
 
         Returns:
             The id of the file system.
@@ -187,7 +187,7 @@ class DiskApi(Core):
         return disk_id
 
     def file_sys_stat_volume(self, name: str) -> VolumeStat:
-        """Size and free space of the volume of a path (OS_FileSysStatVolume).
+        """Return the size and free space of the volume of a path (OS_FileSysStatVolume).
 
         Raises:
             OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND.
@@ -200,11 +200,11 @@ class DiskApi(Core):
         return VolumeStat(disk.block_size, volume.capacity // disk.block_size, free // disk.block_size)
 
     def chkfs(self, name: str, repair: bool = False) -> None:
-        """Check a file system: in memory nothing breaks (OS_chkfs).
+        """Check a file system, which is in memory and never damaged (OS_chkfs).
 
         Args:
             name: a path on it.
-            repair: without effect.
+            repair: has no effect.
 
         Raises:
             OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND.
@@ -212,7 +212,8 @@ class DiskApi(Core):
         self._mounted(name)
 
     def fs_get_phys_drive_name(self, mount_point: str) -> str:
-        """What is mounted at a path: a folder of the host, or a RAM volume (OS_FS_GetPhysDriveName).
+        """Return the name of the volume mounted at a path: a folder of the host, or a RAM volume
+        (OS_FS_GetPhysDriveName).
 
         Raises:
             OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND.
@@ -220,7 +221,7 @@ class DiskApi(Core):
         return self._mounted(mount_point).physical
 
     def get_fs_info(self) -> FileSystemInfo:
-        """How many descriptors and volumes there can be, and are free (OS_GetFsInfo)."""
+        """Return the total and free numbers of descriptors and volumes (OS_GetFsInfo)."""
         open_files = len(self._tables[OS_STREAM_BASE])
         return FileSystemInfo(
             OS_MAX_NUM_OPEN_FILES,
@@ -230,17 +231,17 @@ class DiskApi(Core):
         )
 
     def translate_path(self, virtual_path: str) -> str:
-        """The path behind a virtual one: of the host, or "RAM:device/..." in memory (OS_TranslatePath).
+        """Return the path behind a virtual path: a path of the host, or "RAM:device/..." in memory (OS_TranslatePath).
 
         Raises:
-            OsalError: as `FileSystem.translate`.
+            OsalError: see `FileSystem.translate`.
         """
         place = self._mounts.translate(virtual_path)
         physical = next((disk.physical for disk in self._disks if disk.volume is place.volume), "")
         return f"{physical}/{place.path}" if place.path else physical
 
     def _forget_disks(self) -> None:
-        """Take all file systems away."""
+        """Unmount and remove all file systems."""
         for _, disk in self._disks.items():
             if disk.mount_point:
                 self._mounts.unmount(disk.mount_point)

@@ -1,7 +1,7 @@
 """OSAL's open files and directories (osapi-file.h, osapi-dir.h) on the virtual file system.
 
-Functions by path are in cfepy.osal.paths. A read gives bytes, b"" at the end of the file, and never waits;
-cfepy.osal.streams adds sockets, and with them the timed forms.
+Functions by path are in cfepy.osal.paths. A read returns bytes, or b"" at the end of the file, and never waits.
+cfepy.osal.streams adds sockets and the timed calls.
 """
 
 from __future__ import annotations
@@ -42,14 +42,14 @@ ACCESS_BITS = {
     OS_WRITE_ONLY: OS_FILESTAT_MODE_WRITE,
     OS_READ_WRITE: OS_FILESTAT_MODE_READ | OS_FILESTAT_MODE_WRITE,
 }
-"""What a file's mode must allow to be opened with an access mode, and what `chmod` makes of one."""
+"""The mode bits that a file needs to be opened with an access mode; `chmod` sets the same bits."""
 
 
 _DOTS = (".", "..")
 
 
 class FileInfo(NamedTuple):
-    """What `fd_get_info` tells (OS_file_prop_t)."""
+    """The result of `fd_get_info` (OS_file_prop_t)."""
 
     path: str
     user: int
@@ -57,7 +57,7 @@ class FileInfo(NamedTuple):
 
 
 class OsStream(OsObject):
-    """The record of what a descriptor stands for: an open file, or a socket, which has no path."""
+    """The record behind a descriptor: an open file, or a socket, which has no path."""
 
     __slots__ = ("path",)
 
@@ -103,13 +103,13 @@ class FileApi(Core):
             The descriptor.
 
         Raises:
-            OsalError: OS_ERROR for a bad mode, no such file, or one that may not be used so (`chmod`); OS_FS_ERR_* for
-                the path; OS_ERR_NO_FREE_IDS.
+            OsalError: OS_ERROR for an invalid mode, a missing file, or a file whose mode forbids the access (`chmod`);
+                OS_FS_ERR_* for the path; OS_ERR_NO_FREE_IDS.
         """
         if access_mode not in ACCESS_BITS:
             raise OsalError(OS_ERROR, f"access mode {access_mode} for {path}")
         self.files.translate(path)
-        if len(self._streams) == self._streams.capacity:  # before the file is made or emptied
+        if len(self._streams) == self._streams.capacity:  # before the file is created or truncated
             raise OsalError(OS_ERR_NO_FREE_IDS, f"{path} would be one open file too many")
         node = self.files.open_node(path) if flags & OS_FILE_FLAG_CREATE else self.files.find(path)
         if node is None:
@@ -122,14 +122,14 @@ class FileApi(Core):
         return self._register(self._streams, OsFile(self._next_name(), path, node, access_mode), "file", 0)
 
     def close(self, filedes: int) -> None:
-        """Close a descriptor (OS_close), or OS_ERR_INVALID_ID."""
+        """Close a descriptor (OS_close); raises OS_ERR_INVALID_ID."""
         self._unregister(self._streams, self._stream(filedes))
 
     def read(self, filedes: int, nbytes: int) -> bytes:
-        """Read at most `nbytes` from where the descriptor stands (OS_read).
+        """Read at most `nbytes` at the position of the descriptor (OS_read).
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR when it is not open for reading.
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR if it is not open for reading.
         """
         check_size(nbytes, "read")
         stream = self._file(filedes)
@@ -141,10 +141,10 @@ class FileApi(Core):
         return data
 
     def write(self, filedes: int, data: bytes | bytearray | memoryview) -> int:
-        """Write where the descriptor stands (OS_write); how many bytes that were.
+        """Write at the position of the descriptor (OS_write); return the number of bytes.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR when it is not open for writing or the disk is
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR if it is not open for writing or the disk is
                 full.
         """
         check_size(len(data), "write")
@@ -160,10 +160,10 @@ class FileApi(Core):
         return len(data)
 
     def lseek(self, filedes: int, offset: int, whence: int) -> int:
-        """Move a descriptor (OS_lseek); the new position from the start.
+        """Move the position of a descriptor (OS_lseek); return the new position from the start.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERROR for a bad `whence` or a place before the start.
+            OsalError: OS_ERR_INVALID_ID, OS_ERROR for an invalid `whence` or a position before the start.
         """
         stream = self._file(filedes)
         origins = {OS_SEEK_SET: 0, OS_SEEK_CUR: stream.position, OS_SEEK_END: len(stream.node.data)}
@@ -176,8 +176,8 @@ class FileApi(Core):
         """Make a file at least `offset + length` bytes long (OS_FileAllocate).
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERR_OUTPUT_TOO_LARGE when there is no room, OS_ERROR for a negative offset,
-                a length below 1, or a descriptor that is not open for writing.
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_OUTPUT_TOO_LARGE if there is no room, OS_ERROR for a negative offset, a
+                length below 1, or a descriptor that is not open for writing.
         """
         self._resize(filedes, lambda size: max(size, offset + length), offset >= 0 and length > 0)
 
@@ -185,25 +185,25 @@ class FileApi(Core):
         """Make a file `length` bytes long, shorter or longer (OS_FileTruncate).
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERR_OUTPUT_TOO_LARGE when there is no room, OS_ERROR for a negative length
-                or a descriptor that is not open for writing.
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_OUTPUT_TOO_LARGE if there is no room, OS_ERROR for a negative length or
+                a descriptor that is not open for writing.
         """
         self._resize(filedes, lambda size: length, length >= 0)
 
     def fd_get_info(self, filedes: int) -> FileInfo:
-        """Facts about a descriptor (OS_FDGetInfo), or OS_ERR_INVALID_ID."""
+        """Return facts about a descriptor (OS_FDGetInfo); raises OS_ERR_INVALID_ID."""
         stream = self._stream(filedes)
         return FileInfo(stream.path, stream.creator, True)
 
     def file_open_check(self, path: str) -> bool:
-        """Whether a file is open (OS_FileOpenCheck)."""
+        """Return whether a file is open (OS_FileOpenCheck)."""
         return any(stream.path == path for stream in self._streams)
 
     def close_file_by_name(self, path: str) -> None:
         """Close all descriptors of a file (OS_CloseFileByName).
 
         Raises:
-            OsalError: OS_FS_ERR_PATH_INVALID when it is not open.
+            OsalError: OS_FS_ERR_PATH_INVALID if it is not open.
         """
         open_ones = [filedes for filedes, stream in self._streams.items() if stream.path == path]
         if not open_ones:
@@ -217,7 +217,7 @@ class FileApi(Core):
             self.close(filedes)
 
     def _next_name(self) -> str:
-        """Open files have no names in OSAL, records here do."""
+        """Return a unique name for a record; open files have no names in OSAL."""
         self._opened += 1
         return f"#{self._opened}"
 
@@ -230,7 +230,7 @@ class FileApi(Core):
         return stream
 
     def _file(self, filedes: int) -> OsFile:
-        """As `_stream`, for what only a file can do."""
+        """Return the record of a file; a socket raises OS_ERR_OPERATION_NOT_SUPPORTED."""
         stream = self._stream(filedes)
         if not isinstance(stream, OsFile):
             raise OsalError(OS_ERR_OPERATION_NOT_SUPPORTED, f"descriptor {filedes:#x} is a socket")
@@ -287,39 +287,41 @@ class DirectoryApi(Core):
         self._directories_opened = 0
 
     def mkdir(self, path: str, access: int = OS_READ_WRITE) -> None:
-        """Make a folder (OS_mkdir); OS_ERROR when that cannot be, OS_FS_ERR_* for the path.
+        """Create a folder (OS_mkdir). It raises OS_ERROR if that is not possible, and OS_FS_ERR_* for the path.
 
         Args:
-            path: virtual path; a folder that is there already stays as it is.
-            access: without effect, as in NASA's.
+            path: virtual path; an existing folder stays unchanged.
+            access: has no effect, as in NASA's OSAL.
         """
         self.files.make_folder(path)
 
     def rmdir(self, path: str) -> None:
-        """Remove an empty folder (OS_rmdir); OS_ERROR when it is none, OS_FS_ERR_* for the path."""
+        """Remove an empty folder (OS_rmdir). It raises OS_ERROR if it is not an empty folder, and OS_FS_ERR_* for the
+        path.
+        """
         self.files.remove_folder(path)
 
     def directory_open(self, path: str, *, with_dots: bool = False) -> int:
-        """Open a folder to read its names, sorted: those that it has at the first read (OS_DirectoryOpen).
+        """Open a folder to read its names in sorted order, as of the first read (OS_DirectoryOpen).
 
         Args:
             path: virtual path.
-            with_dots: read "." and ".." before the others, as NASA's does.
+            with_dots: read "." and ".." before the others, as NASA's OSAL does.
 
         Raises:
-            OsalError: OS_ERROR when there is none; OS_FS_ERR_* for the path; OS_ERR_NO_FREE_IDS.
+            OsalError: OS_ERROR if there is none; OS_FS_ERR_* for the path; OS_ERR_NO_FREE_IDS.
         """
-        self._directories_opened += 1  # open folders have no names in OSAL, records here do
+        self._directories_opened += 1  # open folders have no names in OSAL, but records need one
         self.files.list_dir(path)
         record = OsDirectory(f"#{self._directories_opened}", path, with_dots)
         return self._register(self._directories, record, "directory", 0)
 
     def directory_close(self, dir_id: int) -> None:
-        """Close a folder (OS_DirectoryClose), or OS_ERR_INVALID_ID."""
+        """Close a folder (OS_DirectoryClose); raises OS_ERR_INVALID_ID."""
         self._unregister(self._directories, self._directory(dir_id))
 
     def directory_read(self, dir_id: int) -> str | None:
-        """The next name, None after the last one, where NASA's returns OS_ERROR (OS_DirectoryRead).
+        """Return the next name, or None after the last one, where NASA's function returns OS_ERROR (OS_DirectoryRead).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -335,11 +337,11 @@ class DirectoryApi(Core):
     def _names_in(self, directory: OsDirectory) -> list[str]:
         try:
             return [*(_DOTS if directory.with_dots else ()), *self.files.list_dir(directory.path)]
-        except OsalError:  # it was removed while it was open
+        except OsalError:  # the folder was removed while it was open
             return []
 
     def directory_rewind(self, dir_id: int) -> None:
-        """Begin again with the first name (OS_DirectoryRewind), or OS_ERR_INVALID_ID."""
+        """Start again with the first name (OS_DirectoryRewind); raises OS_ERR_INVALID_ID."""
         directory = self._directory(dir_id)
         directory.position, directory.entries = 0, None
 

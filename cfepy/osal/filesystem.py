@@ -1,7 +1,7 @@
-"""The virtual file system behind OSAL's file functions: mount points and what is below them (osapi-filesys.c).
+"""The virtual file system behind OSAL's file functions: mount points and the files below them (osapi-filesys.c).
 
-`/cf` is the mission's folder, `/ram` a disk in memory. Files are read and written as a whole here; `cfepy.osal.files`
-adds OSAL's file descriptors.
+`/cf` is the mission's folder, and `/ram` is a disk in memory. This module reads and writes files as a whole;
+`cfepy.osal.files` adds OSAL's file descriptors.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ RAM_BLOCKS = 4096  # CFE_PLATFORM_ES_RAM_DISK_NUM_SECTORS
 
 
 class FilePlace(NamedTuple):
-    """Where a virtual path leads: a volume and a path in it."""
+    """The place of a virtual path: a volume and a path in it."""
 
     volume: Volume
     path: str
@@ -36,21 +36,21 @@ class FileSystem:
     """Mounted volumes by virtual path.
 
     Args:
-        cf: folder of the host that `/cf` shows, None for an empty one.
-        ram_bytes: size of the disk at `/ram`, None for no limit.
+        cf: folder of the host shown at `/cf`; None for an empty one.
+        ram_bytes: size of the disk at `/ram` in bytes; None for no limit.
     """
 
     def __init__(self, cf: Path | None = None, ram_bytes: int | None = RAM_BLOCK_BYTES * RAM_BLOCKS) -> None:
         self._mounts: dict[str, Volume] = {"/cf": Volume(cf), "/ram": Volume(capacity=ram_bytes)}
-        self._own = dict(self._mounts)  # what is there again after a reset
+        self._own = dict(self._mounts)  # the mounts after a reset
 
     def mount(self, mount_point: str, volume: Volume, guest: bool = False) -> None:
-        """Let a volume appear at a path such as "/data".
+        """Mount a volume at a path such as "/data".
 
         Args:
             mount_point: the path.
-            volume: what appears there.
-            guest: flight software mounts it, so a reset takes it away, unless it took the place of one that stays.
+            volume: the volume.
+            guest: flight software mounts it, so a reset removes it, unless it replaced a permanent volume.
 
         Raises:
             OsalError: OS_FS_ERR_PATH_INVALID.
@@ -62,11 +62,11 @@ class FileSystem:
             self._own[mount_point] = volume
 
     def forget_guests(self) -> None:
-        """The processor starts anew: what flight software mounted is gone, what it unmounted is back."""
+        """Restore the mounts for a processor reset: undo the mounts and unmounts of flight software."""
         self._mounts = dict(self._own)
 
     def unmount(self, mount_point: str) -> Volume:
-        """Take a volume out; its files stay in it.
+        """Unmount a volume, which keeps its files, and return it.
 
         Raises:
             OsalError: OS_ERR_NAME_NOT_FOUND.
@@ -76,7 +76,7 @@ class FileSystem:
         return self._mounts.pop(mount_point)
 
     def volume(self, mount_point: str) -> Volume:
-        """The volume at a mount point.
+        """Return the volume at a mount point.
 
         Raises:
             OsalError: OS_ERR_NAME_NOT_FOUND.
@@ -86,7 +86,7 @@ class FileSystem:
         return self._mounts[mount_point]
 
     def written(self) -> dict[str, bytes]:
-        """Every file that the mission wrote and did not remove: virtual path to content."""
+        """Return the contents of every file that the mission wrote and did not remove, by virtual path."""
         return {
             f"{mount_point}/{path}": bytes(node.data)
             for mount_point, volume in sorted(self._mounts.items())
@@ -95,15 +95,15 @@ class FileSystem:
         }
 
     def mount_points(self) -> list[str]:
-        """The paths at which volumes are mounted, sorted."""
+        """Return the mount points, sorted."""
         return sorted(self._mounts)
 
     def translate(self, path: str) -> FilePlace:
-        """Where a virtual path leads (OS_TranslatePath).
+        """Return the volume and path behind a virtual path (OS_TranslatePath).
 
         Raises:
-            OsalError: OS_FS_ERR_PATH_TOO_LONG (64 characters or more), OS_FS_ERR_NAME_TOO_LONG (a last part of 20 or
-                more), OS_FS_ERR_PATH_INVALID (not absolute, not below a mount point, or with "..").
+            OsalError: OS_FS_ERR_PATH_TOO_LONG (64 characters or more), OS_FS_ERR_NAME_TOO_LONG (a last part of 20
+                characters or more), OS_FS_ERR_PATH_INVALID (not absolute, not below a mount point, or with "..").
         """
         if len(to_bytes(path)) >= OS_MAX_PATH_LEN:
             raise OsalError(OS_FS_ERR_PATH_TOO_LONG, f"{path!r} has {OS_MAX_PATH_LEN} characters or more")
@@ -120,19 +120,19 @@ class FileSystem:
         )
 
     def find(self, path: str) -> FileNode | None:
-        """The file at a path, None when there is none.
+        """Return the file at a path, or None if there is none.
 
         Raises:
-            OsalError: as `translate`.
+            OsalError: see `translate`.
         """
         volume, rest = self.translate(path)
         return volume.node(rest)
 
     def read_file(self, path: str) -> bytes:
-        """The whole content of a file.
+        """Return the whole content of a file.
 
         Raises:
-            OsalError: OS_ERROR when there is none; as `translate`.
+            OsalError: OS_ERROR if the file does not exist; see `translate`.
         """
         node = self.find(path)
         if node is None:
@@ -140,15 +140,15 @@ class FileSystem:
         return bytes(node.data)
 
     def write_file(self, path: str, data: bytes | bytearray | memoryview, now_ns: int = 0) -> None:
-        """Make a file with this content, or replace what is in it.
+        """Write a file, replacing its content if it exists.
 
         Args:
             path: its folder must exist.
             data: the content.
-            now_ns: virtual time of the change.
+            now_ns: virtual time of the change in ns.
 
         Raises:
-            OsalError: OS_ERROR when there is no such folder or no room; as `translate`.
+            OsalError: OS_ERROR if there is no such folder or no room; see `translate`.
         """
         node = self.open_node(path)
         self.check_room(path, len(data) - len(node.data))
@@ -156,10 +156,10 @@ class FileSystem:
         node.modified_ns = now_ns
 
     def open_node(self, path: str) -> FileNode:
-        """The file at a path, an empty new one when there was none.
+        """Return the file at a path, or a new empty file if it does not exist.
 
         Raises:
-            OsalError: OS_ERROR when its folder does not exist or it is a folder; as `translate`.
+            OsalError: OS_ERROR if its folder does not exist or it is a folder; see `translate`.
         """
         volume, rest = self.translate(path)
         if volume.is_folder(rest) or not volume.is_folder(rest.rpartition("/")[0]):
@@ -167,14 +167,14 @@ class FileSystem:
         return volume.node(rest) or volume.create(rest)
 
     def check_room(self, path: str, size: int) -> None:
-        """Raise OS_ERROR when the volume of a path has no room for `size` more bytes."""
+        """Raise OS_ERROR if the volume of a path has no room for `size` more bytes."""
         if not self.translate(path).volume.has_room(size):
             raise OsalError(OS_ERROR, f"no room for {size} more bytes in the volume of {path}")
 
     def exists(self, path: str) -> bool:
-        """Whether there is a file or folder at a path; False for a path that cannot be.
+        """Return whether a file or folder exists at a path; False for an invalid path.
 
-        Never raises.
+        It never raises.
         """
         try:
             volume, rest = self.translate(path)
@@ -183,10 +183,10 @@ class FileSystem:
         return volume.node(rest) is not None or volume.is_folder(rest)
 
     def is_folder(self, path: str) -> bool:
-        """Whether there is a folder at a path.
+        """Return whether there is a folder at a path.
 
         Raises:
-            OsalError: as `translate`.
+            OsalError: see `translate`.
         """
         volume, rest = self.translate(path)
         return volume.is_folder(rest)
@@ -195,7 +195,7 @@ class FileSystem:
         """Remove a file, or an empty folder (OS_remove).
 
         Raises:
-            OsalError: OS_ERROR when there is neither; as `translate`.
+            OsalError: OS_ERROR if neither exists; see `translate`.
         """
         volume, rest = self.translate(path)
         if volume.node(rest) is not None:
@@ -209,7 +209,7 @@ class FileSystem:
         """Give a file or folder another path in the same volume (OS_rename).
 
         Raises:
-            OsalError: OS_ERROR when there is neither, the volume is another, or something else is in the way; as
+            OsalError: OS_ERROR if neither exists, the volume is different, or another file or folder is in the way; see
                 `translate`.
         """
         (source, source_path), (target, target_path) = self.translate(old), self.translate(new)
@@ -224,7 +224,7 @@ class FileSystem:
         """Add a folder (OS_mkdir); one that exists stays as it is.
 
         Raises:
-            OsalError: OS_ERROR when a file or no folder is in the way; as `translate`.
+            OsalError: OS_ERROR if a file is in the way or the parent folder does not exist; see `translate`.
         """
         volume, rest = self.translate(path)
         if volume.node(rest) is not None or not volume.is_folder(rest.rpartition("/")[0]):
@@ -235,7 +235,7 @@ class FileSystem:
         """Remove an empty folder (OS_rmdir).
 
         Raises:
-            OsalError: OS_ERROR when there is none, when it is not empty or a mount point; as `translate`.
+            OsalError: OS_ERROR if it does not exist, is not empty or is a mount point; see `translate`.
         """
         volume, rest = self.translate(path)
         if not rest or not volume.is_folder(rest) or volume.names(rest):
@@ -243,10 +243,10 @@ class FileSystem:
         volume.remove_folder(rest)
 
     def list_dir(self, path: str) -> list[str]:
-        """Names in a folder, sorted.
+        """Return the names in a folder, sorted.
 
         Raises:
-            OsalError: OS_ERROR when there is no such folder; as `translate`.
+            OsalError: OS_ERROR if the folder does not exist; see `translate`.
         """
         volume, rest = self.translate(path)
         if not volume.is_folder(rest):
@@ -255,12 +255,14 @@ class FileSystem:
 
 
 def _can_be_file(volume: Volume, path: str) -> bool:
-    """Whether a path is in a folder, and none itself."""
+    """Return whether a file may have this path: it is inside a folder and not a folder itself."""
     return not volume.is_folder(path) and volume.is_folder(path.rpartition("/")[0])
 
 
 def _can_move_folder(volume: Volume, old: str, new: str) -> bool:
-    """Whether `old` is a folder that can become `new`: a path in a folder, with nothing or an empty folder there."""
+    """Return whether the folder `old` can be renamed to `new`, a path in a folder with nothing or an empty folder
+    there.
+    """
     if not old or not volume.is_folder(old) or f"{new}/".startswith(f"{old}/"):
         return False
     is_free = not volume.names(new) if volume.is_folder(new) else volume.node(new) is None

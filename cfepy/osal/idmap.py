@@ -1,4 +1,4 @@
-"""OSAL's id map (osapi-idmap.h), error names, console output and versions: what all kinds of objects share."""
+"""OSAL's id map (osapi-idmap.h), error names, console output and versions: functions for all kinds of objects."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class IdMapApi(VersionFunctions, Core):
         self._line = ""
 
     def get_resource_name(self, object_id: int) -> str:
-        """The name of any OSAL object, of an open file or folder its path (OS_GetResourceName).
+        """Return the name of any OSAL object, or the path of an open file or folder (OS_GetResourceName).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -42,19 +42,22 @@ class IdMapApi(VersionFunctions, Core):
         return self._object(object_id).resource_name
 
     def identify_object(self, object_id: int) -> int:
-        """The kind of an id, one of the OS_*_BASE numbers, or what another number has there (OS_IdentifyObject)."""
+        """Return the kind of an id, one of the OS_*_BASE numbers, or the same bits of any other number
+        (OS_IdentifyObject).
+        """
         return get_base(object_id)
 
     def convert_to_array_index(self, object_id: int) -> int:
-        """A number from 0 that no other existing object of the same kind has (OS_ConvertToArrayIndex).
+        """Return the index of an object, unique among existing objects of its kind and counted from 0
+        (OS_ConvertToArrayIndex).
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID for what is no OSAL id.
+            OsalError: OS_ERR_INVALID_ID for a number that is not an OSAL id.
         """
         return self.object_id_to_array_index(0, object_id)
 
     def object_id_to_array_index(self, idtype: int, object_id: int) -> int:
-        """As `convert_to_array_index`, for an id of a certain kind (OS_ObjectIdToArrayIndex).
+        """Return the index of an object of a given kind; see `convert_to_array_index` (OS_ObjectIdToArrayIndex).
 
         Args:
             idtype: one of the OS_*_BASE numbers, 0 for any.
@@ -72,12 +75,12 @@ class IdMapApi(VersionFunctions, Core):
     def for_each_object(
         self, creator_id: int, callback: Callable[[int, Any], object], callback_arg: Any = None
     ) -> None:
-        """Call back with the id of every object a task created (OS_ForEachObject).
+        """Call a function for every object that a task created (OS_ForEachObject).
 
         Args:
             creator_id: the task; OS_OBJECT_CREATOR_ANY (0) for all objects.
             callback: called with the id and `callback_arg`; it may delete the object.
-            callback_arg: handed to the callback.
+            callback_arg: second argument of the callback.
         """
         for base in sorted(self._tables):
             self.for_each_object_of_type(base, creator_id, callback, callback_arg)
@@ -85,28 +88,28 @@ class IdMapApi(VersionFunctions, Core):
     def for_each_object_of_type(
         self, objtype: int, creator_id: int, callback: Callable[[int, Any], object], callback_arg: Any = None
     ) -> None:
-        """As `for_each_object`, for one kind of object (OS_ForEachObjectOfType)."""
+        """Call a function for every object of one kind; see `for_each_object` (OS_ForEachObjectOfType)."""
         table = self._tables.get(objtype)
         for object_id, record in table.items() if table is not None else ():
             if not record.deleted and creator_id in (OS_OBJECT_CREATOR_ANY, record.creator):
                 callback(object_id, callback_arg)
 
     def get_error_name(self, status: int) -> str:
-        """NASA's name of an OS_* status, "OS_UNKNOWN(n)" for others (OS_GetErrorName)."""
+        """Return NASA's name of an OS_* status, or "OS_UNKNOWN(n)" for others (OS_GetErrorName)."""
         name = name_of(status)
         if status == 0:
             return "OS_SUCCESS"
         return name[: OS_ERROR_NAME_LENGTH - 1] if name.startswith("OS_") else f"OS_UNKNOWN({status})"
 
     def printf(self, text: str) -> None:
-        """Write a text to the console, at most 171 characters of it, as lines of their own (OS_printf)."""
+        """Write a text to the console as lines of its own, at most 171 characters (OS_printf)."""
         if self._printf_enabled:
             self.console.write(text[: OS_BUFFER_SIZE - 1])
 
     def printf_piece(self, text: str) -> None:
-        """Write what may be a piece of a line, at most 171 bytes of it (OS_printf, as C has it).
+        """Write text that may be a part of a line, at most 171 bytes (OS_printf as in C).
 
-        A line is shown when it is whole, however long.
+        A line appears once it is complete, however long it is.
         """
         if self._printf_enabled:
             piece = to_bytes(text)[: OS_BUFFER_SIZE - 1].decode("utf-8", "surrogateescape")
@@ -115,11 +118,11 @@ class IdMapApi(VersionFunctions, Core):
                 self.console.write(line)
 
     def printf_disable(self) -> None:
-        """Let `printf` do nothing (OS_printf_disable)."""
+        """Disable `printf` (OS_printf_disable)."""
         self._printf_enabled = False
 
     def printf_enable(self) -> None:
-        """Let `printf` write again (OS_printf_enable)."""
+        """Enable `printf` again (OS_printf_enable)."""
         self._printf_enabled = True
 
     def _object(self, object_id: int) -> OsObject:

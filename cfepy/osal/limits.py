@@ -1,6 +1,6 @@
-"""Fixed numbers of OSAL's interface, under NASA's names: time-outs, sizes, file modes (osapi-*.h, osconfig.h).
+"""Fixed numbers of OSAL's interface, under NASA's names: timeouts, sizes, file modes (osapi-*.h, osconfig.h).
 
-Numbers that a platform may change (how many queues, how many tasks) are in `cfepy.config.platform`.
+Numbers that a platform can change (such as the number of queues or tasks) are in `cfepy.config.platform`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ OS_FP_ENABLED = 1
 OS_SEM_EMPTY = 0
 OS_SEM_FULL = 1
 SEM_VALUE_MAX = 0x7FFFFFFF
-SIZE_MAX = 0x7FFFFFFF  # OS_CHECK_SIZE refuses this and above
+SIZE_MAX = 0x7FFFFFFF  # OS_CHECK_SIZE refuses this number and above
 
 OS_OBJECT_ID_UNDEFINED = 0
 OS_OBJECT_CREATOR_ANY = 0

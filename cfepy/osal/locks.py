@@ -1,7 +1,7 @@
 """OSAL's locks: mutexes (OS_MutSem*), condition variables (OS_CondVar*), readers-writer locks (OS_RwLock*).
 
-A mutex is recursive, has priority inheritance, and is given back by its owner only. A condition variable has a mutex of
-its own. A readers-writer lock has many readers or one writer, and a waiting writer holds new readers back.
+A mutex is recursive, has priority inheritance, and only its owner can give it. A condition variable has a mutex of its
+own. A readers-writer lock has many readers or one writer, and a waiting writer holds new readers back.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from cfepy.status import OS_ERROR, OS_SEM_FAILURE, OsalError
 
 
 class MutexInfo(NamedTuple):
-    """What `mut_sem_get_info` tells (OS_mut_sem_prop_t)."""
+    """The result of `mut_sem_get_info` (OS_mut_sem_prop_t)."""
 
     name: str
     creator: int
@@ -45,7 +45,7 @@ class MutexApi(Core):
 
         Args:
             name: unique among mutexes, at most 19 characters.
-            options: without effect, as in NASA's.
+            options: no effect, as in NASA's OSAL.
 
         Returns:
             The mutex's id.
@@ -59,7 +59,8 @@ class MutexApi(Core):
         return self._register(self._mutexes, record, "mutex", self._setup.sizes.mutex)
 
     def mut_sem_take(self, mutex_id: int) -> None:
-        """Wait until the mutex is free or ours already; the owner becomes as urgent as we are (OS_MutSemTake).
+        """Wait until the mutex is free or belongs to the caller; the owner inherits the caller's priority
+        (OS_MutSemTake).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -76,7 +77,7 @@ class MutexApi(Core):
         """Undo one take (OS_MutSemGive).
 
         Raises:
-            OsalError: OS_SEM_FAILURE when the caller does not own it; OS_ERR_INVALID_ID.
+            OsalError: OS_SEM_FAILURE if the caller does not own it; OS_ERR_INVALID_ID.
         """
         if self._cost:
             self.kernel.charge(self._cost)
@@ -103,11 +104,11 @@ class MutexApi(Core):
         self._unregister(self._mutexes, record)
 
     def mut_sem_get_id_by_name(self, name: str) -> int:
-        """Id of a named mutex, or OS_ERR_NAME_NOT_FOUND (OS_MutSemGetIdByName)."""
+        """Return the id of a named mutex, or OS_ERR_NAME_NOT_FOUND (OS_MutSemGetIdByName)."""
         return self._mutexes.named(name)
 
     def mut_sem_get_info(self, mutex_id: int) -> MutexInfo:
-        """Facts about a mutex, or OS_ERR_INVALID_ID (OS_MutSemGetInfo)."""
+        """Return facts about a mutex, or OS_ERR_INVALID_ID (OS_MutSemGetInfo)."""
         record = self._mutex(mutex_id)
         return MutexInfo(record.name, record.creator)
 
@@ -119,7 +120,7 @@ class MutexApi(Core):
 
 
 class CondVarInfo(NamedTuple):
-    """What `cond_var_get_info` tells (OS_condvar_prop_t)."""
+    """The result of `cond_var_get_info` (OS_condvar_prop_t)."""
 
     name: str
     creator: int
@@ -149,7 +150,7 @@ class CondVarApi(ClockApi):
 
         Args:
             name: unique among condition variables, at most 19 characters.
-            options: without effect, as in NASA's.
+            options: no effect, as in NASA's OSAL.
 
         Returns:
             Its id.
@@ -173,17 +174,17 @@ class CondVarApi(ClockApi):
         self._cond_var(var_id).mutex.take()
 
     def cond_var_unlock(self, var_id: int) -> None:
-        """Give its mutex back (OS_CondVarUnlock).
+        """Give its mutex (OS_CondVarUnlock).
 
         Raises:
-            OsalError: OS_ERROR when the caller does not own it; OS_ERR_INVALID_ID.
+            OsalError: OS_ERROR if the caller does not own it; OS_ERR_INVALID_ID.
         """
         record = self._cond_var(var_id)
         if not record.mutex.give():
             raise OsalError(OS_ERROR, f"condition variable {record.name} is not locked by the caller")
 
     def cond_var_signal(self, var_id: int) -> None:
-        """Wake the most urgent task that waits, if any (OS_CondVarSignal).
+        """Wake the most urgent waiting task, if any (OS_CondVarSignal).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -191,7 +192,7 @@ class CondVarApi(ClockApi):
         self.kernel.wake_first(self._cond_var(var_id).waits, True)
 
     def cond_var_broadcast(self, var_id: int) -> None:
-        """Wake all tasks that wait (OS_CondVarBroadcast).
+        """Wake all waiting tasks (OS_CondVarBroadcast).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -202,25 +203,28 @@ class CondVarApi(ClockApi):
         """Unlock, wait for a signal, and lock again (OS_CondVarWait).
 
         Raises:
-            OsalError: OS_ERROR when the caller has not locked it; OS_ERR_INVALID_ID.
+            OsalError: OS_ERROR if the caller has not locked it; OS_ERR_INVALID_ID.
         """
         self._wait(self._cond_var(var_id), FOREVER)
 
     def cond_var_timed_wait(self, var_id: int, until: OsTime) -> bool:
-        """As `cond_var_wait` until a local time; False when that came first (OS_CondVarTimedWait).
+        """Wait like `cond_var_wait`, until a local time at the latest (OS_CondVarTimedWait).
 
         Args:
             var_id: the condition variable.
-            until: absolute local time as `get_local_time` gives it, in ticks of 100 ns.
+            until: absolute local time as `get_local_time` returns it, in ticks of 100 ns.
+
+        Returns:
+            False if the time passed without a signal.
 
         Raises:
-            OsalError: OS_ERROR when the caller has not locked it; OS_ERR_INVALID_ID.
+            OsalError: OS_ERROR if the caller has not locked it; OS_ERR_INVALID_ID.
         """
         left = (until - self.get_local_time()) * OS_TIME_TICK_RESOLUTION_NS
         return self._wait(self._cond_var(var_id), max(left, 1)) is not TIMEOUT
 
     def cond_var_delete(self, var_id: int) -> None:
-        """Delete a condition variable; tasks that wait get OS_ERR_INVALID_ID (OS_CondVarDelete).
+        """Delete a condition variable; waiting tasks get OS_ERR_INVALID_ID (OS_CondVarDelete).
 
         Raises:
             OsalError: OS_ERROR while a task has locked it; OS_ERR_INVALID_ID.
@@ -232,11 +236,11 @@ class CondVarApi(ClockApi):
         self.kernel.wake_all(record.waits, DELETED)
 
     def cond_var_get_id_by_name(self, name: str) -> int:
-        """Id of a named condition variable, or OS_ERR_NAME_NOT_FOUND (OS_CondVarGetIdByName)."""
+        """Return the id of a named condition variable, or OS_ERR_NAME_NOT_FOUND (OS_CondVarGetIdByName)."""
         return self._id_by_name(self._cond_vars, name)
 
     def cond_var_get_info(self, var_id: int) -> CondVarInfo:
-        """Facts about a condition variable, or OS_ERR_INVALID_ID (OS_CondVarGetInfo)."""
+        """Return facts about a condition variable, or OS_ERR_INVALID_ID (OS_CondVarGetInfo)."""
         record = self._cond_var(var_id)
         return CondVarInfo(record.name, record.creator)
 
@@ -253,7 +257,8 @@ class CondVarApi(ClockApi):
         if mutex.owner is not task:
             raise OsalError(OS_ERROR, f"condition variable {record.name} is not locked by the caller")
         count = mutex.count
-        # No task may run between the unlock and the wait, else a signal could get lost: so no `give`, which preempts.
+        # No task may run between the unlock and the wait, or a signal could get lost. So `give`, which preempts, is not
+        # used.
         mutex.abandon(task)
         woken = self.kernel.wait_on(record.waits, timeout_ns)
         if woken is DELETED:
@@ -264,7 +269,7 @@ class CondVarApi(ClockApi):
 
 
 class RwLockInfo(NamedTuple):
-    """What `rw_lock_get_info` tells (OS_rwlock_prop_t)."""
+    """The result of `rw_lock_get_info` (OS_rwlock_prop_t)."""
 
     name: str
     creator: int
@@ -300,7 +305,7 @@ class RwLockApi(Core):
 
         Args:
             name: unique among these locks, at most 19 characters.
-            options: without effect, as in NASA's.
+            options: no effect, as in NASA's OSAL.
 
         Returns:
             The lock's id.
@@ -323,10 +328,10 @@ class RwLockApi(Core):
             self.kernel.wait_on(record.waiting_readers)
 
     def rw_lock_read_give(self, rw_id: int) -> None:
-        """One reader less (OS_RwLockReadGive).
+        """Release the lock for reading (OS_RwLockReadGive).
 
         Raises:
-            OsalError: OS_ERROR when no task reads; OS_ERR_INVALID_ID.
+            OsalError: OS_ERROR if no task reads; OS_ERR_INVALID_ID.
         """
         record = self._rw_lock(rw_id)
         if not record.readers:
@@ -349,10 +354,10 @@ class RwLockApi(Core):
             self.kernel.wait_on(record.waiting_writers)
 
     def rw_lock_write_give(self, rw_id: int) -> None:
-        """Stop writing (OS_RwLockWriteGive).
+        """Release the lock for writing (OS_RwLockWriteGive).
 
         Raises:
-            OsalError: OS_ERROR when the caller does not write; OS_ERR_INVALID_ID.
+            OsalError: OS_ERROR if the caller does not write; OS_ERR_INVALID_ID.
         """
         record = self._rw_lock(rw_id)
         if record.writer is not self.kernel.current:
@@ -372,11 +377,11 @@ class RwLockApi(Core):
         self._unregister(self._rw_locks, record)
 
     def rw_lock_get_id_by_name(self, name: str) -> int:
-        """Id of a named lock, or OS_ERR_NAME_NOT_FOUND (OS_RwLockGetIdByName)."""
+        """Return the id of a named lock, or OS_ERR_NAME_NOT_FOUND (OS_RwLockGetIdByName)."""
         return self._rw_locks.named(name)
 
     def rw_lock_get_info(self, rw_id: int) -> RwLockInfo:
-        """Facts about a lock, or OS_ERR_INVALID_ID (OS_RwLockGetInfo)."""
+        """Return facts about a lock, or OS_ERR_INVALID_ID (OS_RwLockGetInfo)."""
         record = self._rw_lock(rw_id)
         return RwLockInfo(record.name, record.creator)
 
@@ -389,7 +394,7 @@ class RwLockApi(Core):
         return record
 
     def _hand_on(self, record: OsRwLock) -> None:
-        """The lock is free: the most urgent writer gets it, or else all readers."""
+        """Give a free lock to the most urgent waiting writer, or otherwise to all waiting readers."""
         if record.waiting_writers:
             record.writer = record.waiting_writers[0]
             self.kernel.wake_first(record.waiting_writers)

@@ -1,7 +1,7 @@
-"""OSAL's loader (osapi-module.h): modules of code by id and name, and the symbols in them.
+"""OSAL's loader (osapi-module.h): modules of code by id and name, and their symbols.
 
-Code is Python here, and the mission finds it: it plugs in as `modules` a loader that turns a virtual path into an
-object whose attributes are the symbols.
+Code is Python here, and the mission provides it. The mission sets `modules` to a loader, which turns a virtual path
+into an object with the symbols as attributes.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from cfepy.status import OS_ERR_NOT_IMPLEMENTED, OS_ERROR, OsalError
 
 
 class CodeSource(Protocol):
-    """What finds and executes code."""
+    """A loader that finds and executes code."""
 
     def load_module(self, file: str, owner: str) -> object:
-        """Execute the code behind a virtual path anew, and give an object with its symbols.
+        """Execute the code at a virtual path anew, and return an object with its symbols.
 
         Raises:
-            OsalError: there is none, or executing it failed.
+            OsalError: if there is no code, or its execution failed.
         """
 
     def library_symbol(self, name: str) -> object | None:
-        """What a name stands for in a library that ES loaded; None when none has it."""
+        """Return the object of a name in a library that ES loaded, or None if no library has the name."""
 
 
 class ModuleAddress(NamedTuple):
-    """Where a module lies in memory (OS_module_address_t): nowhere, as `valid` says."""
+    """The memory addresses of a module (OS_module_address_t); never valid here."""
 
     valid: bool = False
     flags: int = 0
@@ -43,7 +43,7 @@ class ModuleAddress(NamedTuple):
 
 
 class ModuleInfo(NamedTuple):
-    """What `module_info` tells (OS_module_prop_t)."""
+    """The result of `module_info` (OS_module_prop_t)."""
 
     name: str
     filename: str
@@ -65,7 +65,7 @@ class OsModule(OsObject):
 
 
 class ModuleApi(Core):
-    """The OS_Module* and OS_Symbol* functions; `modules` is where code comes from, None for nowhere."""
+    """The OS_Module* and OS_Symbol* functions; `modules` is the loader of code, or None."""
 
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
@@ -79,15 +79,15 @@ class ModuleApi(Core):
         Args:
             module_name: unique among modules, at most 19 characters.
             filename: virtual path, e.g. "/cf/hk.so".
-            flags: OS_MODULE_FLAG_GLOBAL_SYMBOLS or OS_MODULE_FLAG_LOCAL_SYMBOLS; without effect, since Python modules
-                do not see each other's names.
+            flags: OS_MODULE_FLAG_GLOBAL_SYMBOLS or OS_MODULE_FLAG_LOCAL_SYMBOLS; no effect, because Python modules do
+                not share their names.
 
         Returns:
             The module's id.
 
         Raises:
             OsalError: OS_ERR_NAME_TOO_LONG, OS_ERR_NAME_TAKEN, OS_ERR_NO_FREE_IDS, OS_FS_ERR_* for the path, OS_ERROR
-                when there is no such code or executing it failed, OS_ERR_NOT_IMPLEMENTED without a loader.
+                if the code does not exist or its execution failed, OS_ERR_NOT_IMPLEMENTED without a loader.
         """
         record = OsModule(module_name, filename, flags)
         module_id = self._register(self._modules, record, "module", 0)
@@ -102,23 +102,23 @@ class ModuleApi(Core):
         return module_id
 
     def module_unload(self, module_id: int) -> None:
-        """Forget a module (OS_ModuleUnload); what was taken out of it goes on. OS_ERR_INVALID_ID when there is none."""
+        """Forget a module (OS_ModuleUnload); objects taken from it stay usable. It raises OS_ERR_INVALID_ID."""
         self._unregister(self._modules, self._module(module_id))
 
     def module_code(self, module_id: int) -> object:
-        """What was loaded: an object with the module's symbols. OS_ERR_INVALID_ID when there is no such module."""
+        """Return the loaded object, which has the module's symbols. It raises OS_ERR_INVALID_ID."""
         return self._module(module_id).code
 
     def module_info(self, module_id: int) -> ModuleInfo:
-        """Facts about a module (OS_ModuleInfo), or OS_ERR_INVALID_ID."""
+        """Return facts about a module (OS_ModuleInfo), or OS_ERR_INVALID_ID."""
         record = self._module(module_id)
         return ModuleInfo(record.name, record.filename)
 
     def module_symbol_lookup(self, module_id: int, symbol_name: str) -> Any:
-        """What a name stands for in a module, mostly a function (OS_ModuleSymbolLookup).
+        """Return the object of a name in a module, usually a function (OS_ModuleSymbolLookup).
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERROR when it has no such name.
+            OsalError: OS_ERR_INVALID_ID, OS_ERROR if the module does not have the name.
         """
         record = self._module(module_id)
         if not hasattr(record.code, symbol_name):
@@ -126,10 +126,10 @@ class ModuleApi(Core):
         return getattr(record.code, symbol_name)
 
     def symbol_lookup(self, symbol_name: str) -> Any:
-        """What a name stands for in the first module or library that has it (OS_SymbolLookup).
+        """Return the object of a name in the first module or library that has it (OS_SymbolLookup).
 
         Raises:
-            OsalError: OS_ERROR when none has it.
+            OsalError: OS_ERROR if none has it.
         """
         for record in self._modules:
             if hasattr(record.code, symbol_name):
@@ -140,10 +140,10 @@ class ModuleApi(Core):
         raise OsalError(OS_ERROR, f"no module has {symbol_name}")
 
     def symbol_table_dump(self, filename: str, size_limit: int) -> None:
-        """Write all symbols to a file (OS_SymbolTableDump): there are no addresses to write.
+        """Refuse to write all symbols to a file (OS_SymbolTableDump), because symbols have no addresses.
 
         Raises:
-            OsalError: OS_FS_ERR_* for the path, else OS_ERR_NOT_IMPLEMENTED, as on NASA's Linux.
+            OsalError: OS_FS_ERR_* for the path, otherwise OS_ERR_NOT_IMPLEMENTED, as on NASA's Linux.
         """
         self._paths.translate(filename)
         raise OsalError(OS_ERR_NOT_IMPLEMENTED, "symbols have no addresses here")

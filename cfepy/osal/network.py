@@ -1,8 +1,8 @@
-"""The virtual network: which endpoint is bound to which address, where datagrams go, and the ends of connections.
+"""The virtual network: the addresses of endpoints, the routing of datagrams, and the ends of connections.
 
-It stands for the loopback interface on which all processors of a mission meet, and outlives each of them. It knows
-nothing of descriptors (`cfepy.osal.sockets`). No datagram is lost or reordered by chance. An endpoint never waits: it
-announces each change, and the tasks that wait look again.
+It models the loopback interface that all processors of a mission share, and it outlives the processors. It does not
+know descriptors (`cfepy.osal.sockets`). No datagram is lost or reordered by chance. An endpoint never waits. It
+announces each change, and waiting tasks check again.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from typing import Generic, NamedTuple, TypeVar
 
 from cfepy.rtos import Kernel, WaitList
 
-DATAGRAM_BUFFER = 212_992  # bytes that wait at a datagram socket, Linux's default ...
-DATAGRAM_OVERHEAD = 768  # ... of which every datagram takes this much in addition to its data
-LONGEST_DATAGRAM = 65_507  # the most that UDP carries
-STREAM_BUFFER = 65_536  # bytes on their way in one direction of a connection
+DATAGRAM_BUFFER = 212_992  # bytes that may wait at a datagram socket, Linux's default
+DATAGRAM_OVERHEAD = 768  # bytes that each datagram takes in addition to its data
+LONGEST_DATAGRAM = 65_507  # the largest UDP payload
+STREAM_BUFFER = 65_536  # bytes in flight in one direction of a connection
 BACKLOG = 10  # connections that wait to be accepted
-FIRST_FREE_PORT, LAST_FREE_PORT = 32_768, 60_999  # given to sockets that ask for none
+FIRST_FREE_PORT, LAST_FREE_PORT = 32_768, 60_999  # for sockets that request any port
 
 
 class Place(NamedTuple):
@@ -34,23 +34,23 @@ class Place(NamedTuple):
 
     @property
     def any_host(self) -> str:
-        """How the host is written that stands for all of them."""
+        """The text of the host address that means all hosts."""
         return "::" if self.is_ip6 else "0.0.0.0"
 
     @property
     def is_here(self) -> bool:
-        """Whether it is on the loopback interface, the only one there is."""
+        """Whether it is on the loopback interface, the only interface."""
         return self.host in ("0.0.0.0", "::", "::1") or self.host.startswith("127.")
 
     def reached(self) -> Place:
-        """The place as the other side sees it: a socket bound to all hosts answers from the loopback address."""
+        """Return the address as the peer sees it: a socket bound to all hosts answers from the loopback address."""
         if self.host != self.any_host:
             return self
         return Place("::1" if self.is_ip6 else "127.0.0.1", self.port)
 
 
 class Datagram(NamedTuple):
-    """A datagram under way."""
+    """A datagram in flight."""
 
     source: Place
     target: Place
@@ -58,11 +58,11 @@ class Datagram(NamedTuple):
 
 
 class Endpoint:
-    """One end of the network, and the tasks that wait for something to happen at it.
+    """One end of the network, with the tasks that wait for a change at it.
 
     Attributes:
-        place: where it is bound; None before.
-        anonymous: whether it took any free port, so that no program can know it beforehand.
+        place: the address it is bound to; None before.
+        anonymous: whether it took any free port, so that programs cannot know its port in advance.
     """
 
     def __init__(self, place: Place | None = None) -> None:
@@ -81,25 +81,25 @@ class Endpoint:
         return True
 
     def watch(self, kernel: Kernel, waits: WaitList) -> None:
-        """Wake the tasks that wait in `waits` whenever something changes here."""
+        """Wake the tasks in `waits` at each change."""
         self._watchers.append((kernel, waits))
 
     def unwatch(self, kernel: Kernel, waits: WaitList) -> None:
-        """The end of `watch`."""
+        """Undo `watch`."""
         self._watchers.remove((kernel, waits))
 
     def changed(self) -> None:
-        """Something happened here; tasks that wait look again. A more urgent task runs before this returns."""
+        """Announce a change; waiting tasks check again. A more urgent task runs before this call returns."""
         for kernel, waits in tuple(self._watchers):
             kernel.wake_all(waits)
 
 
 class Mailbox(Endpoint):
-    """The end of a datagram socket: what arrived and was not read yet, in order.
+    """The end of a datagram socket: the received datagrams that were not read yet, in order.
 
     Attributes:
-        peer: the place it is connected to, the only one whose datagrams come in; None lets all in.
-        lost: datagrams that found no room.
+        peer: the address it is connected to; only datagrams from there are accepted. None accepts all.
+        lost: number of datagrams dropped because the buffer was full.
     """
 
     def __init__(self) -> None:
@@ -114,7 +114,7 @@ class Mailbox(Endpoint):
         return bool(self._inbox)
 
     def offer(self, datagram: Datagram) -> bool:
-        """Take a datagram in; False when there is no room, or when it is not from the peer."""
+        """Accept a datagram; return False if there is no room or it is not from the peer."""
         if self.peer is not None and self.peer.reached() != datagram.source:
             return False
         size = len(datagram.data) + DATAGRAM_OVERHEAD
@@ -127,13 +127,13 @@ class Mailbox(Endpoint):
         return True
 
     def take(self) -> Datagram:
-        """The oldest datagram."""
+        """Remove and return the oldest datagram."""
         datagram = self._inbox.popleft()
         self._used -= len(datagram.data) + DATAGRAM_OVERHEAD
         return datagram
 
     def peek(self) -> Datagram:
-        """The oldest datagram, which stays."""
+        """Return the oldest datagram without removing it."""
         return self._inbox[0]
 
 
@@ -141,10 +141,10 @@ class Stream(Endpoint):
     """One end of a connection.
 
     Attributes:
-        other: the other end; None when that was closed.
-        remote: where the other end is.
-        ended: the other end sends no more.
-        read_shut, write_shut: this end wants to read or write no more.
+        other: the other end; None if it is closed.
+        remote: address of the other end.
+        ended: whether the other end will send no more.
+        read_shut, write_shut: whether this end was shut down for reading or writing.
     """
 
     def __init__(self, place: Place, remote: Place) -> None:
@@ -164,11 +164,11 @@ class Stream(Endpoint):
 
     @property
     def room(self) -> int:
-        """Bytes that the other end would take now."""
+        """Bytes that the other end can accept now."""
         return 0 if self.other is None else STREAM_BUFFER - len(self.other._incoming)
 
     def read(self, limit: int) -> bytes:
-        """At most so many of the bytes that arrived; none of them at the end of the stream."""
+        """Return at most `limit` received bytes, or b"" at the end of the stream."""
         data = bytes(self._incoming[:limit])
         del self._incoming[:limit]
         if data and self.other is not None:
@@ -176,11 +176,11 @@ class Stream(Endpoint):
         return data
 
     def peek(self, limit: int) -> bytes:
-        """What `read` would return."""
+        """Return the bytes that `read` would return, without removing them."""
         return bytes(self._incoming[:limit])
 
     def write(self, data: bytes) -> int | None:
-        """Send as many bytes as there is room for; how many, or None when no reader is left."""
+        """Send as many bytes as there is room for; return their number, or None if no reader is left."""
         if self.write_shut or self.other is None:
             return None
         count = min(len(data), self.room)
@@ -189,7 +189,7 @@ class Stream(Endpoint):
         return count
 
     def shut(self, read: bool, write: bool) -> None:
-        """Read or write no more."""
+        """Shut this end down for reading or writing."""
         self.read_shut |= read
         if write and not self.write_shut:
             self.write_shut = True
@@ -199,7 +199,7 @@ class Stream(Endpoint):
         self.changed()
 
     def close(self) -> None:
-        """Leave the connection; the other end may still read what was sent."""
+        """Close this end; the other end can still read the bytes already sent."""
         other, self.other = self.other, None
         if other is not None:
             other.other = None
@@ -209,11 +209,11 @@ class Stream(Endpoint):
 
 
 class Listener(Endpoint):
-    """The end of a stream socket that is bound: connections come in when it listens.
+    """The end of a bound stream socket; it accepts connections while it listens.
 
     Attributes:
-        listening: whether it takes connections.
-        pending: connections that are not accepted yet, oldest first.
+        listening: whether it accepts connections.
+        pending: connections not accepted yet, oldest first.
     """
 
     def __init__(self) -> None:
@@ -227,11 +227,11 @@ class Listener(Endpoint):
 
     @property
     def has_room(self) -> bool:
-        """Whether another connection could wait here."""
+        """Whether another connection can wait here."""
         return len(self.pending) < BACKLOG
 
     def connect(self, source: Place, target: Place) -> Stream:
-        """Make a connection that waits to be accepted; the caller's end of it. Only with `has_room`."""
+        """Create a connection that waits to be accepted, and return the caller's end; requires `has_room`."""
         near, far = Stream(source, target), Stream(target, source)
         near.other, far.other = far, near
         self.pending.append(far)
@@ -239,13 +239,13 @@ class Listener(Endpoint):
         return near
 
     def accept(self) -> Stream:
-        """The oldest connection that waits."""
+        """Return the oldest waiting connection."""
         stream = self.pending.popleft()
         self.changed()
         return stream
 
     def close(self) -> None:
-        """Take no more connections, and drop those that wait."""
+        """Stop listening, and close the waiting connections."""
         self.listening = False
         while self.pending:
             self.pending.popleft().close()
@@ -256,10 +256,10 @@ Bound = TypeVar("Bound", bound=Endpoint)
 
 
 class BoundEndpoints(Generic[Bound]):
-    """Which endpoint is bound to which place, for one protocol.
+    """The addresses of bound endpoints, for one protocol.
 
     Attributes:
-        bound: the endpoints by port and whether it is IPv6's, in the order in which they were bound.
+        bound: the endpoints by (whether it is IPv6, port), in the order of binding.
     """
 
     def __init__(self) -> None:
@@ -267,7 +267,11 @@ class BoundEndpoints(Generic[Bound]):
         self._next = FIRST_FREE_PORT
 
     def bind(self, endpoint: Bound, place: Place) -> Place | None:
-        """Give an endpoint its place, port 0 any free one; None when that is taken or is not on this network."""
+        """Bind an endpoint to an address; port 0 means any free port.
+
+        Returns:
+            The address, or None if it is taken or not on this network.
+        """
         if not place.is_here:
             return None
         endpoint.anonymous = place.port == 0
@@ -281,7 +285,7 @@ class BoundEndpoints(Generic[Bound]):
         return place
 
     def release(self, endpoint: Bound) -> None:
-        """Take an endpoint away from its place, if it has one."""
+        """Release the address of an endpoint, if it has one."""
         place = endpoint.place
         others = [] if place is None else self.bound.get((place.is_ip6, place.port), [])
         if place is not None and endpoint in others:
@@ -290,7 +294,7 @@ class BoundEndpoints(Generic[Bound]):
                 del self.bound[place.is_ip6, place.port]
 
     def find(self, place: Place) -> Bound | None:
-        """The endpoint that gets what is sent to a place."""
+        """Return the endpoint that receives data sent to an address, or None."""
         for endpoint in self.bound.get((place.is_ip6, place.port), ()):
             if endpoint.place is not None and endpoint.place.host in (place.host, place.any_host):
                 return endpoint
@@ -307,14 +311,14 @@ def _clash(place: Place, other: Place | None) -> bool:
 
 
 class Network:
-    """What the sockets of all processors of a mission are plugged into.
+    """The network that connects the sockets of all processors of a mission.
 
     Attributes:
-        datagrams: the endpoints by the UDP port that they are bound to.
-        streams: the endpoints by the TCP port that they are bound to.
-        outlets: called with each datagram for which no socket here is bound: the ways out, such as the ground link.
-        dial: asked for a connection to a place where no socket here listens; None when no program there listens either;
-            only a network that is joined to another one has it.
+        datagrams: the endpoints of UDP ports.
+        streams: the endpoints of TCP ports.
+        outlets: called with each datagram that has no bound socket here, such as the ground link.
+        dial: requests a connection to an address where no socket here listens; returns None if no program there listens
+            either. Only a network that is joined to another one has it.
     """
 
     def __init__(self) -> None:
@@ -324,7 +328,11 @@ class Network:
         self.dial: Callable[[Place, Place], Stream | None] | None = None
 
     def send(self, datagram: Datagram) -> bool:
-        """Bring a datagram to the endpoint bound to its target, else to every outlet; whether an endpoint took it."""
+        """Deliver a datagram to the endpoint of its target, or otherwise to every outlet.
+
+        Returns:
+            Whether an endpoint accepted it.
+        """
         mailbox = self.datagrams.find(datagram.target.reached())
         if mailbox is not None:
             return mailbox.offer(datagram)

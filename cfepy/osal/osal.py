@@ -1,11 +1,12 @@
-"""`Osal`: the operating system abstraction layer as one object, `cfe.os`, put together from its parts.
+"""`Osal`: the operating system abstraction layer as one object, `cfe.os`, combined from its parts.
 
 Names are NASA's in snake case: OS_QueueCreate is `os.queue_create`. A failed call raises OsalError with NASA's OS_*
-code; a time-out or an empty queue is None or False.
+code. A timeout or an empty queue is None or False.
 
-Two parts are here: the frame around flight software (osapi-common.h, osapi-bsp.h, osapi-heap.h, osapi-network.h; a
-mission makes an `Osal` ready to use, so OS_API_Init has nothing left to do), and the functions that ES calls when an
-application ends to delete its objects, which NASA does task by task in CFE_ES_CleanupTaskResources.
+This module has two parts. The first is the frame around flight software (osapi-common.h, osapi-bsp.h, osapi-heap.h,
+osapi-network.h). A mission creates a ready `Osal`, so OS_API_Init has nothing left to do. The second part has the
+functions with which ES deletes the objects of an application that ends. NASA does that task by task in
+CFE_ES_CleanupTaskResources.
 """
 
 from __future__ import annotations
@@ -77,7 +78,7 @@ class CleanupApi(
 
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
-        # NASA's order; what comes after the timers is left behind by NASA's CFE_ES_CleanupObjectCallback.
+        # NASA's order; NASA's CFE_ES_CleanupObjectCallback leaves behind the kinds after the timers.
         self._deleters: dict[int, Callable[[int], None]] = {
             OS_TASK_BASE: self.task_delete,
             OS_QUEUE_BASE: self.queue_delete,
@@ -94,28 +95,28 @@ class CleanupApi(
         }
 
     def delete_objects_of(self, owner: Any) -> list[Leftover]:
-        """Delete the tasks that work for an application, youngest first, each after all it made.
+        """Delete the tasks of an application, the youngest first, each after all objects that it created.
 
-        The calling task is left out.
+        The calling task is not deleted.
 
         Args:
-            owner: what `Task.owner` is for these tasks.
+            owner: the `Task.owner` of these tasks.
 
         Returns:
-            What could not be deleted.
+            The objects that could not be deleted.
         """
         for task_id, record in reversed(self._tasks_of(owner)):
             self.delete_objects_of_task(task_id)
             if not record.deleted:
                 self.task_delete(task_id)
-        # Once more for what is left: mutexes that a task held until it ended, things of tasks that ended before.
+        # Again for the rest: mutexes that a task held until it ended, and objects of tasks that had ended before.
         return self._delete_where(lambda record: record.owner is owner and not self._is_caller(record))
 
     def delete_objects_of_task(self, task_id: int) -> list[Leftover]:
         """Delete every object that a task created, other tasks included, but not the task (OS_ForEachObject).
 
         Returns:
-            What could not be deleted.
+            The objects that could not be deleted.
         """
         return self._delete_where(lambda record: record.creator == task_id and not self._is_caller(record))
 
@@ -143,7 +144,7 @@ class CleanupApi(
 
 
 class HeapInfo(NamedTuple):
-    """What `heap_get_info` tells (OS_heap_prop_t), in bytes."""
+    """The result of `heap_get_info` (OS_heap_prop_t), in bytes."""
 
     free_bytes: int
     free_blocks: int
@@ -151,13 +152,13 @@ class HeapInfo(NamedTuple):
 
 
 def strnlen(text: bytes, maxlen: int) -> int:
-    """Length of a C string up to its NUL, `maxlen` at most (OS_strnlen)."""
+    """Return the length of a C string up to its NUL, at most `maxlen` (OS_strnlen)."""
     nul = text.find(b"\0", 0, maxlen)
     return nul if nul >= 0 else min(len(text), maxlen)
 
 
 class ApplicationApi(CleanupApi):
-    """The functions around an application; `exit_code` is what OS_BSP_SetExitCode left."""
+    """The functions around an application; `exit_code` is the code set with OS_BSP_SetExitCode."""
 
     strnlen = staticmethod(strnlen)
 
@@ -168,39 +169,39 @@ class ApplicationApi(CleanupApi):
         self._resource_type_config: dict[int, int] = {}
 
     def api_init(self) -> None:
-        """Make OSAL ready again after `api_teardown` (OS_API_Init): as after a start, but for the clock.
+        """Make OSAL ready again after `api_teardown` (OS_API_Init), as after a start, except for the clock.
 
-        Before that there is nothing to do: an Osal is made ready to use, and a second call is ignored in NASA's too.
+        Without a teardown it does nothing: an Osal is created ready to use, and NASA's OSAL ignores a second call too.
         """
         if self._is_shut_down:
             self._is_shut_down = False
             self._event_handler = None
 
     def api_teardown(self) -> None:
-        """Delete every object, then let the idle loop end; new objects are refused from then on (OS_API_Teardown)."""
+        """Delete every object, then end the idle loop; new objects are refused from then on (OS_API_Teardown)."""
         self.delete_all_objects()
         self.application_shutdown(True)
 
     def delete_all_objects(self) -> None:
-        """Delete every object and task but the caller (OS_DeleteAllObjects)."""
+        """Delete every object and task except the caller (OS_DeleteAllObjects)."""
         self._delete_where(lambda record: not self._is_caller(record))
 
     def register_event_handler(self, handler: EventHandler) -> None:
-        """Tell `handler` of every object made or deleted, and every task that starts (OS_RegisterEventHandler).
+        """Register a handler for every created or deleted object and every task that starts (OS_RegisterEventHandler).
 
         Args:
             handler: called with OS_EVENT_*, the object's id, and None. A status other than 0 for
-                OS_EVENT_RESOURCE_ALLOCATED refuses the object, whose creation fails with it.
+                OS_EVENT_RESOURCE_ALLOCATED refuses the object, and its creation fails with this status.
 
         Raises:
-            OsalError: OS_INVALID_POINTER for what cannot be called.
+            OsalError: OS_INVALID_POINTER if the handler cannot be called.
         """
         if not callable(handler):
             raise OsalError(OS_INVALID_POINTER, "the event handler cannot be called")
         self._event_handler = handler
 
     def application_run(self) -> None:
-        """What the main task does when all is started: idle until the application is shut down (OS_Application_Run)."""
+        """Run the main task after the start: idle until the application is shut down (OS_Application_Run)."""
         self.idle_loop()
 
     def idle_loop(self) -> None:
@@ -209,12 +210,12 @@ class ApplicationApi(CleanupApi):
             self.kernel.wait_on(self._idle)
 
     def application_shutdown(self, flag: bool) -> None:
-        """Let `idle_loop` end, if `flag` is true, and no object be made any more (OS_ApplicationShutdown)."""
+        """If `flag` is true, end `idle_loop` and refuse new objects (OS_ApplicationShutdown)."""
         self._is_shut_down |= flag
         self.kernel.wake_all(self._idle)
 
     def application_exit(self, status: int) -> None:
-        """End the run at once (OS_ApplicationExit); a task does not come back from it.
+        """End the run at once (OS_ApplicationExit); the call does not return to a task.
 
         Args:
             status: OS_SUCCESS ends it with exit code 0, anything else with 1.
@@ -225,10 +226,10 @@ class ApplicationApi(CleanupApi):
             self.kernel.exit_task()
 
     def heap_get_info(self) -> HeapInfo:
-        """How much of the board's RAM is left (OS_HeapGetInfo); it does not fragment.
+        """Return the free RAM of the board (OS_HeapGetInfo); it does not fragment.
 
         Raises:
-            OsalError: OS_ERR_NOT_IMPLEMENTED where memory is not counted, as on NASA's Linux.
+            OsalError: OS_ERR_NOT_IMPLEMENTED if memory is not accounted for, as on NASA's Linux.
         """
         free = None if self._setup.memory is None else self._setup.memory.free
         if free is None:
@@ -236,17 +237,17 @@ class ApplicationApi(CleanupApi):
         return HeapInfo(free, 1 if free else 0, free)
 
     def network_get_id(self) -> int:
-        """Number of this computer in its network: the processor id (OS_NetworkGetID)."""
+        """Return the number of this computer in its network, the processor id (OS_NetworkGetID)."""
         return self.config.processor_id
 
     def network_get_host_name(self, name_len: int = OS_MAX_PATH_LEN) -> str:
-        """Name of this computer in its network: the processor's (OS_NetworkGetHostName).
+        """Return the name of this computer in its network, the processor name (OS_NetworkGetHostName).
 
         Args:
-            name_len: bytes that there are for the name and a NUL.
+            name_len: bytes available for the name and its NUL.
 
         Raises:
-            OsalError: OS_ERR_INVALID_SIZE for none, OS_ERROR when the name does not fit.
+            OsalError: OS_ERR_INVALID_SIZE for 0, OS_ERROR if the name does not fit.
         """
         check_size(name_len, "host name")
         name = self.config.processor_name
@@ -255,40 +256,42 @@ class ApplicationApi(CleanupApi):
         return name
 
     def bsp_get_argc(self) -> int:
-        """How many words the command line of the flight software has (OS_BSP_GetArgC)."""
+        """Return the number of words on the command line of the flight software (OS_BSP_GetArgC)."""
         return len(self.bsp_get_argv())
 
     def bsp_get_argv(self) -> tuple[str, ...]:
-        """Its words: the name of NASA's executable for this processor, and ids that it was given (OS_BSP_GetArgV)."""
+        """Return these words: the name of NASA's executable for this processor, and the ids given to it
+        (OS_BSP_GetArgV).
+        """
         config = self.config
         ids = [(option, str(getattr(config, name))) for name, option in IDENTITIES.items() if name in config.given]
         return (f"core-{self.config.processor_name}", *chain.from_iterable(ids))
 
     def bsp_set_exit_code(self, code: int) -> None:
-        """Leave a code for the program that started the run (OS_BSP_SetExitCode)."""
+        """Set the exit code for the program that started the run (OS_BSP_SetExitCode)."""
         self.exit_code = code
 
     def bsp_set_resource_type_config(self, resource_type: int, config_option_value: int) -> None:
-        """Keep an option for a kind of object (OS_BSP_SetResourceTypeConfig); nothing here asks for one."""
+        """Set an option for a kind of object (OS_BSP_SetResourceTypeConfig); no code here uses it."""
         self._resource_type_config[resource_type] = config_option_value
 
     def bsp_get_resource_type_config(self, resource_type: int) -> int:
-        """The option kept for a kind of object, 0 when there is none (OS_BSP_GetResourceTypeConfig)."""
+        """Return the option of a kind of object, or 0 if none is set (OS_BSP_GetResourceTypeConfig)."""
         return self._resource_type_config.get(resource_type, 0)
 
 
 class Osal(ShellApi, ApplicationApi, DiskApi, IdMapApi):
-    """The whole interface; see the modules beside this one for its parts.
+    """The whole interface; see the other modules of this package for its parts.
 
     Args:
         kernel: the simulated real-time kernel.
         config: limits (cfepy.config.platform).
-        console: where `printf` writes.
+        console: the output of `printf`.
         files: the virtual file system; None makes one with an empty /cf and /ram.
-        network: what sockets are plugged into; None makes one of its own.
-        memory: accounts for stacks and objects, None does not count.
-        sizes: what the operating system takes for each object, in bytes.
-        costs: virtual CPU time that a call takes, and copying bytes; None for nothing.
+        network: the virtual network; None makes a new one.
+        memory: the account for stacks and objects; None does not account.
+        sizes: memory used by each object, in bytes.
+        costs: virtual CPU time of a call and of copying bytes; None for no time.
         epoch_ns: local time at virtual time 0, in ns.
     """
 
@@ -320,7 +323,7 @@ class Osal(ShellApi, ApplicationApi, DiskApi, IdMapApi):
         )
 
     def api_init(self) -> None:
-        """File systems are gone after `api_teardown`, too, and OS_printf prints."""
+        """Make OSAL ready again, also without file systems and with OS_printf enabled."""
         was_shut_down = self._is_shut_down
         super().api_init()
         if was_shut_down:

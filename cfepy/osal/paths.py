@@ -1,6 +1,6 @@
 """OSAL's functions on files by path (osapi-file.h): facts, access, removing, renaming, copying.
 
-OS_FILESTAT_MODE and the like, macros on the result of `stat`, are functions here.
+OS_FILESTAT_MODE and the other macros on the result of `stat` are functions here.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _FOLDER_MODE = OS_FILESTAT_MODE_DIR | OS_FILESTAT_MODE_READ | OS_FILESTAT_MODE_W
 
 
 class FileStat(NamedTuple):
-    """What `stat` tells (os_fstat_t): OS_FILESTAT_MODE_* bits, local time of the last change, bytes."""
+    """The result of `stat` (os_fstat_t): OS_FILESTAT_MODE_* bits, local time of the last change, size in bytes."""
 
     file_mode_bits: int
     file_time: OsTime
@@ -32,37 +32,37 @@ class FileStat(NamedTuple):
 
 
 def filestat_mode(stats: FileStat) -> int:
-    """All OS_FILESTAT_MODE_* bits (OS_FILESTAT_MODE)."""
+    """Return all OS_FILESTAT_MODE_* bits (OS_FILESTAT_MODE)."""
     return stats.file_mode_bits
 
 
 def filestat_isdir(stats: FileStat) -> bool:
-    """Whether it is a folder (OS_FILESTAT_ISDIR)."""
+    """Return whether it is a folder (OS_FILESTAT_ISDIR)."""
     return bool(stats.file_mode_bits & OS_FILESTAT_MODE_DIR)
 
 
 def filestat_exec(stats: FileStat) -> bool:
-    """Whether it can be executed, or looked into (OS_FILESTAT_EXEC)."""
+    """Return whether it can be executed, or searched if it is a folder (OS_FILESTAT_EXEC)."""
     return bool(stats.file_mode_bits & OS_FILESTAT_MODE_EXEC)
 
 
 def filestat_write(stats: FileStat) -> bool:
-    """Whether it can be written (OS_FILESTAT_WRITE)."""
+    """Return whether it can be written (OS_FILESTAT_WRITE)."""
     return bool(stats.file_mode_bits & OS_FILESTAT_MODE_WRITE)
 
 
 def filestat_read(stats: FileStat) -> bool:
-    """Whether it can be read (OS_FILESTAT_READ)."""
+    """Return whether it can be read (OS_FILESTAT_READ)."""
     return bool(stats.file_mode_bits & OS_FILESTAT_MODE_READ)
 
 
 def filestat_size(stats: FileStat) -> int:
-    """Bytes (OS_FILESTAT_SIZE)."""
+    """Return the size in bytes (OS_FILESTAT_SIZE)."""
     return stats.file_size
 
 
 def filestat_time(stats: FileStat) -> int:
-    """Local time of the last change in whole seconds (OS_FILESTAT_TIME)."""
+    """Return the local time of the last change in whole seconds (OS_FILESTAT_TIME)."""
     return time_get_total_seconds(stats.file_time)
 
 
@@ -78,10 +78,10 @@ class PathApi(ClockApi, FileApi):
     filestat_time = staticmethod(filestat_time)
 
     def stat(self, path: str) -> FileStat:
-        """Facts about a file or folder (OS_stat).
+        """Return facts about a file or folder (OS_stat).
 
         Raises:
-            OsalError: OS_ERROR when there is none; OS_FS_ERR_* for the path.
+            OsalError: OS_ERROR if there is none; OS_FS_ERR_* for the path.
         """
         node = self.files.find(path)
         if node is not None:
@@ -91,29 +91,31 @@ class PathApi(ClockApi, FileApi):
         raise OsalError(OS_ERROR, f"there is nothing at {path}")
 
     def chmod(self, path: str, access_mode: int) -> None:
-        """Say what may be done with a file (OS_chmod); descriptors that are open keep what they can do.
+        """Set the access mode of a file (OS_chmod); open descriptors keep their access.
 
         Args:
             path: virtual path.
-            access_mode: OS_READ_ONLY, OS_WRITE_ONLY or OS_READ_WRITE; any other forbids both, as in NASA's.
+            access_mode: OS_READ_ONLY, OS_WRITE_ONLY or OS_READ_WRITE; any other value forbids both, as in NASA's OSAL.
 
         Raises:
-            OsalError: OS_ERROR when there is no such file, or it can be neither read nor written; OS_FS_ERR_* for the
+            OsalError: OS_ERROR if the file does not exist, or can be neither read nor written; OS_FS_ERR_* for the
                 path.
         """
         node = self.files.find(path)
         if node is None and self.files.is_folder(path):
-            return  # what may be done with a folder is not kept
+            return  # folders have no access mode here
         if node is None or not node.mode:
             raise OsalError(OS_ERROR, f"{path} is no file that could be opened")
         node.mode = ACCESS_BITS.get(access_mode, 0)
 
     def remove(self, path: str) -> None:
-        """Remove a file (OS_remove); OS_ERROR when there is none, OS_FS_ERR_* for the path."""
+        """Remove a file (OS_remove). It raises OS_ERROR if the file does not exist, and OS_FS_ERR_* for the path."""
         self.files.remove(path)
 
     def rename(self, old_filename: str, new_filename: str) -> None:
-        """Rename a file or folder in a volume (OS_rename); OS_ERROR when that cannot be, OS_FS_ERR_* for the paths."""
+        """Rename a file or folder in a volume (OS_rename). It raises OS_ERROR if that is impossible, OS_FS_ERR_* for
+        the paths.
+        """
         self.files.rename(old_filename, new_filename)
         for stream in self._streams:
             if stream.path == old_filename:
@@ -123,16 +125,16 @@ class PathApi(ClockApi, FileApi):
         """Copy a file (OS_cp).
 
         Raises:
-            OsalError: OS_ERROR when there is none, it may not be read, the copy may not be written or there is no room;
-                OS_FS_ERR_* for the paths; OS_ERR_NO_FREE_IDS.
+            OsalError: OS_ERROR if the file does not exist or cannot be read, if the copy cannot be written, or if there
+                is no room; OS_FS_ERR_* for the paths; OS_ERR_NO_FREE_IDS.
         """
-        self.close(self.open_create(src))  # the copy itself needs no descriptor, but the right to open one
+        self.close(self.open_create(src))  # copying needs no descriptor, but the right to open one
         data = self.files.read_file(src)
         self.close(self.open_create(dest, OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY))
         self.files.write_file(dest, data, self.kernel.now)
 
     def mv(self, src: str, dest: str) -> None:
-        """Move a file, to another volume too (OS_mv); errors as `cp`."""
+        """Move a file, also to another volume (OS_mv); see `cp` for the errors."""
         try:
             self.rename(src, dest)
         except OsalError:

@@ -1,6 +1,6 @@
-"""OSAL message queues (OS_Queue*): bounded, first in first out, and a writer never waits.
+"""OSAL message queues (OS_Queue*): bounded, first in, first out. A writer never waits.
 
-Messages are bytes; they are handed over by reference when immutable, and copied otherwise.
+Messages are bytes. Immutable ones are passed by reference, others are copied.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from cfepy.units import NS_PER_MS
 
 
 class QueueInfo(NamedTuple):
-    """What `queue_get_info` tells (OS_queue_prop_t)."""
+    """The result of `queue_get_info` (OS_queue_prop_t)."""
 
     name: str
     creator: int
@@ -46,9 +46,10 @@ class QueueApi(Core):
 
         Args:
             name: unique among queues, at most 19 characters.
-            depth: how many messages wait at most, 1 to OS_QUEUE_MAX_DEPTH; Linux refuses 0 later than what is above.
+            depth: maximum number of waiting messages, 1 to OS_QUEUE_MAX_DEPTH. As on Linux, 0 is refused later than a
+                larger number.
             data_size: largest message in bytes.
-            flags: without effect, as in NASA's.
+            flags: no effect, as in NASA's OSAL.
 
         Returns:
             The queue's id.
@@ -72,7 +73,7 @@ class QueueApi(Core):
         return self._register(self._queues, record, "queue", sizes.queue + depth * (sizes.queue_slot + data_size))
 
     def queue_delete(self, queue_id: int) -> None:
-        """Delete a queue with what is in it; a task that waits there gets OS_ERR_INVALID_ID (OS_QueueDelete).
+        """Delete a queue and its messages; a waiting task gets OS_ERR_INVALID_ID (OS_QueueDelete).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -105,14 +106,14 @@ class QueueApi(Core):
 
         Args:
             queue_id: the queue.
-            timeout_ms: OS_PEND (-1) waits without limit, OS_CHECK (0) not at all.
-            size: bytes that there are for it; None for enough.
+            timeout_ms: OS_PEND (-1) waits without limit, OS_CHECK (0) does not wait.
+            size: size of the caller's buffer in bytes; None for enough.
 
         Returns:
-            The message; None when there was none in that time.
+            The message, or None after the timeout.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_QUEUE_INVALID_SIZE for less room than the queue's messages may need.
+            OsalError: OS_ERR_INVALID_ID, OS_QUEUE_INVALID_SIZE for a buffer smaller than the queue's messages may be.
         """
         record = self._find_queue(queue_id)
         if record is None:
@@ -131,7 +132,7 @@ class QueueApi(Core):
         return None
 
     def queue_get_id_by_name(self, name: str) -> int:
-        """Id of a named queue (OS_QueueGetIdByName).
+        """Return the id of a named queue (OS_QueueGetIdByName).
 
         Raises:
             OsalError: OS_ERR_NAME_NOT_FOUND or OS_ERR_NAME_TOO_LONG.
@@ -139,7 +140,7 @@ class QueueApi(Core):
         return self._queues.named(name)
 
     def queue_get_info(self, queue_id: int) -> QueueInfo:
-        """Facts about a queue (OS_QueueGetInfo).
+        """Return facts about a queue (OS_QueueGetInfo).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.

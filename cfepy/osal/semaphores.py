@@ -13,7 +13,7 @@ from cfepy.units import NS_PER_MS
 
 
 class SemaphoreInfo(NamedTuple):
-    """What `bin_sem_get_info` and `count_sem_get_info` tell (OS_bin_sem_prop_t, OS_count_sem_prop_t)."""
+    """The result of `bin_sem_get_info` and `count_sem_get_info` (OS_bin_sem_prop_t, OS_count_sem_prop_t)."""
 
     name: str
     creator: int
@@ -45,8 +45,8 @@ class SemaphoreApi(Core):
 
         Args:
             name: unique among binary semaphores, at most 19 characters.
-            initial_value: OS_SEM_EMPTY or OS_SEM_FULL; a larger value counts as full, as in NASA's.
-            options: without effect, as in NASA's.
+            initial_value: OS_SEM_EMPTY or OS_SEM_FULL; a larger value counts as full, as in NASA's OSAL.
+            options: no effect, as in NASA's OSAL.
 
         Returns:
             The semaphore's id.
@@ -57,7 +57,7 @@ class SemaphoreApi(Core):
         return self._create(self._bin_sems, name, min(initial_value, 1), 1)
 
     def bin_sem_give(self, sem_id: int) -> None:
-        """Make a semaphore full; the most urgent task that waits takes it (OS_BinSemGive).
+        """Make a semaphore full; the most urgent waiting task takes it (OS_BinSemGive).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -70,7 +70,7 @@ class SemaphoreApi(Core):
         record.semaphore.give()
 
     def bin_sem_flush(self, sem_id: int) -> None:
-        """Let every task that waits go on, and leave the semaphore as it is (OS_BinSemFlush).
+        """Wake every waiting task, and leave the semaphore unchanged (OS_BinSemFlush).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -88,7 +88,10 @@ class SemaphoreApi(Core):
         self._take(self._bin_sems, sem_id, OS_PEND)
 
     def bin_sem_timed_wait(self, sem_id: int, timeout_ms: int) -> bool:
-        """As `bin_sem_take` for at most `timeout_ms`; False when the time was over (OS_BinSemTimedWait).
+        """Take a semaphore like `bin_sem_take`, waiting at most `timeout_ms` (OS_BinSemTimedWait).
+
+        Returns:
+            False after the timeout.
 
         Raises:
             OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_ARGUMENT for a negative time.
@@ -96,7 +99,7 @@ class SemaphoreApi(Core):
         return self._timed_wait(self._bin_sems, sem_id, timeout_ms)
 
     def bin_sem_delete(self, sem_id: int) -> None:
-        """Delete a binary semaphore; tasks that wait get OS_ERR_INVALID_ID (OS_BinSemDelete).
+        """Delete a binary semaphore; waiting tasks get OS_ERR_INVALID_ID (OS_BinSemDelete).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -104,11 +107,11 @@ class SemaphoreApi(Core):
         self._delete(self._bin_sems, sem_id)
 
     def bin_sem_get_id_by_name(self, name: str) -> int:
-        """Id of a named binary semaphore, or OS_ERR_NAME_NOT_FOUND (OS_BinSemGetIdByName)."""
+        """Return the id of a named binary semaphore, or OS_ERR_NAME_NOT_FOUND (OS_BinSemGetIdByName)."""
         return self._id_by_name(self._bin_sems, name)
 
     def bin_sem_get_info(self, sem_id: int) -> SemaphoreInfo:
-        """Facts about a binary semaphore, or OS_ERR_INVALID_ID (OS_BinSemGetInfo)."""
+        """Return facts about a binary semaphore, or OS_ERR_INVALID_ID (OS_BinSemGetInfo)."""
         return _info(self._semaphore(self._bin_sems, sem_id))
 
     def count_sem_create(self, name: str, initial_value: int, options: int = 0) -> int:
@@ -117,7 +120,7 @@ class SemaphoreApi(Core):
         Args:
             name: unique among counting semaphores, at most 19 characters.
             initial_value: 0 to SEM_VALUE_MAX.
-            options: without effect, as in NASA's.
+            options: no effect, as in NASA's OSAL.
 
         Returns:
             The semaphore's id.
@@ -128,7 +131,7 @@ class SemaphoreApi(Core):
         return self._create(self._count_sems, name, initial_value, None)
 
     def count_sem_give(self, sem_id: int) -> None:
-        """Count up, or let the most urgent waiter go on (OS_CountSemGive).
+        """Increment the count, or wake the most urgent waiter (OS_CountSemGive).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID, OS_SEM_FAILURE at SEM_VALUE_MAX.
@@ -143,7 +146,7 @@ class SemaphoreApi(Core):
         record.semaphore.give()
 
     def count_sem_take(self, sem_id: int) -> None:
-        """Wait until the count is above 0 and lower it (OS_CountSemTake).
+        """Wait until the count is above 0, then decrement it (OS_CountSemTake).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -151,7 +154,10 @@ class SemaphoreApi(Core):
         self._take(self._count_sems, sem_id, OS_PEND)
 
     def count_sem_timed_wait(self, sem_id: int, timeout_ms: int) -> bool:
-        """As `count_sem_take` for at most `timeout_ms`; False when the time was over (OS_CountSemTimedWait).
+        """Take a semaphore like `count_sem_take`, waiting at most `timeout_ms` (OS_CountSemTimedWait).
+
+        Returns:
+            False after the timeout.
 
         Raises:
             OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_ARGUMENT for a negative time.
@@ -159,7 +165,7 @@ class SemaphoreApi(Core):
         return self._timed_wait(self._count_sems, sem_id, timeout_ms)
 
     def count_sem_delete(self, sem_id: int) -> None:
-        """Delete a counting semaphore; tasks that wait get OS_ERR_INVALID_ID (OS_CountSemDelete).
+        """Delete a counting semaphore; waiting tasks get OS_ERR_INVALID_ID (OS_CountSemDelete).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -167,11 +173,11 @@ class SemaphoreApi(Core):
         self._delete(self._count_sems, sem_id)
 
     def count_sem_get_id_by_name(self, name: str) -> int:
-        """Id of a named counting semaphore, or OS_ERR_NAME_NOT_FOUND (OS_CountSemGetIdByName)."""
+        """Return the id of a named counting semaphore, or OS_ERR_NAME_NOT_FOUND (OS_CountSemGetIdByName)."""
         return self._id_by_name(self._count_sems, name)
 
     def count_sem_get_info(self, sem_id: int) -> SemaphoreInfo:
-        """Facts about a counting semaphore, or OS_ERR_INVALID_ID (OS_CountSemGetInfo)."""
+        """Return facts about a counting semaphore, or OS_ERR_INVALID_ID (OS_CountSemGetInfo)."""
         return _info(self._semaphore(self._count_sems, sem_id))
 
     def _create(self, table: OsObjectTable[OsSemaphore], name: str, initial_value: int, maximum: int | None) -> int:

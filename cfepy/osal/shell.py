@@ -1,6 +1,6 @@
-"""OSAL's shell (osapi-shell.h): a handful of commands on the virtual file system, their output written to a file.
+"""OSAL's shell (osapi-shell.h): a few commands on the virtual file system, with their output written to a file.
 
-NASA's Linux hands the line to the host's shell, of which a simulated computer has none.
+NASA's Linux passes the line to the host's shell; a simulated computer has none.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ class ShellApi(PathApi, DirectoryApi):
     """OS_ShellOutputToFile: cat, cp, echo, ls, mkdir, mv, rm, rmdir."""
 
     def shell_output_to_file(self, cmd: str, filedes: int) -> None:
-        """Run a command line, and write what it says to a file (OS_ShellOutputToFile).
+        """Run a command line, and write its output to a file (OS_ShellOutputToFile).
 
         Args:
             cmd: a command and its words, quoted as in sh; no pipes, no redirection, no variables.
-            filedes: a file that is open for writing.
+            filedes: a file open for writing.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERR_OPERATION_NOT_SUPPORTED for a socket, OS_ERROR when the command fails;
-                what went wrong is in the file.
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_OPERATION_NOT_SUPPORTED for a socket, OS_ERROR if the command fails,
+                with the reason in the file.
         """
         self._file(filedes)
         output, failed = self._run(cmd)
@@ -37,8 +37,8 @@ class ShellApi(PathApi, DirectoryApi):
             raise OsalError(OS_ERROR, f"{cmd!r} failed: {output.decode().strip()}")
 
     def _run(self, cmd: str) -> tuple[bytes, bool]:
-        """What a command line says, and whether it failed."""
-        import shlex  # few missions have a shell, and every boot would pay for it
+        """Return the output of a command line, and whether it failed."""
+        import shlex  # few missions have a shell, and a boot would pay for the import
 
         try:
             words = shlex.split(cmd[: OS_MAX_CMD_LEN - 1])

@@ -1,4 +1,4 @@
-"""OSAL's network addresses (OS_SockAddr_t, OS_SocketAddr*): IPv4 and IPv6, as objects that callers fill in."""
+"""OSAL's network addresses (OS_SockAddr_t, OS_SocketAddr*): IPv4 and IPv6, as mutable objects."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class SockAddr:
     """A network address (OS_SockAddr_t); `socket_addr_init` makes one.
 
     Args:
-        domain: OS_SocketDomain_INET or OS_SocketDomain_INET6; OS_SocketDomain_INVALID for one that is not filled in.
-        host: as text; None stands for all hosts.
+        domain: OS_SocketDomain_INET or OS_SocketDomain_INET6; OS_SocketDomain_INVALID for an empty address.
+        host: host as text; None means all hosts.
         port: 0 to 65535.
     """
 
@@ -46,17 +46,17 @@ class SockAddr:
 
     @property
     def place(self) -> Place:
-        """The address as the network has it."""
+        """The address as a `Place` on the network."""
         return Place(self.host, self.port)
 
 
 def from_place(place: Place) -> SockAddr:
-    """The address of a place on the network."""
+    """Return the address of a place on the network."""
     return SockAddr(OS_SocketDomain_INET6 if place.is_ip6 else OS_SocketDomain_INET, place.host, place.port)
 
 
 def socket_addr_init(domain: int) -> SockAddr:
-    """An address that stands for all hosts and no port (OS_SocketAddrInit).
+    """Return an address of all hosts without a port (OS_SocketAddrInit).
 
     Args:
         domain: OS_SocketDomain_INET or OS_SocketDomain_INET6.
@@ -70,7 +70,7 @@ def socket_addr_init(domain: int) -> SockAddr:
 
 
 def socket_addr_to_string(addr: SockAddr) -> str:
-    """The host of an address as text, without the port (OS_SocketAddrToString).
+    """Return the host of an address as text, without the port (OS_SocketAddrToString).
 
     Raises:
         OsalError: OS_INVALID_POINTER; OS_ERR_BAD_ADDRESS for an address without domain.
@@ -83,12 +83,12 @@ def socket_addr_from_string(addr: SockAddr, string: str) -> None:
     """Set the host of an address; its port stays (OS_SocketAddrFromString).
 
     Args:
-        addr: is changed.
+        addr: the address to change.
         string: numbers as inet_pton takes them, "127.0.0.1" or "::1"; names are not looked up.
 
     Raises:
-        OsalError: OS_INVALID_POINTER; OS_ERR_BAD_ADDRESS for an address without domain; OS_ERROR for a text that is no
-            address of this domain.
+        OsalError: OS_INVALID_POINTER; OS_ERR_BAD_ADDRESS for an address without domain; OS_ERROR for a text that is not
+            an address of this domain.
     """
     import ipaddress
 
@@ -104,7 +104,7 @@ def socket_addr_from_string(addr: SockAddr, string: str) -> None:
 
 
 def socket_addr_get_port(addr: SockAddr) -> int:
-    """The port of an address (OS_SocketAddrGetPort).
+    """Return the port of an address (OS_SocketAddrGetPort).
 
     Raises:
         OsalError: OS_INVALID_POINTER; OS_ERR_BAD_ADDRESS for an address without domain.
@@ -118,7 +118,7 @@ def socket_addr_set_port(addr: SockAddr, port_num: int) -> None:
 
     Raises:
         OsalError: OS_INVALID_POINTER; OS_ERR_BAD_ADDRESS for an address without domain; OS_ERR_INVALID_ARGUMENT for a
-            port that 16 bits cannot hold.
+            port that does not fit in 16 bits.
     """
     check_address(addr)
     if not 0 <= port_num <= HIGHEST_PORT:
@@ -127,10 +127,10 @@ def socket_addr_set_port(addr: SockAddr, port_num: int) -> None:
 
 
 def check_address(addr: SockAddr | None) -> SockAddr:
-    """An address that can be used.
+    """Return the address if it is valid.
 
     Raises:
-        OsalError: OS_INVALID_POINTER for None, OS_ERR_BAD_ADDRESS for one without domain.
+        OsalError: OS_INVALID_POINTER for None, OS_ERR_BAD_ADDRESS for an address without a domain.
     """
     check_given(addr)
     assert addr is not None
@@ -140,10 +140,10 @@ def check_address(addr: SockAddr | None) -> SockAddr:
 
 
 def check_target(addr: SockAddr) -> None:
-    """Look at an address that something is sent to. One without domain, as of zeros, gets as far as the network.
+    """Check the target address of a call; an address without a domain (all zeros) passes, and the network refuses it.
 
     Raises:
-        OsalError: OS_ERR_BAD_ADDRESS for a domain that there is not.
+        OsalError: OS_ERR_BAD_ADDRESS for an unknown domain.
     """
     if addr.domain != OS_SocketDomain_INVALID:
         check_address(addr)

@@ -1,8 +1,8 @@
 """OSAL's sockets and select (osapi-sockets.h, osapi-select.h) on the virtual network: IPv4 and IPv6, in virtual time.
 
-A socket is a descriptor: stream sockets send and receive with `read` and `write` (`cfepy.osal.streams`), datagram
-sockets with functions of their own. Select waits until one of several descriptors can be read or written; a file can
-always be both.
+A socket is a descriptor. Stream sockets send and receive with `read` and `write` (`cfepy.osal.streams`), datagram
+sockets with their own functions. Select waits until one of several descriptors can be read or written. A file always
+can.
 """
 
 from __future__ import annotations
@@ -51,14 +51,15 @@ class DatagramApi(StreamApi):
         Args:
             sock_id: a datagram socket.
             buffer: the data, at least a byte.
-            remote_addr: where to.
+            remote_addr: target address.
 
         Returns:
             The number of bytes.
 
         Raises:
             OsalError: OS_ERR_INVALID_SIZE, OS_INVALID_POINTER, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE,
-                OS_ERR_BAD_ADDRESS; OS_ERROR for an address of another domain or of none, or for more than UDP carries.
+                OS_ERR_BAD_ADDRESS; OS_ERROR for an address of another domain or without one, or for more data than UDP
+                carries.
         """
         check_size(len(buffer), "datagram")
         check_given(remote_addr)
@@ -73,20 +74,20 @@ class DatagramApi(StreamApi):
 
         Args:
             sock_id: a bound datagram socket.
-            buflen: bytes; what is longer is cut off.
-            timeout_ms: OS_PEND (-1) waits without limit, OS_CHECK (0) not at all.
+            buflen: buffer size in bytes; a longer datagram is truncated.
+            timeout_ms: OS_PEND (-1) waits without limit, OS_CHECK (0) does not wait.
 
         Returns:
-            The data and the sender's address; None when there was nothing in that time.
+            The data and the sender's address, or None after the timeout.
 
         Raises:
-            OsalError: OS_ERR_INVALID_SIZE, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for what is no datagram
-                socket, OS_ERR_INCORRECT_OBJ_STATE when it is not bound.
+            OsalError: OS_ERR_INVALID_SIZE, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE if it is not a datagram socket,
+                OS_ERR_INCORRECT_OBJ_STATE if it is not bound.
         """
         return self._recv_from(sock_id, buflen, ns_of(timeout_ms))
 
     def socket_recv_from_abs(self, sock_id: int, buflen: int, abs_timeout: OsTime) -> tuple[bytes, SockAddr] | None:
-        """As `socket_recv_from`, until a local time (OS_SocketRecvFromAbs)."""
+        """Receive a datagram, waiting until a local time; see `socket_recv_from` (OS_SocketRecvFromAbs)."""
         return self._recv_from(sock_id, buflen, self._ns_until(abs_timeout))
 
     def _recv_from(self, sock_id: int, buflen: int, timeout_ns: int) -> tuple[bytes, SockAddr] | None:
@@ -103,7 +104,7 @@ class DatagramApi(StreamApi):
 
 
 class SocketInfo(NamedTuple):
-    """What `socket_get_info` tells (OS_socket_prop_t)."""
+    """The result of `socket_get_info` (OS_socket_prop_t)."""
 
     name: str
     creator: int
@@ -128,7 +129,7 @@ class SocketApi(DatagramApi):
             kind: OS_SocketType_DATAGRAM or OS_SocketType_STREAM.
 
         Returns:
-            Its id, good for `read`, `write` and `close` too.
+            Its id, also valid for `read`, `write` and `close`.
 
         Raises:
             OsalError: OS_ERR_NOT_IMPLEMENTED for another domain or kind; OS_ERR_NO_FREE_IDS.
@@ -142,12 +143,12 @@ class SocketApi(DatagramApi):
 
         Args:
             sock_id: the socket.
-            addr: where it is to be reached; port 0 takes any free one.
+            addr: the local address; port 0 takes any free port.
 
         Raises:
             OsalError: OS_INVALID_POINTER, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for a file,
-                OS_ERR_INCORRECT_OBJ_STATE when it is bound or connected, OS_ERR_BAD_ADDRESS; OS_ERROR when the
-                address is taken or is not on this network.
+                OS_ERR_INCORRECT_OBJ_STATE if it is bound or connected, OS_ERR_BAD_ADDRESS; OS_ERROR if the address is
+                taken or is not on this network.
         """
         check_given(addr)
         record = self._socket(sock_id)
@@ -159,11 +160,11 @@ class SocketApi(DatagramApi):
         record.bound = True
 
     def socket_listen(self, sock_id: int) -> None:
-        """Let a stream socket take connections (OS_SocketListen).
+        """Make a stream socket accept connections (OS_SocketListen).
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for what is no stream socket,
-                OS_ERR_INCORRECT_OBJ_STATE when it is not bound, or listens, or is connected.
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE if it is not a stream socket,
+                OS_ERR_INCORRECT_OBJ_STATE if it is not bound, already listens or is connected.
         """
         record = self._socket(sock_id, OS_SocketType_STREAM)
         if not record.bound or record.connected or record.listener.listening:
@@ -172,7 +173,9 @@ class SocketApi(DatagramApi):
         record.endpoint = record.listener
 
     def socket_bind(self, sock_id: int, addr: SockAddr) -> None:
-        """Bind a socket, and let a stream socket listen (OS_SocketBind); errors as the two functions above."""
+        """Bind a socket, and make a stream socket listen (OS_SocketBind); see the two functions above for the
+        errors.
+        """
         self.socket_bind_address(sock_id, addr)
         if self._socket(sock_id).kind == OS_SocketType_STREAM:
             self.socket_listen(sock_id)
@@ -180,25 +183,25 @@ class SocketApi(DatagramApi):
     # -- connections -------------------------------------------------------------------------------------------------
 
     def socket_connect(self, sock_id: int, addr: SockAddr, timeout_ms: int = OS_PEND) -> bool:
-        """Connect a stream socket, or tell a datagram socket whom to talk to (OS_SocketConnect).
+        """Connect a stream socket, or set the peer of a datagram socket (OS_SocketConnect).
 
         Args:
             sock_id: the socket.
-            addr: the other side.
-            timeout_ms: the longest time in ms that the other side may have no room; OS_PEND for no limit.
+            addr: the peer.
+            timeout_ms: longest time in ms to wait while the peer has no room; OS_PEND for no limit.
 
         Returns:
-            False when the time was over first.
+            False after the timeout.
 
         Raises:
             OsalError: OS_INVALID_POINTER, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for a file,
-                OS_ERR_INCORRECT_OBJ_STATE for a connected stream socket, OS_ERR_BAD_ADDRESS; OS_ERROR when no
-                socket listens there, and for an address of another domain or of none.
+                OS_ERR_INCORRECT_OBJ_STATE for a connected stream socket, OS_ERR_BAD_ADDRESS; OS_ERROR if no socket
+                listens there, or for an address of another domain or without one.
         """
         return self._connect(sock_id, addr, ns_of(timeout_ms))
 
     def socket_connect_abs(self, sock_id: int, addr: SockAddr, abs_timeout: OsTime) -> bool:
-        """As `socket_connect`, until a local time (OS_SocketConnectAbs)."""
+        """Connect a socket, waiting until a local time; see `socket_connect` (OS_SocketConnectAbs)."""
         return self._connect(sock_id, addr, self._ns_until(abs_timeout))
 
     def _connect(self, sock_id: int, addr: SockAddr, timeout_ns: int) -> bool:
@@ -238,19 +241,19 @@ class SocketApi(DatagramApi):
 
         Args:
             sock_id: a listening socket.
-            timeout_ms: OS_PEND (-1) waits without limit, OS_CHECK (0) not at all.
+            timeout_ms: OS_PEND (-1) waits without limit, OS_CHECK (0) does not wait.
 
         Returns:
-            The socket of the connection and the address of the other side; None when none came in that time.
+            The socket of the connection and the peer's address, or None after the timeout.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for what is no stream socket,
-                OS_ERR_INCORRECT_OBJ_STATE when it is not bound, OS_ERROR when it does not listen, OS_ERR_NO_FREE_IDS.
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE if it is not a stream socket,
+                OS_ERR_INCORRECT_OBJ_STATE if it is not bound, OS_ERROR if it does not listen, OS_ERR_NO_FREE_IDS.
         """
         return self._accept(sock_id, ns_of(timeout_ms))
 
     def socket_accept_abs(self, sock_id: int, abs_timeout: OsTime) -> tuple[int, SockAddr] | None:
-        """As `socket_accept`, until a local time (OS_SocketAcceptAbs)."""
+        """Wait for a connection until a local time; see `socket_accept` (OS_SocketAcceptAbs)."""
         return self._accept(sock_id, self._ns_until(abs_timeout))
 
     def _accept(self, sock_id: int, timeout_ns: int) -> tuple[int, SockAddr] | None:
@@ -271,7 +274,7 @@ class SocketApi(DatagramApi):
         return accepted.id, from_place(stream.remote)
 
     def socket_shutdown(self, sock_id: int, mode: int) -> None:
-        """Read or write no more, and let the other side know (OS_SocketShutdown).
+        """Shut a connection down for reading or writing, and notify the peer (OS_SocketShutdown).
 
         Args:
             sock_id: a connected socket.
@@ -293,7 +296,9 @@ class SocketApi(DatagramApi):
     # -- facts and options -------------------------------------------------------------------------------------------
 
     def socket_get_id_by_name(self, sock_name: str) -> int:
-        """Id of a socket by its address, "127.0.0.1:1234", of a connection "REMOTE-LOCAL" (OS_SocketGetIdByName).
+        """Return the id of a socket by its name (OS_SocketGetIdByName).
+
+        The name is its address, such as "127.0.0.1:1234", or "REMOTE-LOCAL" for a connection.
 
         Raises:
             OsalError: OS_ERR_NAME_NOT_FOUND, or OS_ERR_NAME_TOO_LONG for 20 characters and more.
@@ -305,12 +310,14 @@ class SocketApi(DatagramApi):
         raise OsalError(OS_ERR_NAME_NOT_FOUND, f"no socket is called {sock_name!r}")
 
     def socket_get_info(self, sock_id: int) -> SocketInfo:
-        """Facts about a socket (OS_SocketGetInfo), or OS_ERR_INVALID_ID; the name is cut at 19 characters."""
+        """Return facts about a socket (OS_SocketGetInfo); the name is cut to 19 characters. It raises
+        OS_ERR_INVALID_ID.
+        """
         record = self._stream(sock_id)
         return SocketInfo(record.name[: OS_MAX_API_NAME - 1], record.creator)
 
     def socket_get_option(self, sock_id: int, opt_id: int) -> int:
-        """An option of a socket (OS_SocketGetOption).
+        """Return an option of a socket (OS_SocketGetOption).
 
         Args:
             sock_id: the socket.
@@ -323,7 +330,7 @@ class SocketApi(DatagramApi):
         return record.dscp if record is not None else 0
 
     def socket_set_option(self, sock_id: int, opt_id: int, optval: int) -> None:
-        """Set an option of a socket (OS_SocketSetOption); the network does not look at it.
+        """Set an option of a socket (OS_SocketSetOption); the network ignores it.
 
         Args:
             sock_id: the socket.
@@ -338,7 +345,7 @@ class SocketApi(DatagramApi):
             record.dscp = optval & DSCP_BITS
 
     def _with_option(self, sock_id: int, opt_id: int) -> OsSocket | None:
-        """The socket that has an option; None for the option that nothing has."""
+        """Return the socket for an option, or None for OS_socket_option_UNDEFINED."""
         if opt_id not in (OS_socket_option_UNDEFINED, OS_socket_option_IP_DSCP):
             raise OsalError(OS_ERR_INVALID_ARGUMENT, f"there is no socket option {opt_id}")
         record = self._stream(sock_id)
@@ -349,16 +356,16 @@ class SocketApi(DatagramApi):
         return record
 
     def _entitle(self, record: OsSocket, place: Place, more: str = "") -> None:
-        """Name a socket after its address, as OS_CreateSocketName does."""
+        """Name a socket after its address, like OS_CreateSocketName."""
         self._streams.names.pop(record.name, None)
         record.name = f"{place.host}:{place.port}{more}"
 
 
 class FdSet:
-    """A set of descriptors (OS_FdSet); filled with `select_fd_add`, and changed by `select_multiple`.
+    """A set of descriptors (OS_FdSet); filled by `select_fd_add` and changed by `select_multiple`.
 
     Attributes:
-        slots: places in the table of descriptors, ascending.
+        slots: slots in the table of descriptors, ascending.
     """
 
     __slots__ = ("slots",)
@@ -375,11 +382,12 @@ class SelectApi(SocketApi):
 
         Args:
             objid: a socket or a file.
-            state_flags: what to wait for: OS_STREAM_STATE_READABLE, OS_STREAM_STATE_WRITABLE or both; 0 never waits.
-            msecs: OS_PEND (-1) waits without limit, OS_CHECK (0) not at all.
+            state_flags: the states to wait for: OS_STREAM_STATE_READABLE, OS_STREAM_STATE_WRITABLE or both; 0 never
+                waits.
+            msecs: OS_PEND (-1) waits without limit, OS_CHECK (0) does not wait.
 
         Returns:
-            Which of the flags are true; None when none came true in that time.
+            The flags that are true, or None after the timeout.
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -387,48 +395,49 @@ class SelectApi(SocketApi):
         return self._select_single(objid, state_flags, ns_of(msecs))
 
     def select_single_abs(self, objid: int, state_flags: int, abs_timeout: OsTime) -> int | None:
-        """As `select_single`, until a local time (OS_SelectSingleAbs)."""
+        """Wait for a descriptor until a local time; see `select_single` (OS_SelectSingleAbs)."""
         return self._select_single(objid, state_flags, self._ns_until(abs_timeout))
 
     def select_multiple(self, read_set: FdSet | None, write_set: FdSet | None, msecs: int = OS_PEND) -> bool:
-        """Wait until a descriptor of the one set can be read or one of the other written (OS_SelectMultiple).
+        """Wait until a descriptor of `read_set` can be read or one of `write_set` can be written (OS_SelectMultiple).
 
         Args:
-            read_set: what to read from; afterwards only those that can be read are in it. None for nothing.
+            read_set: descriptors to read from; afterwards only the readable ones are left in it. None for no
+                descriptor.
             write_set: the same for writing.
-            msecs: OS_PEND (-1) waits without limit, OS_CHECK (0) not at all.
+            msecs: OS_PEND (-1) waits without limit, OS_CHECK (0) does not wait.
 
         Returns:
-            False when none was ready in that time; the sets are as they were then.
+            False after the timeout; the sets are unchanged then.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID when there is no open descriptor in the sets.
+            OsalError: OS_ERR_INVALID_ID if there is no open descriptor in the sets.
         """
         return self._select_multiple(read_set, write_set, ns_of(msecs))
 
     def select_multiple_abs(self, read_set: FdSet | None, write_set: FdSet | None, abs_timeout: OsTime) -> bool:
-        """As `select_multiple`, until a local time (OS_SelectMultipleAbs)."""
+        """Wait for descriptors until a local time; see `select_multiple` (OS_SelectMultipleAbs)."""
         return self._select_multiple(read_set, write_set, self._ns_until(abs_timeout))
 
     def select_fd_zero(self, fd_set: FdSet) -> None:
-        """Empty a set (OS_SelectFdZero), or OS_INVALID_POINTER."""
+        """Empty a set (OS_SelectFdZero); raises OS_INVALID_POINTER."""
         _given(fd_set).slots.clear()
 
     def select_fd_add(self, fd_set: FdSet, objid: int) -> None:
-        """Add a descriptor (OS_SelectFdAdd), or OS_INVALID_POINTER, OS_ERR_INVALID_ID."""
+        """Add a descriptor (OS_SelectFdAdd); raises OS_INVALID_POINTER, OS_ERR_INVALID_ID."""
         slots, slot = _given(fd_set).slots, self._slot(objid)
         if slot not in slots:
             slots.append(slot)
             slots.sort()
 
     def select_fd_clear(self, fd_set: FdSet, objid: int) -> None:
-        """Take a descriptor out, if it is there (OS_SelectFdClear), or OS_INVALID_POINTER, OS_ERR_INVALID_ID."""
+        """Remove a descriptor, if it is in the set (OS_SelectFdClear); raises OS_INVALID_POINTER, OS_ERR_INVALID_ID."""
         slots, slot = _given(fd_set).slots, self._slot(objid)
         if slot in slots:
             slots.remove(slot)
 
     def select_fd_is_set(self, fd_set: FdSet, objid: int) -> bool:
-        """Whether a descriptor is in a set (OS_SelectFdIsSet)."""
+        """Return whether a descriptor is in a set (OS_SelectFdIsSet)."""
         return get_base(objid) == OS_STREAM_BASE and self._streams.index(objid) in fd_set.slots
 
     def _select_single(self, objid: int, wanted: int, timeout_ns: int) -> int | None:
@@ -474,7 +483,7 @@ class SelectApi(SocketApi):
 
 
 def _state(record: OsStream) -> int:
-    """OS_STREAM_STATE_READABLE and OS_STREAM_STATE_WRITABLE as they are now."""
+    """Return the flags OS_STREAM_STATE_READABLE and OS_STREAM_STATE_WRITABLE that are true now."""
     if not isinstance(record, OsSocket):
         return OS_STREAM_STATE_READABLE | OS_STREAM_STATE_WRITABLE
     endpoint = record.endpoint

@@ -1,4 +1,4 @@
-"""Descriptors that may stand for sockets: reading, writing and closing them, and how their waiting works.
+"""Descriptors that may be sockets: read, write, close, and waiting for them.
 
 On a file these are the functions of `cfepy.osal.files`, which never wait.
 """
@@ -25,14 +25,14 @@ class OsSocket(OsStream):
     """The record of a socket; its name is its address, once it has one.
 
     Args:
-        name: until it has an address.
+        name: its name until it has an address.
         domain: OS_SocketDomain_INET or OS_SocketDomain_INET6.
         kind: OS_SocketType_DATAGRAM or OS_SocketType_STREAM.
 
     Attributes:
-        endpoint: its end of the network, whatever that is at the moment.
-        mailbox: what a datagram socket receives in.
-        listener: what holds the TCP port of a stream socket.
+        endpoint: its present end of the network.
+        mailbox: the receiver of a datagram socket.
+        listener: the owner of the TCP port of a stream socket.
         dscp: the option IP_DSCP.
     """
 
@@ -49,12 +49,12 @@ class OsSocket(OsStream):
         self.dscp = 0
 
     def error(self, what: str) -> OsalError:
-        """What the host's network code would refuse."""
+        """Return the error for a call that the host's network code would refuse."""
         return OsalError(OS_ERROR, f"socket {self.name} {what}")
 
 
 class StreamApi(ClockApi, FileApi):
-    """`read`, `write` and `close` for sockets and files, with time-outs."""
+    """`read`, `write` and `close` for sockets and files, with timeouts."""
 
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
@@ -64,37 +64,37 @@ class StreamApi(ClockApi, FileApi):
         """Read from a file, or wait for bytes from a socket (OS_read); b"" at the end.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR when it is not open for reading or connected.
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR if it is not open for reading or connected.
         """
         return self._timed_read(filedes, nbytes, FOREVER) or b""
 
     def timed_read(self, filedes: int, nbytes: int, timeout_ms: int = OS_PEND) -> bytes | None:
-        """As `read`, but wait so many ms at most; None when nothing came (OS_TimedRead)."""
+        """Read like `read`, waiting at most `timeout_ms`; return None after the timeout (OS_TimedRead)."""
         return self._timed_read(filedes, nbytes, ns_of(timeout_ms))
 
     def timed_read_abs(self, filedes: int, nbytes: int, abstime: OsTime) -> bytes | None:
-        """As `read`, but wait until a local time at most; None when nothing came (OS_TimedReadAbs)."""
+        """Read like `read`, waiting until a local time; return None after it (OS_TimedReadAbs)."""
         return self._timed_read(filedes, nbytes, self._ns_until(abstime))
 
     def write(self, filedes: int, data: bytes | bytearray | memoryview) -> int:
-        """Write to a file, or as much as fits to a socket once there is room (OS_write); how many bytes that were.
+        """Write to a file, or wait for room at a socket and write the bytes that fit (OS_write); return their number.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR when it is not open for writing, the disk is
-                full, or no reader is left.
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR if it is not open for writing, the disk is full,
+                or no reader is left.
         """
         return self._timed_write(filedes, data, FOREVER) or 0
 
     def timed_write(self, filedes: int, data: bytes | bytearray | memoryview, timeout_ms: int = OS_PEND) -> int | None:
-        """As `write`, but wait so many ms at most; None when there was no room (OS_TimedWrite)."""
+        """Write like `write`, waiting at most `timeout_ms`; return None after the timeout (OS_TimedWrite)."""
         return self._timed_write(filedes, data, ns_of(timeout_ms))
 
     def timed_write_abs(self, filedes: int, data: bytes | bytearray | memoryview, abstime: OsTime) -> int | None:
-        """As `write`, but wait until a local time at most; None when there was no room (OS_TimedWriteAbs)."""
+        """Write like `write`, waiting until a local time; return None after it (OS_TimedWriteAbs)."""
         return self._timed_write(filedes, data, self._ns_until(abstime))
 
     def close(self, filedes: int) -> None:
-        """Close a file or a socket (OS_close); a task that waits at the socket gets OS_ERR_INVALID_ID.
+        """Close a file or a socket (OS_close); a task waiting at the socket gets OS_ERR_INVALID_ID.
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -109,7 +109,7 @@ class StreamApi(ClockApi, FileApi):
         record = self._streams.lookup(filedes)
         if not isinstance(record, OsSocket):
             return super().read(filedes, nbytes)
-        self._stream(filedes)  # the call costs what it costs on a file
+        self._stream(filedes)  # the call costs as much as on a file
         if record.kind == OS_SocketType_STREAM and not isinstance(record.endpoint, Stream):
             raise record.error("is not connected")
         if not self._wait_readable(record, timeout_ns):
@@ -145,7 +145,7 @@ class StreamApi(ClockApi, FileApi):
         if len(data) > LONGEST_DATAGRAM:
             raise record.error(f"cannot send {len(data)} bytes at once")
         self._charge_bytes(len(data))
-        self._check_alive(record)  # a more urgent task may have closed it; a port that it took now would stay taken
+        self._check_alive(record)  # a more urgent task may have closed it, and a port taken now would never be released
         source = record.mailbox.place or self._take_place(record, Place(ANY_HOST[record.domain], 0))
         self.network.send(Datagram(source.reached(), target, data))
         return len(data)
@@ -153,7 +153,7 @@ class StreamApi(ClockApi, FileApi):
     # -- plugging in and out -----------------------------------------------------------------------------------------
 
     def _take_place(self, record: OsSocket, place: Place) -> Place:
-        """Bind a socket on the network; where it is then."""
+        """Bind a socket on the network and return its address."""
         if record.kind == OS_SocketType_DATAGRAM:
             taken = self.network.datagrams.bind(record.mailbox, place)
         else:
@@ -163,7 +163,7 @@ class StreamApi(ClockApi, FileApi):
         return taken
 
     def _unplug(self, record: OsSocket) -> None:
-        """Take a closed socket off the network; a task that waits there finds it deleted."""
+        """Take a closed socket off the network; a waiting task finds it deleted."""
         self.network.datagrams.release(record.mailbox)
         self.network.streams.release(record.listener)
         record.listener.close()
@@ -181,7 +181,11 @@ class StreamApi(ClockApi, FileApi):
         return True
 
     def _await(self, endpoints: Sequence[Endpoint], ready: Callable[[], bool], timeout_ns: int) -> bool:
-        """Wait until `ready` says so, which is asked again whenever an endpoint has changed; False after the time."""
+        """Wait until `ready` returns true; it is called again after each change of an endpoint.
+
+        Returns:
+            False after the timeout.
+        """
         kernel = self.kernel
         until = kernel.now + timeout_ns
         waits = WaitList("socket")
@@ -202,13 +206,13 @@ class StreamApi(ClockApi, FileApi):
             raise self._streams.gone(record)
 
     def _ns_until(self, abs_timeout: OsTime) -> int:
-        """How long it is until a local time, in ns; FOREVER for OS_TIME_MAX."""
+        """Return the ns until a local time, or FOREVER for OS_TIME_MAX."""
         if abs_timeout == OS_TIME_MAX:
             return FOREVER
         return max(0, abs_timeout - self.get_local_time()) * OS_TIME_TICK_RESOLUTION_NS
 
     def _socket(self, sock_id: int, kind: int | None = None) -> OsSocket:
-        """The record of a socket, of a certain kind; what is none is of the wrong type."""
+        """Return the record of a socket of a given kind; any other descriptor raises OS_ERR_INCORRECT_OBJ_TYPE."""
         record = self._stream(sock_id)
         if not isinstance(record, OsSocket) or kind not in (None, record.kind):
             raise OsalError(OS_ERR_INCORRECT_OBJ_TYPE, f"descriptor {sock_id:#x} is no such socket")
@@ -216,5 +220,5 @@ class StreamApi(ClockApi, FileApi):
 
 
 def ns_of(timeout_ms: int) -> int:
-    """A time-out of OSAL's in ns: OS_PEND, and all that is negative, is FOREVER."""
+    """Return a timeout in ns; OS_PEND and all negative values give FOREVER."""
     return timeout_ms * NS_PER_MS if timeout_ms >= 0 else FOREVER

@@ -1,4 +1,4 @@
-"""OSAL tasks (OS_Task*): kernel tasks with an id, a name, a stack that is accounted for, and a delete handler."""
+"""OSAL tasks (OS_Task*): kernel tasks with an id, a name, a stack in the memory accounting, and a delete handler."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LEAST_STACK = 16384
 
 
 class TaskProperties(NamedTuple):
-    """What `task_get_info` tells (OS_task_prop_t)."""
+    """The result of `task_get_info` (OS_task_prop_t)."""
 
     name: str
     creator: int
@@ -32,9 +32,9 @@ class TaskProperties(NamedTuple):
 
 
 class Nobody:
-    """The owner of tasks that belong to no application; there is one, `NOBODY`."""
+    """The owner of tasks that belong to no application; its only instance is `NOBODY`."""
 
-    name = "system"  # in the board's books and in lines about the task
+    name = "system"  # its name in the memory accounting and in messages
 
 
 NOBODY = Nobody()
@@ -72,18 +72,18 @@ class TaskApi(Core):
         owner: Any = None,
         brings_stack: bool = False,
     ) -> int:
-        """Start a task (OS_TaskCreate). A more urgent one runs before this returns.
+        """Start a task (OS_TaskCreate). A task more urgent than the caller runs before this call returns.
 
         Args:
             name: unique among tasks, at most 19 characters.
             entry: called without arguments; when it returns, the task ends.
-            stack_size: bytes, accounted for where the board counts memory.
+            stack_size: size in bytes, accounted for if the board limits memory.
             priority: 0 (most urgent) to 255.
-            flags: OS_FP_ENABLED or 0; without effect here.
-            owner: the application it works for; None takes over the caller's. A task of NOBODY is what cFE makes of
-                every task that OS_TaskCreate starts: the end of an application does not end it, CFE_ES_GetAppID fails
-                in it and in what it starts, and an exception in it resets the processor.
-            brings_stack: the caller has the memory of the stack, of which Linux wants 16 KiB at least.
+            flags: OS_FP_ENABLED or 0; no effect here.
+            owner: the application that owns it; None takes the caller's owner. In cFE every task that OS_TaskCreate
+                starts belongs to NOBODY: the end of an application does not end it, CFE_ES_GetAppID fails in it and in
+                its children, and an exception in it resets the processor.
+            brings_stack: the caller provides the memory of the stack; Linux requires at least 16 KiB.
 
         Returns:
             The task's id.
@@ -107,9 +107,9 @@ class TaskApi(Core):
         return task_id
 
     def task_delete(self, task_id: int) -> None:
-        """End a task and call its delete handler; what it created stays (OS_TaskDelete).
+        """End a task and call its delete handler; objects that it created stay (OS_TaskDelete).
 
-        A task that deletes itself does not come back from this call.
+        The call does not return to a task that deletes itself.
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -131,12 +131,12 @@ class TaskApi(Core):
         """Call `handler` when another task deletes the calling one (OS_TaskInstallDeleteHandler).
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID when the caller is no OSAL task.
+            OsalError: OS_ERR_INVALID_ID if the caller is not an OSAL task.
         """
         self._task(self.task_get_id()).on_delete = handler
 
     def task_delay(self, milliseconds: int) -> None:
-        """Sleep (OS_TaskDelay); others run even with 0 ms.
+        """Sleep (OS_TaskDelay); other tasks can run even with 0 ms.
 
         Raises:
             OsalError: OS_ERR_INVALID_ARGUMENT for a negative time.
@@ -162,11 +162,13 @@ class TaskApi(Core):
             self.kernel.set_priority(record.task, priority)
 
     def task_get_id(self) -> int:
-        """Id of the calling task, in a timer callback that of the time base, 0 for any other caller (OS_TaskGetId)."""
+        """Return the id of the calling task, of the time base in a timer callback, or 0 for any other caller
+        (OS_TaskGetId).
+        """
         return self._task_ids.get(self.kernel.current, 0)
 
     def task_get_id_by_name(self, name: str) -> int:
-        """Id of a named task (OS_TaskGetIdByName).
+        """Return the id of a named task (OS_TaskGetIdByName).
 
         Raises:
             OsalError: OS_ERR_NAME_NOT_FOUND or OS_ERR_NAME_TOO_LONG.
@@ -174,7 +176,7 @@ class TaskApi(Core):
         return self._tasks.named(name)
 
     def task_get_info(self, task_id: int) -> TaskProperties:
-        """Facts about a task (OS_TaskGetInfo).
+        """Return facts about a task (OS_TaskGetInfo).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -183,10 +185,10 @@ class TaskApi(Core):
         return TaskProperties(record.name, record.creator, record.stack_size, record.priority)
 
     def task_find_id_by_system_data(self, system_data: Task) -> int:
-        """Id of the OSAL task that runs as a kernel task (OS_TaskFindIdBySystemData).
+        """Return the id of the OSAL task that a kernel task runs (OS_TaskFindIdBySystemData).
 
         Raises:
-            OsalError: OS_ERR_NAME_NOT_FOUND when it is none.
+            OsalError: OS_ERR_NAME_NOT_FOUND if there is none.
         """
         for task_id, record in self._tasks.items():
             if record.task is system_data:
@@ -200,7 +202,7 @@ class TaskApi(Core):
         return record
 
     def _live(self, record: OsTask) -> None:
-        """What an OSAL task runs."""
+        """Run an OSAL task from start to end."""
         record.task = task = self.kernel.current
         self._task_ids[task] = task.number = record.id
         self._notify(OS_EVENT_TASK_STARTUP, record.id)
@@ -210,7 +212,7 @@ class TaskApi(Core):
             self._forget(record)
 
     def _call_delete_handler(self, record: OsTask) -> None:
-        """An error in it is its application's, and does not stop the deletion of more."""
+        """Call the delete handler; an error in it belongs to its application and does not stop further deletions."""
         if record.on_delete is None:
             return
         try:

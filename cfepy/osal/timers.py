@@ -1,8 +1,8 @@
-"""OSAL time bases and timers (OS_TimeBase*, OS_Timer*): sources of ticks, and callbacks at them, once or periodically.
+"""OSAL time bases and timers (OS_TimeBase*, OS_Timer*): sources of ticks, and callbacks at ticks, once or periodically.
 
-Each time base has a task that runs the callbacks of its timers. It is the most urgent of all (priority 0) and tickless:
-it sleeps until the tick at which the next of its timers is due, so an idle time base costs nothing, and ticks are
-counted from the clock. A time base with a sync function of its own is driven by what that returns instead.
+Each time base has a task that runs the callbacks of its timers. The task has the highest priority (0) and is tickless:
+it sleeps until the tick at which its next timer is due. So an idle time base costs nothing, and ticks are counted from
+the clock. A time base with its own sync function follows the return value of that function instead.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ TIMER_LIMIT_US = 0x7FFFFFFF
 
 
 class TimeBaseInfo(NamedTuple):
-    """What `time_base_get_info` tells (OS_timebase_prop_t); times in us."""
+    """The result of `time_base_get_info` (OS_timebase_prop_t); times in us."""
 
     name: str
     creator: int
@@ -50,10 +50,10 @@ class OsTimer(OsObject):
         self.backlog_resets = 0
 
     def expire(self, freerun: int) -> None:
-        """Call back as often as is due, and set the next expiry.
+        """Run the callback as often as it is due, and set the next expiry.
 
-        An interval shorter than the time base's makes several calls at one tick, but never for a backlog of more than
-        one interval.
+        An interval shorter than the time base's leads to several calls at one tick, but a backlog is at most one
+        interval.
         """
         if self.due is None or self.due > freerun:
             return
@@ -73,7 +73,7 @@ class OsTimer(OsObject):
 
 
 class OsTimeBase(OsObject):
-    """The record of a time base. Ticks: one at `first_ns`, then one every `interval_us`."""
+    """The record of a time base. It ticks at `first_ns`, then every `interval_us`."""
 
     __slots__ = ("base", "first_ns", "interval_us", "kernel", "start_us", "sync", "task", "timers", "waits", "wakes_at")
 
@@ -81,7 +81,7 @@ class OsTimeBase(OsObject):
         super().__init__(name)
         self.kernel = kernel
         self.sync = sync
-        self.timers: list[OsTimer] = []  # the one added last comes first, as in NASA's ring
+        self.timers: list[OsTimer] = []  # newest first, as in NASA's ring
         self.start_us = 0
         self.interval_us = 0
         self.first_ns = 0
@@ -91,7 +91,7 @@ class OsTimeBase(OsObject):
         self.task: Task | None = None
 
     def set(self, start_us: int, interval_us: int) -> None:
-        """Begin to tick, the first time after `start_us`."""
+        """Start to tick, first after `start_us`."""
         self.base = self.freerun()
         self.start_us = start_us or interval_us
         self.interval_us = interval_us
@@ -99,7 +99,7 @@ class OsTimeBase(OsObject):
         self.poke()
 
     def freerun(self) -> int:
-        """Time in us that the ticks so far stand for."""
+        """Return the time of the ticks so far, in us."""
         since = self.kernel.now - self.first_ns
         if self.sync is not None or not self.start_us or since < 0:
             return self.base
@@ -107,7 +107,9 @@ class OsTimeBase(OsObject):
         return self.base + self.start_us + ticks * self.interval_us
 
     def instant_of(self, freerun: int) -> int | None:
-        """Virtual time in ns of the first tick at which the free run time is at least `freerun`; None for never."""
+        """Return the virtual time of the first tick with a free run time of at least `freerun`, in ns; None
+        for never.
+        """
         beyond = freerun - self.base - self.start_us
         if not self.start_us:
             return None
@@ -118,18 +120,18 @@ class OsTimeBase(OsObject):
         return self.first_ns - (-beyond // self.interval_us) * self.interval_us * NS_PER_US
 
     def next_instant(self) -> int | None:
-        """Virtual time in ns at which the next timer is due."""
+        """Return the virtual time at which the next timer is due, in ns."""
         instants = [self.instant_of(timer.due) for timer in self.timers if timer.due is not None]
         return min((instant for instant in instants if instant is not None), default=None)
 
     def poke(self) -> None:
-        """A timer or the ticks changed: let the task look again when it would sleep too long."""
+        """Wake the task after a change of a timer or the ticks, if it would sleep too long."""
         instant = self.next_instant()
         if instant is not None and (self.wakes_at is None or instant < self.wakes_at):
             self.kernel.wake_first(self.waits)
 
     def expire(self, freerun: int) -> None:
-        """Run the callbacks that are due; an error in one is its application's, and stops only that timer."""
+        """Run the callbacks that are due; an error in one belongs to its application and stops only that timer."""
         task = self.kernel.current
         for timer in tuple(self.timers):
             task.owner = timer.owner
@@ -142,7 +144,7 @@ class OsTimeBase(OsObject):
         task.owner = None
 
     def run_by_clock(self) -> None:
-        """The task of a time base that follows the kernel's clock."""
+        """Run the task of a time base that follows the kernel's clock."""
         kernel = self.kernel
         while not self.deleted:
             self.wakes_at = instant = self.next_instant()
@@ -154,7 +156,7 @@ class OsTimeBase(OsObject):
                 self.expire(self.freerun())
 
     def run_by_sync(self, sync: Callable[[int], int]) -> None:
-        """The task of a time base with a sync function, which waits and returns the us that went by."""
+        """Run the task of a time base with a sync function, which waits and returns the elapsed us."""
         idle = 0
         while not self.deleted:
             elapsed = sync(self.id)
@@ -180,8 +182,8 @@ class TimeBaseApi(Core):
 
         Args:
             name: unique among time bases, at most 19 characters.
-            external_sync: called with the id again and again in the time base's task; it waits for the next tick and
-                returns how many us that is. None follows the kernel's clock.
+            external_sync: called with the id repeatedly in the time base's task; it waits for the next tick and returns
+                the elapsed us. None follows the kernel's clock.
 
         Returns:
             The time base's id.
@@ -197,7 +199,7 @@ class TimeBaseApi(Core):
         return time_base_id
 
     def time_base_set(self, timebase_id: int, start_time: int, interval_time: int) -> None:
-        """Let it tick (OS_TimeBaseSet).
+        """Start the ticks of a time base (OS_TimeBaseSet).
 
         Args:
             timebase_id: the time base.
@@ -229,7 +231,7 @@ class TimeBaseApi(Core):
             self.kernel.kill(record.task)
 
     def time_base_get_id_by_name(self, name: str) -> int:
-        """Id of a named time base (OS_TimeBaseGetIdByName).
+        """Return the id of a named time base (OS_TimeBaseGetIdByName).
 
         Raises:
             OsalError: OS_ERR_NAME_NOT_FOUND, OS_ERR_NAME_TOO_LONG, OS_ERR_INCORRECT_OBJ_STATE in a timer callback.
@@ -238,7 +240,7 @@ class TimeBaseApi(Core):
         return self._time_bases.named(name)
 
     def time_base_get_info(self, timebase_id: int) -> TimeBaseInfo:
-        """Facts about a time base (OS_TimeBaseGetInfo).
+        """Return facts about a time base (OS_TimeBaseGetInfo).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_STATE in a timer callback.
@@ -249,7 +251,7 @@ class TimeBaseApi(Core):
         return TimeBaseInfo(record.name, record.creator, record.interval_us, record.freerun() & FREERUN_MASK, accuracy)
 
     def time_base_get_free_run(self, timebase_id: int) -> int:
-        """The us that its ticks so far stand for, modulo 2**32 (OS_TimeBaseGetFreeRun).
+        """Return the us of its ticks so far, modulo 2**32 (OS_TimeBaseGetFreeRun).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -266,7 +268,7 @@ class TimeBaseApi(Core):
         task = self.kernel.current
         record.task = task
         task.owner = None
-        self._task_ids[task] = record.id  # so a callback is known for what it is, as in NASA's
+        self._task_ids[task] = record.id  # to recognize a callback, as in NASA's OSAL
         try:
             if record.sync is not None:
                 record.run_by_sync(record.sync)
@@ -277,7 +279,7 @@ class TimeBaseApi(Core):
 
 
 class TimerInfo(NamedTuple):
-    """What `timer_get_info` tells (OS_timer_prop_t); times in us."""
+    """The result of `timer_get_info` (OS_timer_prop_t); times in us."""
 
     name: str
     creator: int
@@ -294,13 +296,14 @@ class TimerApi(TimeBaseApi):
         self._timers: OsObjectTable[OsTimer] = self._table("timer", OS_TIMECB_BASE, setup.config.os_max_timers)
 
     def timer_create(self, name: str, callback: Callable[[int], object]) -> int:
-        """Make a timer with a time base of its own (OS_TimerCreate).
+        """Make a timer with its own time base (OS_TimerCreate).
 
         NASA's clock_accuracy is in `timer_get_info`.
 
         Args:
             name: unique among timers and among time bases, at most 19 characters.
-            callback: called with the timer's id at every expiry, in the task of the time base: it must not wait.
+            callback: called with the timer's id at every expiry, in the task of the time base: the callback must not
+                wait.
 
         Returns:
             The timer's id.
@@ -326,13 +329,13 @@ class TimerApi(TimeBaseApi):
             name: unique among timers, at most 19 characters.
             timebase_id: the time base.
             callback: called with the timer's id and `callback_arg` at every expiry; it must not wait.
-            callback_arg: handed to the callback.
+            callback_arg: second argument of the callback.
 
         Returns:
             The timer's id.
 
         Raises:
-            OsalError: as `timer_create`, and OS_ERR_INVALID_ID.
+            OsalError: see `timer_create`, and OS_ERR_INVALID_ID.
         """
         _check_callback(callback)
         self._timers.check_name(name)
@@ -365,7 +368,7 @@ class TimerApi(TimeBaseApi):
             timer.timebase.poke()
 
     def timer_delete(self, timer_id: int) -> None:
-        """Delete a timer, and its time base if that is its own (OS_TimerDelete).
+        """Delete a timer, and its time base if it has its own (OS_TimerDelete).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_STATE in a timer callback.
@@ -378,7 +381,7 @@ class TimerApi(TimeBaseApi):
             self.time_base_delete(timer.timebase.id)
 
     def timer_get_id_by_name(self, name: str) -> int:
-        """Id of a named timer (OS_TimerGetIdByName).
+        """Return the id of a named timer (OS_TimerGetIdByName).
 
         Raises:
             OsalError: OS_ERR_NAME_NOT_FOUND, OS_ERR_NAME_TOO_LONG, OS_ERR_INCORRECT_OBJ_STATE in a timer callback.
@@ -387,7 +390,7 @@ class TimerApi(TimeBaseApi):
         return self._timers.named(name)
 
     def timer_get_info(self, timer_id: int) -> TimerInfo:
-        """Facts about a timer (OS_TimerGetInfo).
+        """Return facts about a timer (OS_TimerGetInfo).
 
         Raises:
             OsalError: OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_STATE in a timer callback.
@@ -398,7 +401,7 @@ class TimerApi(TimeBaseApi):
         return TimerInfo(timer.name, timer.creator, timer.start_us, timer.interval_us, accuracy)
 
     def has_timer(self, owner: object) -> bool:
-        """Whether an application has made a timer, whose callback is executed by a task of OSAL's own."""
+        """Return whether an application has a timer, whose callback runs in a task of OSAL."""
         return any(timer.owner is owner for timer in self._timers)
 
     def _add(self, name: str, timebase: OsTimeBase, callback: Callable[[int], object], dedicated: bool) -> int:

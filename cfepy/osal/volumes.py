@@ -1,7 +1,7 @@
-"""A volume of the virtual file system: files in memory, on top of a folder of the host if there is one.
+"""A volume of the virtual file system: files in memory, on top of an optional folder of the host.
 
-The host's folder is only ever read; what a mission writes, renames or removes stays in memory and ends with it. A host
-file is read once and kept, so that a run does not see later changes. Paths are relative to the volume, "sub/x.tbl".
+The host's folder is only read. Files that a mission writes, renames or removes change in memory only. A host file is
+read once and kept, so a run does not see later changes. Paths are relative to the volume, such as "sub/x.tbl".
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ class FileNode:
 
     Attributes:
         data: its content.
-        modified_ns: when it was last written, in ns of virtual time; 0 as it came with the mission.
-        mode: what may be done with it, OS_FILESTAT_MODE_READ and _WRITE.
+        modified_ns: virtual time of the last write in ns; 0 if the mission has not changed it.
+        mode: the allowed access, OS_FILESTAT_MODE_READ and _WRITE.
     """
 
     data: bytearray = field(default_factory=bytearray)
@@ -33,8 +33,8 @@ class Volume:
     """Files and folders below one mount point.
 
     Args:
-        host: folder of the host that shows through, None for none.
-        capacity: bytes that files in memory may take together, None for no limit.
+        host: folder of the host under it; None for none.
+        capacity: limit of the total size of files in memory, in bytes; None for no limit.
     """
 
     def __init__(self, host: Path | None = None, capacity: int | None = None) -> None:
@@ -42,34 +42,34 @@ class Volume:
         self.capacity = capacity
         self._nodes: dict[str, FileNode] = {}
         self._folders: set[str] = {""}
-        self._hidden: set[str] = set()  # files and folders of the host that were removed or renamed
+        self._hidden: set[str] = set()  # removed or renamed files and folders of the host
 
     def node(self, path: str) -> FileNode | None:
-        """The file at a path; None when there is none."""
+        """Return the file at a path, or None if there is none."""
         found = self._nodes.get(path)
         if found is None and (real := self._on_host(path)) is not None and real.is_file():
             found = self._nodes[path] = FileNode(bytearray(read_limited(real, sys.maxsize)))
         return found
 
     def create(self, path: str) -> FileNode:
-        """An empty file at a path where there was none."""
+        """Create an empty file at a path without one."""
         node = self._nodes[path] = FileNode()
         return node
 
     def remove(self, path: str) -> None:
-        """Take a file away."""
+        """Remove a file."""
         self._nodes.pop(path, None)
         self._hidden.add(path)
 
     def rename(self, old: str, new: str) -> None:
-        """Give a file another path in this volume; a file that was there is gone."""
+        """Move a file within this volume, replacing an existing file."""
         node = self.node(old)
         if node is not None:
             self.remove(old)
             self._nodes[new] = node
 
     def rename_folder(self, old: str, new: str) -> None:
-        """Give a folder another path in this volume, with all that is in it."""
+        """Move a folder within this volume, with its content."""
         self.make_folder(new)
         for name in self.names(old):
             source, target = _join(old, name), _join(new, name)
@@ -80,7 +80,7 @@ class Volume:
         self.remove_folder(old)
 
     def is_folder(self, path: str) -> bool:
-        """Whether there is a folder at a path."""
+        """Return whether there is a folder at a path."""
         real = self._on_host(path)
         return path in self._folders or (real is not None and real.is_dir())
 
@@ -89,12 +89,12 @@ class Volume:
         self._folders.add(path)
 
     def remove_folder(self, path: str) -> None:
-        """Take an empty folder away."""
+        """Remove an empty folder."""
         self._folders.discard(path)
         self._hidden.add(path)
 
     def names(self, path: str) -> list[str]:
-        """Names of the files and folders in a folder, sorted."""
+        """Return the names of the files and folders in a folder, sorted."""
         found = {_inside(path, other) for other in (*self._nodes, *self._folders)} - {""}
         real = self._on_host(path)
         if real is not None and real.is_dir():
@@ -102,19 +102,19 @@ class Volume:
         return sorted(found)
 
     def used(self) -> int:
-        """Bytes of all files in memory."""
+        """Return the total bytes of the files in memory."""
         return sum(len(node.data) for node in self._nodes.values())
 
     def has_room(self, size: int) -> bool:
-        """Whether `size` more bytes fit."""
+        """Return whether `size` more bytes fit."""
         return self.capacity is None or self.used() + size <= self.capacity
 
     def written(self) -> list[str]:
-        """Paths of the files that a mission wrote, sorted; those that came with it are not among them."""
+        """Return the sorted paths of the files that the mission wrote, without its original files."""
         return sorted(path for path, node in self._nodes.items() if node.modified_ns or self.host is None)
 
     def clear(self) -> None:
-        """Remove everything that is in memory (format)."""
+        """Remove all files in memory (format)."""
         self._nodes.clear()
         self._folders = {""}
 
@@ -132,6 +132,6 @@ def _join(folder: str, name: str) -> str:
 
 
 def _inside(folder: str, path: str) -> str:
-    """The name that leads from a folder towards a path inside it, "" when the path is elsewhere."""
+    """Return the next name on the way from a folder to a path inside it, or "" if the path is elsewhere."""
     prefix = f"{folder}/" if folder else ""
     return path[len(prefix) :].partition("/")[0] if path.startswith(prefix) else ""

@@ -1,7 +1,7 @@
-"""The one way to fly a mission: a plan of the run, its course from stop to stop, its results, and its determinism.
+"""The way to fly a mission: the plan of a run, its course from stop to stop, its results, and its determinism.
 
-What belongs here decides how a mission is flown, or measures and compares runs. `cfepy.mission` has the simulated
-computer alone; this package adds the monitors, scripts and faults that the mission file or the user asks for. The
+Code that decides how a mission is flown, or measures and compares runs, belongs here. `cfepy.mission` has only the
+simulated computer. This package adds the monitors, scripts and faults that the mission file or the user requests. The
 central file is `cfepy/pilot/pilot.py`.
 """
 
@@ -64,7 +64,7 @@ __all__ = [
     "takeoff",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

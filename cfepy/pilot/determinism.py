@@ -1,7 +1,7 @@
-"""Comparing the traces of several runs of one mission while they are made, to find their first difference.
+"""Comparison of the traces of several runs of one mission while they are made, to find the first difference.
 
-A run that is compared writes its records to a pipe as frames; the comparison reads a frame at a time from each, so the
-memory it takes does not grow with the runs, and a run that is ahead waits for the others.
+A compared run writes its records to a pipe as frames. The comparison reads one frame at a time from each run. So its
+memory does not grow with the runs, and a faster run waits for the others.
 """
 
 from __future__ import annotations
@@ -17,12 +17,13 @@ from typing import Any, BinaryIO
 from cfepy.rtos import Kernel
 from cfepy.trace import CALLED, ONLY_COMPARED, Trace
 
-_head = struct.Struct("<II")  # records, and bytes that follow; no records: the bytes are what ends the stream
+# number of records, and bytes that follow; with 0 records the bytes are the end of the stream
+_head = struct.Struct("<II")
 _LENGTH = "I"
 
 
 class ComparedTrace(Trace):
-    """A trace that has more than is compared otherwise. Its digest leaves that out, so it is as without it."""
+    """A trace with additional records for comparison, which its digest leaves out."""
 
     __slots__ = ()
 
@@ -34,13 +35,13 @@ class ComparedTrace(Trace):
 
 
 def hear_calls(kernel: Kernel, trace: Trace) -> None:
-    """Record the calls of compiled applications, too: where they part, code has seen something else before.
+    """Record the calls of compiled applications too, because a different call shows that code has seen different data.
 
-    Calls of code without debug data are left out, such as those of libgcov, which go on with the counts of other runs.
+    Calls of code without debug data are left out, such as those of libgcov, whose counts continue over runs.
 
     Args:
-        kernel: of the processor.
-        trace: where they are recorded.
+        kernel: the kernel of the processor.
+        trace: the trace to record in.
     """
 
     def heard(place: str, arguments: tuple[object, ...]) -> None:
@@ -52,7 +53,7 @@ def hear_calls(kernel: Kernel, trace: Trace) -> None:
 
 
 class RunEndedError(Exception):
-    """A run that is compared ended without saying how."""
+    """Exception for a compared run that ended without an end frame."""
 
 
 class RecordWriter:
@@ -66,14 +67,14 @@ class RecordWriter:
         self._file = file
 
     def write(self, records: Sequence[bytes]) -> None:
-        """Write records; empty ones, which the host leaves for a moment, are no records."""
+        """Write records without the empty ones, which the host leaves for a moment."""
         records = [record for record in records if record]
         if records:
             lengths = array(_LENGTH, map(len, records)).tobytes()
             self._write(len(records), lengths + b"".join(records))
 
     def end(self, facts: Mapping[str, Any]) -> None:
-        """The run is over; `facts` tell how."""
+        """Write the end of the run, with facts about it."""
         self._write(0, json.dumps(facts).encode())
 
     def _write(self, count: int, body: bytes) -> None:
@@ -83,12 +84,12 @@ class RecordWriter:
 
 @dataclass(slots=True)
 class RecordReader:
-    """Reads what a `RecordWriter` wrote.
+    """Reads the output of a `RecordWriter`.
 
     Attributes:
         file: the other end of the pipe.
-        pending: records that were read and not yet compared.
-        facts: how the run ended; None before.
+        pending: records that were read but not compared yet.
+        facts: facts about the end of the run; None before.
     """
 
     file: BinaryIO
@@ -96,10 +97,10 @@ class RecordReader:
     facts: dict[str, Any] | None = None
 
     def fill(self) -> None:
-        """Have a record pending, unless there are no more.
+        """Read more records if none is pending, unless the stream has ended.
 
         Raises:
-            RunEndedError: the pipe was closed in the middle.
+            RunEndedError: if the pipe was closed in the middle.
         """
         if self.pending or self.facts is not None:
             return
@@ -125,11 +126,11 @@ def _split(body: bytes, count: int) -> list[bytes]:
 
 @dataclass(frozen=True, slots=True)
 class Parting:
-    """Where a run parts from the first one.
+    """The first difference between a run and the first run.
 
     Attributes:
-        run: which one it is, from 1.
-        index: number of the first record that differs, from 0.
+        run: number of the run, from 1.
+        index: number of the first different record, from 0.
     """
 
     run: int
@@ -137,16 +138,16 @@ class Parting:
 
 
 def first_parting(runs: Sequence[RecordReader]) -> tuple[Parting | None, int]:
-    """Compare runs with the first of them, to their end or to where one differs.
+    """Compare runs with the first one, to their end or to the first difference.
 
     Args:
         runs: two or more.
 
     Returns:
-        The earliest difference, None without one; the number of records that agree.
+        The earliest difference or None, and the number of equal records.
 
     Raises:
-        RunEndedError: a run ended in the middle.
+        RunEndedError: if a run ended in the middle.
     """
     agreed = 0
     while True:
@@ -167,5 +168,5 @@ def first_parting(runs: Sequence[RecordReader]) -> tuple[Parting | None, int]:
 
 
 def _prefix(one: Sequence[bytes], other: Sequence[bytes]) -> int:
-    """How many records at the start are the same; there is one that is not."""
+    """Return the number of equal records at the start, if at least one differs."""
     return next(at for at, (mine, theirs) in enumerate(zip(one, other, strict=True)) if mine != theirs)

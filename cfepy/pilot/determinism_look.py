@@ -1,8 +1,8 @@
-"""The first difference of two runs: a look at a run when it makes a certain record, and lines of source to suspect.
+"""The first difference of two runs: an observation of a run at a given record, and suspicious lines of source.
 
-A look gives the task that made the record, its line of source, and the records before. The lines to suspect are a
-guess from the text of one source file: those that may make two runs differ, such as iterated sets, addresses, hashes
-of texts.
+The observation has the task that made the record, its line of source, and the records before. The suspicious lines are
+guesses from the text of one source file: lines that can make two runs differ, such as iteration over sets, addresses,
+and hashes of texts.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _PAST_THE_SIMULATION = {
     "numpy.empty_like": "has what lay in memory before",
     "weakref.WeakSet": "is a set in the order of addresses",
 }
-"""Functions that answer something else in each run, by their whole names."""
+"""Functions with a different result in each run, by their full names."""
 _CLOCKS = {"numpy.datetime64": ("now", "today")}
 _CLOCK = "asks the clock of this computer"
 _OUTSIDE = frozenset([_PAST_THE_SIMULATION[name] for name in ("sqlite3.connect", "crypt.mksalt")] + [_CLOCK])
@@ -49,7 +49,7 @@ _OPERATORS = (ast.BitOr, ast.BitAnd, ast.Sub, ast.BitXor)
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A line of code that was being executed: file, number, function, and its text."""
+    """A line of executed code: file, number, function, and its text."""
 
     file: str
     number: int
@@ -59,13 +59,13 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """What was seen at a record.
+    """The state of a run at a record.
 
     Attributes:
-        record: its bytes; empty when the run was over before.
-        before: stands for all records before it.
+        record: its bytes; empty if the run ended before.
+        before: a digest of all records before it.
         lines: the last records before it and the record itself, as text.
-        stack: the lines of node, application and libraries that were being executed, outermost first.
+        stack: the executed lines of node, application and libraries, the outermost first.
         files: the nodes' own source files.
     """
 
@@ -76,18 +76,18 @@ class Look:
     files: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """Itself as plain data."""
+        """Return the observation as plain data."""
         return asdict(self) | {"record": self.record.hex()}
 
     @classmethod
     def from_dict(cls, plain: dict[str, Any]) -> Look:
-        """The other way round."""
+        """Return an observation from the data of `to_dict`."""
         stack = tuple(Line(**line) for line in plain["stack"])
         record = bytes.fromhex(plain["record"])
         return cls(record, plain["before"], tuple(plain["lines"]), stack, tuple(plain["files"]))
 
     def without_root(self, root: str) -> Look:
-        """The same with the places that source files have when this folder is not their root."""
+        """Return the same observation with source paths without this root folder."""
         stack = tuple(replace(line, file=line.file.removeprefix(root)) for line in self.stack)
         return replace(self, stack=stack, files=tuple(file.removeprefix(root) for file in self.files))
 
@@ -99,7 +99,7 @@ class Look:
 
 
 class _Counted(TimedRecords):
-    """A trace's list of records that calls `reached` with the record that has a certain number."""
+    """A list of trace records that calls `reached` at the record with a given number."""
 
     def __init__(self, index: int, reached: Callable[[bytes], object]) -> None:
         super().__init__()
@@ -107,7 +107,7 @@ class _Counted(TimedRecords):
         self._reached = reached
 
     def append(self, record: bytes) -> None:
-        """As of a list; the host's empty marks are not counted."""
+        """Append a record; the host's empty marks are not counted."""
         if record:
             if self._left == 0:
                 self._reached(record)
@@ -116,12 +116,12 @@ class _Counted(TimedRecords):
 
 
 class LookingTrace(Trace):
-    """A trace that looks around when it gets a certain record.
+    """A trace that makes an observation at a given record.
 
     Args:
         index: number of the record, from 0.
-        describe: makes lines of text of records; it gets up to two batches that end with the record.
-        seen: gets what was seen, inside the simulation.
+        describe: returns text lines for records; it gets up to two batches that end with the record.
+        seen: called with the observation, inside the simulation.
     """
 
     __slots__ = ("_before", "_counted", "_describe", "_latest", "_seen")
@@ -143,7 +143,7 @@ class LookingTrace(Trace):
         self._before.update(b"".join(self._latest))
 
     def _add_to(self, shown: TimedRecords) -> None:
-        """What was collected, but for the host's empty marks."""
+        """Add the collected records, except the host's empty marks."""
         for record, time_ns in zip(self._counted, self._counted.times, strict=True):
             if record:
                 shown.add(record, time_ns)
@@ -152,11 +152,11 @@ class LookingTrace(Trace):
         self._seen(self.look(record, sys._getframe(2)))
 
     def look(self, record: bytes, frame: FrameType | None = None) -> Look:
-        """What there is to see now.
+        """Return an observation of the present state.
 
         Args:
-            record: the record that is about to be made; empty at the end of the run.
-            frame: of the code that makes it.
+            record: the record about to be made; empty at the end of the run.
+            frame: frame of the code that makes it.
         """
         shown = self._latest
         known = len(shown)
@@ -168,7 +168,7 @@ class LookingTrace(Trace):
 
 
 def stack_of(frame: FrameType | None) -> tuple[Line, ...]:
-    """The lines of node, application and libraries that a frame and its callers execute, outermost first."""
+    """Return the lines of node, application and libraries that a frame and its callers execute, outermost first."""
     found: list[Line] = []
     while frame is not None:
         code = frame.f_code
@@ -180,9 +180,9 @@ def stack_of(frame: FrameType | None) -> tuple[Line, ...]:
 
 
 def place_text(frame: FrameType | None) -> str:
-    """The innermost line of the mission's own code in a stack: `arm.py:12: self.count += 1`.
+    """Return the innermost line of the mission's own code in a stack: `arm.py:12: self.count += 1`.
 
-    In a thread that a library has for itself it is that library's, and where only Python's own code runs, empty.
+    In a thread of a library it is a line of the library. It is empty if only Python's own code runs.
     """
     shown: list[Line] = [line for line in stack_of(frame) if not is_standard(line.file)]
     lines = [line for line in shown if not is_library(line.file)] or shown
@@ -193,7 +193,7 @@ def place_text(frame: FrameType | None) -> str:
 
 
 class Suspect(NamedTuple):
-    """A line that may be the cause, and why."""
+    """A suspicious line, with the reason."""
 
     file: str
     line: int
@@ -201,11 +201,11 @@ class Suspect(NamedTuple):
     source: str
 
 
-_DEPTH = 300  # what is nested more deeply is not looked into
+_DEPTH = 300  # deeper nesting is not examined
 
 
 def suspects(file: str) -> list[Suspect]:
-    """The suspicious lines of a Python file, in order; none when it cannot be read."""
+    """Return the suspicious lines of a Python file, in order; empty if it cannot be read."""
     try:
         text = text_limited(file, PYTHON_BYTES)
         tree = parsed_input(text, depth=_DEPTH)
@@ -217,13 +217,13 @@ def suspects(file: str) -> list[Suspect]:
 
 
 def outside_lines() -> list[str]:
-    """Lines of the nodes' own files that ask this computer, whether they were executed or not; each as text."""
+    """Return the lines of the nodes' own files that query this computer, executed or not, as text."""
     found = [each for file in own_files() for each in suspects(file) if each.why in _OUTSIDE]
     return [f"{Path(each.file).name}:{each.line}: {each.source}: {each.why}" for each in found]
 
 
 class _Reader:
-    """Looks through a module; a name counts as a set when one is assigned to it anywhere.
+    """Examines a module; a name counts as a set if one is assigned to it anywhere.
 
     Args:
         tree: the module.
@@ -241,7 +241,7 @@ class _Reader:
         self._imported = dict(_imports(tree))
 
     def found(self) -> Iterator[tuple[int, str]]:
-        """Number of each suspicious line, and why it is one."""
+        """Yield the number of each suspicious line, with the reason."""
         for node in ast.walk(self._tree):
             if isinstance(node, (ast.For, ast.comprehension)) and self._is_set(node.iter):
                 yield node.iter.lineno, "goes through a set"
@@ -277,7 +277,7 @@ class _Reader:
 
 
 def _imports(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """Names that imports give, and what they stand for: `np` and `numpy`, `connect` and `sqlite3.connect`."""
+    """Yield the names from imports with their full names: `np` and `numpy`, `connect` and `sqlite3.connect`."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             for each in node.names:
@@ -288,7 +288,7 @@ def _imports(tree: ast.Module) -> Iterator[tuple[str, str]]:
 
 
 def _name(node: ast.AST) -> str:
-    """`name` or `self.name` as text; empty for anything else."""
+    """Return `name` or `self.name` as text; empty for any other expression."""
     if isinstance(node, ast.Name):
         return node.id
     if isinstance(node, ast.Attribute):

@@ -1,6 +1,6 @@
-"""A failure of a run: something that must not be, with what tells one cause from another.
+"""A failure of a run, with an identification of its cause.
 
-It is plain data, which goes between processes and into files. `cfepy.pilot.problems` finds the failures of a run.
+It is plain data, passed between processes and into files. `cfepy.pilot.problems` finds the failures of a run.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 
 class FailureKind:
-    """What a failure is: the first words that are told of it."""
+    """The kind of a failure: the first words of its text."""
 
     DIED = "died"
     RAISED = "unhandled exception"
@@ -42,7 +42,7 @@ LEAVES_OTHERS_WAITING = frozenset(
         FailureKind.STALLED,
     ]
 )
-"""What takes a task away, for which others may wait then."""
+"""The kinds of failures that remove a task, for which others may then wait."""
 _PLACE_OR_VALUE = re.compile(
     r"(?P<kept>\.\w+:\d+)|0x[0-9A-Fa-f]+|\d+(?:\.\d+)?(?:e[-+]?\d+)?|(?<!\w)'[^']*'|\"[^\"]*\"", re.ASCII
 )
@@ -50,17 +50,17 @@ _PLACE_OR_VALUE = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """Something that must not be.
+    """A failure of a run.
 
     Attributes:
         kind: one of `FailureKind`.
-        who: the application, invariant, step or result that it is about.
-        text: what was wrong, one line.
-        at_ns: virtual time at which it was; None when it is the state at the end.
+        who: the application, invariant, step or result concerned.
+        text: a one-line description.
+        at_ns: virtual time in ns; None if it is about the state at the end.
         detail: more lines, such as a traceback; may be empty.
-        task: the task in which it showed; empty when that is not known.
-        cause: what tells causes of this kind apart, such as the id of an event; empty where it is the text.
-        span_ns: of a deadline, how long before `at_ns` the time began in which it should have been; None of others.
+        task: the task that showed it; empty if unknown.
+        cause: identifies the cause within the kind, such as the id of an event; empty if the text does.
+        span_ns: for a deadline, the length of its time window before `at_ns` in ns; otherwise None.
     """
 
     kind: str
@@ -74,15 +74,15 @@ class Failure:
 
     @property
     def group(self) -> str:
-        """What failures of one cause have in common.
+        """The key shared by failures with the same cause.
 
-        Of a text that is all but numbers and quoted texts, which differ from schedule to schedule. Numbers of source
-        lines stay (`checks.py:12`), since they tell causes apart.
+        It is the text without numbers and quoted texts, which differ from schedule to schedule. Numbers of source lines
+        stay (`checks.py:12`), because they distinguish causes.
         """
         cause = self.cause or _PLACE_OR_VALUE.sub(lambda found: found["kept"] or "#", self.text)
         return f"{self.kind}|{self.who}|{cause}"
 
     @property
     def title(self) -> str:
-        """Kind, who and text for a person, in one line."""
+        """Kind, subject and text, in one line for display."""
         return f"{self.kind}: {self.who}: {self.text}" if self.who else f"{self.kind}: {self.text}"

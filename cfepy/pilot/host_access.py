@@ -1,7 +1,7 @@
-"""What a mission does past the simulated computer: code in C and installed packages reach the host by themselves.
+"""Accesses of a mission that bypass the simulated computer: C code and installed packages reach the host directly.
 
-Python's audit hooks tell of it. What cfepy and Python do for a mission, such as an import, is left out: a contact
-counts when a line of the mission's own code has it made, itself or through a package.
+Python's audit hooks report them. Actions that cfepy and Python perform for a mission, such as an import, are left out.
+An access counts if a line of the mission's own code causes it, directly or through a package.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from cfepy.pilot.determinism_look import place_text
 
 _WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT
 _CHANGES = frozenset({"os.link", "os.mkdir", "os.remove", "os.rename", "os.rmdir", "os.symlink", "os.truncate"})
-_ANSWERS = ("/proc/", "/sys/", "/dev/random", "/dev/urandom")  # each time others
+_ANSWERS = ("/proc/", "/sys/", "/dev/random", "/dev/urandom")  # different at each time
 _SAME = ("/dev/null", "/dev/zero", "/dev/full")
 _IMPORTS = "<frozen importlib"
-MOST = 100  # contacts that are kept
+MOST = 100  # maximum number of accesses kept
 
 
 class OpenWorld:
-    """Notes contacts with the host; a context manager around a run.
+    """Records accesses to the host; a context manager around a run.
 
     Attributes:
-        contacts: each once, as text with the line of code.
+        contacts: each access once, as text with the line of code.
     """
 
     def __init__(self) -> None:
@@ -37,7 +37,8 @@ class OpenWorld:
         self._own: tuple[str, ...] = ()
 
     def __enter__(self) -> OpenWorld:
-        tempfile.gettempdir()  # found now, by a file that is made and removed, and not in the midst of what a node does
+        # determined now, because it creates and removes a file, which must not happen during a node's work
+        tempfile.gettempdir()
         _listeners().append(self)
         return self
 
@@ -45,7 +46,7 @@ class OpenWorld:
         _listeners().remove(self)
 
     def told(self, event: str, values: tuple[Any, ...]) -> None:
-        """Something happens in this process."""
+        """Handle an audit event of this process."""
         if event == MADE:
             self._own += (os.path.join(values[0], ""),)
             return
@@ -75,7 +76,9 @@ class OpenWorld:
 
 
 def _asking(frame: FrameType | None) -> FrameType | None:
-    """The frame of the mission's own code that has something done; None when nobody of it has, or an import does it."""
+    """Return the frame of the mission's own code that causes an action; None if there is none, or an import
+    causes it.
+    """
     while frame is not None:
         file = frame.f_code.co_filename
         if file.startswith(_IMPORTS):
@@ -88,7 +91,7 @@ def _asking(frame: FrameType | None) -> FrameType | None:
 
 @cache
 def _listeners() -> list[OpenWorld]:
-    """The listeners of the one hook of this process, which cannot be taken away."""
+    """Return the listeners of the only hook of this process, which cannot be removed."""
     found: list[OpenWorld] = []
 
     def hook(event: str, values: tuple[Any, ...]) -> None:

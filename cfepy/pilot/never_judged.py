@@ -1,7 +1,7 @@
-"""What a mission file asks of a run, and the run had nothing of: such a demand is kept by no one, and broken by no one.
+"""Rules of a mission file without any input in a run: such a rule was neither met nor violated.
 
-An invariant that was never judged, a deadline that was never measured, or a result that never came is often a name with
-a mistake in it. It is no problem of the run, and its user should know.
+An invariant that was never judged, a deadline that was never measured, or a result that never came often has a misspelt
+name. This is not a problem of the run, but the user should know it.
 """
 
 from __future__ import annotations
@@ -19,36 +19,36 @@ from cfepy.status import OsalError
 if TYPE_CHECKING:
     from cfepy.monitors import SelectedResult
 
-OF_APPS = ("response", "period")  # deadlines of applications; others are of messages
+OF_APPS = ("response", "period")  # deadlines of applications; others are about messages
 
 
 class SentNames:
-    """What could be heard in a run.
+    """The names with messages in a run.
 
     Args:
-        mission: that has flown.
+        mission: the mission after its flight.
 
     Attributes:
-        names: what there were messages of, by name.
-        known: the topics that have a publisher besides.
+        names: names that had messages.
+        known: these names, and the topics that have a publisher.
     """
 
     def __init__(self, mission: Mission) -> None:
         rows = [*mission.record.topics.values(), *mission.processor.topics()]
         by_id = names_in(mission) | {row.msg_id: row.name for row in rows}
         sent = [msg_id for msg_id, count in mission.record.traffic(mission.cfe.sb, ()).items() if count.sent]
-        built = {program.name for program in mission.spec.built.values()}  # nobody counts what those keep back
+        built = {program.name for program in mission.spec.built.values()}  # their unsent messages are not counted
         heard = [row.name for row in rows if row.unsent or row.latched or built.intersection(row.publishers)]
         self.names = list(dict.fromkeys([*heard, *(by_id[msg_id] for msg_id in sent if msg_id in by_id)]))
         self.known = list(dict.fromkeys([*self.names, *(row.name for row in rows if row.publishers)]))
         self._ids = {f"0x{msg_id:04x}" for msg_id in sent}
 
     def has(self, name: str) -> bool:
-        """Whether there was anything of a name, a pattern or a MsgId."""
+        """Return whether there were messages for a name, a pattern or a MsgId."""
         return name.casefold() in self._ids or any(fnmatchcase(each, name) for each in self.names)
 
     def why_not(self, names: Iterable[str]) -> str:
-        """The end of a sentence about names of which nothing came; empty when there was something of each."""
+        """Return the end of a sentence about names without messages; empty if each had some."""
         missing = [name for name in names if not self.has(name)]
         if not missing:
             return ""
@@ -57,7 +57,7 @@ class SentNames:
 
 
 def never_judged(mission: Mission) -> list[str]:
-    """A line for each demand of the mission file that a run had nothing of; none before the mission is OPERATIONAL."""
+    """Return a line for each rule of the mission file without input; empty before the mission is OPERATIONAL."""
     if mission.booted is None:
         return []
     from cfepy.monitors import demands_of
@@ -78,7 +78,7 @@ def _invariants(mission: Mission, names: dict[str, tuple[str, ...]], sent: SentN
 
 
 def no_such_app(mission: Mission, name: str) -> str:
-    """The end of a sentence about an application that never ran; empty for one that did."""
+    """Return the end of a sentence about an application that never ran; empty if it did."""
     apps = mission.record.history
     return "" if name in apps else f": there is no application {name}{did_you_mean(name, apps, before='; ')}"
 

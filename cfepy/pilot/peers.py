@@ -1,10 +1,10 @@
-"""Missions that fly beside another one, as processors on one network: `--with MISSION`.
+"""Missions that fly together with another one, as processors on one network: `--with MISSION`.
 
-Each is a simulated computer of its own, with its own kernel, so the missions go forward in turn, a link's delay at a
-time. Datagrams that a mission sends to a port that none of its own sockets has are collected meanwhile, and come in at
-the ports of the others at the next such instant, through the same door as what comes from real sockets. Nothing can
-arrive earlier than that, so it does not matter who goes first: the run is a function of the missions and the seed. A
-journal of the first mission has what came in, and is replayed without the others.
+Each is a simulated computer with its own kernel. The missions advance in turn, by one link delay at a time. Datagrams
+to a port without a socket in the sending mission are collected meanwhile. They arrive at the ports of the other
+missions at the next such instant, through the same entry point as input from real sockets. No datagram can arrive
+earlier, so the order of the missions does not matter: the run is a function of the missions and the seed. A journal of
+the first mission has its input, and is replayed without the others.
 """
 
 from __future__ import annotations
@@ -21,28 +21,29 @@ from cfepy.units import NS_PER_MS, NS_PER_S
 
 LOOPBACK = "127.0.0.1"
 LINK_NS = NS_PER_MS
-"""How long a datagram is under way at most, virtual ns; it comes in at a multiple of this time."""
+"""The maximum delay of a datagram in virtual ns; it arrives at a multiple of this time."""
 
 _LATER = re.compile(r"(?P<mission>.+)@(?P<seconds>\d+(\.\d+)?)")
 
 
 def boot_of(text: str) -> tuple[str, int]:
-    """A mission and the virtual time in ns at which its computer is switched on: "pair/client.scr@0.35"."""
+    """Return a mission and the virtual time in ns at which it boots: "pair/client.scr@0.35"."""
     found = _LATER.fullmatch(text)
     return (text, 0) if found is None else (found["mission"], round(float(found["seconds"]) * NS_PER_S))
 
 
 @dataclass(eq=False)
 class Companion:
-    """A mission of the company.
+    """A mission that flies together with others.
 
     Attributes:
-        name: as the user has written it.
-        mission: it.
-        begins_ns: virtual time of the first mission at which this one begins.
-        run_until: lets it go on to a virtual time of its own, in ns.
-        problems: tells what went wrong in it, a line each.
-        sent, taken, lost: datagrams that it sent to the others, that came in, that found no room or no socket any more.
+        name: its name, as the user has written it.
+        mission: the mission.
+        begins_ns: virtual time of the first mission at which this one starts, in ns.
+        run_until: runs it to a virtual time of its own, in ns.
+        problems: returns its problems, one per line.
+        sent, taken, lost: numbers of datagrams that it sent to the others, that arrived, and that found no room or
+            socket.
     """
 
     name: str
@@ -55,7 +56,7 @@ class Companion:
     lost: int = 0
 
     def row(self) -> dict[str, Any]:
-        """Its row of the report."""
+        """Return its row of the report."""
         mission = self.mission
         return {
             "mission": self.name,
@@ -71,10 +72,10 @@ class Companion:
 
 
 class Company:
-    """The missions, and the network between them.
+    """The missions that fly together, and the network between them.
 
     Args:
-        members: the first one is flown by the caller.
+        members: the missions; the caller flies the first one.
     """
 
     def __init__(self, members: list[Companion]) -> None:
@@ -86,7 +87,9 @@ class Company:
         members[0].mission.record.tables[BESIDE] = lambda: [each.row() for each in members[1:]]
 
     def advance(self) -> int:
-        """Bring all members to where the first one stands; the virtual time in ns until which it may go on now."""
+        """Bring all missions to the time of the first one; return the virtual time in ns until which it may
+        continue.
+        """
         now_ns = self._members[0].mission.kernel.now
         if now_ns >= self._due_ns:
             for each in self._members[1:]:
@@ -109,7 +112,7 @@ class Company:
         for sender, datagram in under_way:
             receiver = self._receiver(sender, datagram.target)
             if receiver is None:
-                continue  # a port that nobody has, such as the ground's
+                continue  # a port of no mission, such as the ground's
             sender.sent += 1
             source = Place(LOOPBACK, datagram.source.port)
             if receiver.mission.outside.datagram(datagram.target.port, source, datagram.data):

@@ -1,12 +1,12 @@
-"""The pilot: it flies a `RunPlan`, the same way for every command, journal, trial and test.
+"""The pilot: it flies a `RunPlan` in the same way for every command, journal, trial and test.
 
     flown = fly(RunPlan(("capture",), seconds=20))
     with takeoff(plan, attachments=[watch]) as run:
         run.run_until(NS_PER_S)
 
-`fly` goes to the end of the run. `takeoff` gives a run that stands at virtual time 0 to a caller that lets it go on by
-itself. Both check the plan, add what the mission file, the script and the faults ask for to a bare `Mission`, and
-collect warnings for the user. What the host does between two pieces of a run is a `Host`.
+`fly` flies a run to its end. `takeoff` returns a run paused at virtual time 0, which the caller continues. Both check
+the plan, add the attachments for the mission file, the script and the faults to a bare `Mission`, and collect warnings
+for the user. A `Host` defines the host's actions between two parts of a run.
 """
 
 from __future__ import annotations
@@ -36,15 +36,15 @@ MakeCourse = Callable[[Mission, float | None, "ScriptRun | None"], Course]
 
 
 class BootError(UsageError):
-    """The mission cannot boot, or a call of the host's into it failed."""
+    """Exception for a mission that cannot boot, or a failed call of the host into it."""
 
 
 class Host:
-    """The host's side of a run: this one lets it go on in one go, and looks at nothing.
+    """The host's side of a run; this base class runs it without a break.
 
     Attributes:
-        longest_s: virtual seconds of a run whose plan gives no length; None for the usual ones.
-        owns_process: this process does nothing else, so that it may end when a task cannot be ended.
+        longest_s: virtual seconds of a run whose plan has no length; None for the default.
+        owns_process: whether this process has no other work, so that it may be ended if a task cannot be ended.
     """
 
     longest_s: float | None = None
@@ -52,46 +52,48 @@ class Host:
 
     @property
     def asked(self) -> bool:
-        """Whether the run is to end at the next occasion."""
+        """Whether the run should end at the next opportunity."""
         return False
 
     def begin(self, run: LiveRun) -> None:
-        """The run stands at virtual time 0."""
+        """Handle a run that is paused at virtual time 0."""
         self._mission = run.mission
 
     def step(self, until_ns: int) -> None:
-        """Let it go on, to a virtual time in ns at the most."""
+        """Run it, at most to a virtual time in ns."""
         self._mission.run_until(until_ns)
 
     def wall_ns(self) -> int:
-        """Wall-clock time of the run so far; 0 here, since a plain run has the same results every time."""
+        """Return the wall-clock time of the run so far; 0 here, because a plain run always has the same results."""
         return 0
 
     def take_break(self) -> bool:
-        """KeyboardInterrupt came out of the run; whether it ends like this, or the exception goes on."""
+        """Handle a KeyboardInterrupt from the run; return whether the run ends normally, instead of raising the
+        exception.
+        """
         return False
 
     def give_up(self, why: BaseException) -> None:
-        """A task cannot be ended, and neither can the run, which is on its thread: end the process, if it is owned.
+        """End the process, if it is owned, because a task on the run's own thread cannot be ended.
 
-        Called in another thread.
+        It is called in another thread.
         """
 
     def end(self) -> None:
-        """The run is over; its mission has not been closed yet."""
+        """Handle the end of the run, before its mission is closed."""
 
 
 @dataclass(frozen=True)
 class Flown:
-    """A run that is over.
+    """A run that has ended.
 
     Attributes:
-        mission: closed; what it left behind can be looked at.
-        at: its state when its time was over.
-        trace: the digest of the run; empty when it was broken off.
-        outcome: of its script, None without one.
+        mission: the closed mission, whose data can be read.
+        at: its state at the end of its time.
+        trace: the digest of the run; empty if it was broken off.
+        outcome: the result of its script; None without one.
         reason: how it ended (`cfepy.pilot.run_loop`).
-        known: what its user should know, and was known before the run.
+        known: notes for the user from before the run.
     """
 
     mission: Mission
@@ -103,41 +105,43 @@ class Flown:
 
     @CachedProperty
     def results(self) -> Results:
-        """Its numbers: a search that flies thousands of times does not want them of each run."""
+        """Return its numbers, computed on demand, because a search over thousands of runs does not need them
+        for each.
+        """
         return Results.of(self.mission, self.at, self.trace, self.problems)
 
     @CachedProperty
     def problems(self) -> list[RunProblem]:
-        """What went wrong in it; without one it went well."""
+        """Return its problems; a run without problems went well."""
         return problems_of(self.mission, self.at.endless, self.outcome)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What its user should know: what was known before the run, and what of its plan never happened in it."""
+        """Notes for the user: those from before the run, and the parts of its plan that never happened."""
         return (*self.known, *never_happened(self.mission))
 
     @property
     def stall(self) -> StallError | None:
-        """The task that did not give up the CPU; None when each has."""
+        """The error about a task that did not give up the CPU; None if there was none."""
         return self.mission.stall
 
     @property
     def interrupted(self) -> bool:
-        """Whether the host wanted it to end before its time."""
+        """Whether the host ended it early."""
         return self.reason in (INTERRUPTED, BROKEN_OFF)
 
 
 class LiveRun:
-    """A run that goes on; `takeoff` makes it.
+    """A run in progress; `takeoff` creates it.
 
     Args:
-        plan: what is flown.
-        mission: the mission, with everything attached.
-        course: how long it goes on.
-        script: what happens on the way; None for nothing.
+        plan: the plan of the run.
+        mission: the mission with all attachments.
+        course: the length of the run.
+        script: the script; None for none.
         host: the host's side.
-        notes: what its user should know.
-        beside: the runs of the missions that fly beside it.
+        notes: notes for the user.
+        beside: the runs of the missions that fly together with it.
     """
 
     def __init__(
@@ -164,10 +168,10 @@ class LiveRun:
     def go(self) -> None:
         """Run to the end of the course, let the nodes shut down, and collect the results.
 
-        A task that does not give up the CPU ends the run; `Flown.stall` tells of it.
+        A task that does not give up the CPU ends the run; `Flown.stall` has the error.
 
         Raises:
-            KeyboardInterrupt: of a task, or of the user whom the host does not listen to.
+            KeyboardInterrupt: from a task, or from the user if the host does not handle it.
         """
         course, host = self.course, self._host
         try:
@@ -185,16 +189,16 @@ class LiveRun:
             self._break_off(BROKEN_OFF if host.asked else STALLED)
 
     def run_until(self, until_ns: int) -> None:
-        """Run to a virtual time in ns, with all that the script does on the way; no further than the course goes.
+        """Run to a virtual time in ns, with all steps of the script, but not beyond the course.
 
         Raises:
-            StallError: a task does not give up the CPU.
+            StallError: if a task does not give up the CPU.
         """
         while self.step(until_ns):
             pass
 
     def step(self, until_ns: int) -> bool:
-        """One piece of `run_until`, as long as the host takes for one; whether there was one to go."""
+        """Run one part of `run_until`, as long as the host's steps; return whether there was one."""
         stop_ns = self.course.next_stop()
         if not self.course.goes_on or self.mission.kernel.now >= until_ns or self._host.asked:
             return False
@@ -202,10 +206,10 @@ class LiveRun:
         return True
 
     def end(self, wall_ns: int = 0) -> None:
-        """The time of the run is over: take down its state, and let the nodes shut down. A second call does nothing.
+        """End the time of the run: record its state, and let the nodes shut down. A second call does nothing.
 
         Args:
-            wall_ns: wall-clock time that the run took.
+            wall_ns: wall-clock time of the run in ns.
         """
         if self._digest is None and self.mission.stall is not None:
             self._break_off(STALLED)
@@ -222,12 +226,12 @@ class LiveRun:
                 each._conclude(0)
 
     def problems(self) -> list[str]:
-        """What went wrong in it until now, or until its time was over, a line each."""
+        """Return its problems so far, or until its time was over, one per line."""
         endless = self.course.at.endless if self._is_concluded else endless_waits(self.mission)
         return [problem.text for problem in problems_of(self.mission, endless, self.course.outcome)]
 
     def _break_off(self, reason: str) -> None:
-        """The run ended in the middle of something: what its trace has come to is no digest of a run."""
+        """End a run that was broken off; its trace has no valid digest."""
         self.reason = reason
         self._conclude(self._host.wall_ns())
         self.mission.finish()
@@ -235,17 +239,17 @@ class LiveRun:
 
     @property
     def is_over(self) -> bool:
-        """Whether the results of the run were collected."""
+        """Whether the results of the run are complete."""
         return self._digest is not None
 
     def flown(self) -> Flown:
-        """What it came to, when the mission has been closed."""
+        """Return the end state, after the mission was closed."""
         assert self._digest is not None
         return Flown(self.mission, self.course.at, self._digest, self.course.outcome, self.reason, self.notes)
 
 
 class TakeoffOptions(TypedDict, total=False):
-    """What `takeoff` and `fly` take besides a plan; `takeoff` tells of each."""
+    """The options of `takeoff` and `fly` besides the plan; see `takeoff`."""
 
     spec: MissionSpec | None
     attachments: Sequence[Attachment]
@@ -257,7 +261,7 @@ class TakeoffOptions(TypedDict, total=False):
 
 
 def fly(plan: RunPlan, **options: Unpack[TakeoffOptions]) -> Flown:
-    """Fly a plan to its end; options and errors as of `takeoff`."""
+    """Fly a plan to its end; see `takeoff` for options and errors."""
     run: LiveRun | None = None
     try:
         with takeoff(plan, **options) as run:
@@ -266,7 +270,7 @@ def fly(plan: RunPlan, **options: Unpack[TakeoffOptions]) -> Flown:
         host = options.get("host")
         if run is None or not run.is_over or host is None or not host.take_break():
             raise
-        # A task would not end; the process ends it, and the numbers are there.
+        # A task would not end; the process will end it, and the results are complete.
     return run.flown()
 
 
@@ -282,21 +286,21 @@ def takeoff(
     make_course: MakeCourse = Course,
     host: Host | None = None,
 ) -> Iterator[LiveRun]:
-    """Around a run: the mission stands at virtual time 0, and is closed at the end.
+    """Start a run; a context manager. The mission is paused at virtual time 0, and is closed at the end.
 
     Args:
-        plan: what to fly.
-        spec: the mission, when it has been read already; None reads that of the plan.
-        attachments: what watches the run or changes it, besides the monitors, the script and the faults.
-        console: takes the lines; None drops them.
-        policy: decides which task goes first, in place of the plan's schedule, such as one that records.
-        trace: takes the records; None keeps the digest alone.
-        make_course: makes the course that it flies.
-        host: the host's side; None lets it go on by itself.
+        plan: the plan.
+        spec: the mission if it was already read; None reads the plan's.
+        attachments: objects that observe or modify the run, in addition to the monitors, the script and the faults.
+        console: gets the lines; None drops them.
+        policy: decides which task runs next, instead of the plan's schedule, such as a recording one.
+        trace: gets the records; None keeps only the digest.
+        make_course: creates the course of the run.
+        host: the host's side; None runs without a break.
 
     Raises:
-        UsageError: something in the plan is wrong, does not fit the mission, or is not installed; the mission cannot
-            boot.
+        UsageError: if the plan is wrong, does not match the mission or needs something that is not installed, or the
+            mission cannot boot.
     """
     spec = plan.spec() if spec is None else spec
     host = Host() if host is None else host
@@ -328,13 +332,13 @@ def takeoff(
 
 @contextmanager
 def booting(script: Path) -> Iterator[None]:
-    """Around what boots a mission.
+    """Convert errors of booting a mission; a context manager.
 
     Args:
         script: its startup script.
 
     Raises:
-        BootError: in place of the CfeError that says why it does not boot.
+        BootError: instead of a CfeError.
     """
     try:
         yield
@@ -344,7 +348,7 @@ def booting(script: Path) -> Iterator[None]:
 
 @contextmanager
 def _company(plan: RunPlan, spec: MissionSpec, mission: Mission, course: Course) -> Iterator[list[LiveRun]]:
-    """Around a run: the runs of the missions that fly beside it."""
+    """Start the missions that fly together with a run; a context manager with their runs."""
     runs: list[LiveRun] = []
     if not plan.beside or not course.takes_company:
         yield runs
@@ -363,7 +367,7 @@ def _company(plan: RunPlan, spec: MissionSpec, mission: Mission, course: Course)
 
 
 def _beside(console: Console, name: str) -> Console:
-    """The console of a mission that flies beside another one, whose console shows its lines."""
+    """Return the console of a mission that flies together with another one, whose console shows its lines."""
     return Console(sink=lambda line: console.show(f"{name}: {line}"))
 
 
@@ -377,7 +381,7 @@ def _watch_for_stalls(mission: Mission, plan: RunPlan, host: Host) -> None:
 
 
 def _judges(spec: MissionSpec) -> list[Attachment]:
-    """What must hold of the run, as the mission file says; only a mission that says so imports it."""
+    """Return the attachments for the rules in the mission file; only a mission with rules loads them."""
     if not spec.demands:
         return []
     from cfepy.monitors import judges_of
@@ -386,17 +390,17 @@ def _judges(spec: MissionSpec) -> list[Attachment]:
 
 
 def _own(plan: RunPlan, script: ScriptRun | None) -> list[Attachment]:
-    """What the plan itself brings along."""
+    """Return the attachments of the plan itself."""
     return [*([] if script is None else [script]), *plan.attachments()]
 
 
 def _policy(plan: RunPlan) -> Policy | None:
-    """That of the schedule; races are found by a kernel that asks one, if only for the default."""
+    """Return the policy of the schedule; race detection needs a kernel that asks one, even the default."""
     return plan.schedule.policy() or (Policy() if plan.races else None)
 
 
 def _race_watch(plan: RunPlan) -> list[Attachment]:
-    """What finds races; only a run that asks for them imports it."""
+    """Return the race detector; only a run with `races` loads it."""
     if not plan.races:
         return []
     from cfepy.monitors import RaceWatch
@@ -405,7 +409,7 @@ def _race_watch(plan: RunPlan) -> list[Attachment]:
 
 
 def _script_run(plan: RunPlan, spec: MissionSpec) -> ScriptRun | None:
-    """The script, ready to be attached; only a run with one imports what it needs."""
+    """Return the script, ready to be attached; only a run with one loads the code for it."""
     if plan.script is None:
         return None
     from cfepy.script import ScriptRun
@@ -414,7 +418,7 @@ def _script_run(plan: RunPlan, spec: MissionSpec) -> ScriptRun | None:
 
 
 def _faults(plan: RunPlan, spec: MissionSpec) -> tuple[list[Attachment], list[str]]:
-    """What lets the faults happen, and what of their plan is not in the mission; only a run with some imports it."""
+    """Return the fault injector, and the problems of the fault plan; only a run with faults loads it."""
     if plan.faults is None:
         return [], []
     from cfepy.faults import prepare

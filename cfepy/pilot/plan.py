@@ -1,8 +1,8 @@
-"""`RunPlan`: everything that decides a run, apart from what comes from outside it.
+"""`RunPlan`: everything that decides a run, except its external input.
 
-A plan is a plain value. Every command that flies a mission makes one, a journal holds one, and so does a trial of an
-exploration on another computer and a failing test; each can say the command that does the same run again.
-`cfepy.pilot.pilot` flies it.
+A plan is a plain value. Every command that flies a mission creates one. A journal has one, and so have an exploration's
+trial on another computer and a failing test. A plan can give the command that repeats the run. `cfepy.pilot.pilot`
+flies it.
 """
 
 from __future__ import annotations
@@ -35,22 +35,22 @@ BUILD_NODE: Hook[NodeBuilder] = Hook("build_node")
 def built_node(
     node: CppNode, params: Mapping[str, Any], others: Sequence[str], config: CppNodesConfig
 ) -> tuple[Path, str]:
-    """Build a node in C++ for a mission; see `cfepy.mission.NodeBuilder`. What builds is loaded for the first one.
+    """Build a node in C++ for a mission; see `cfepy.mission.NodeBuilder`. The builder is loaded for the first node.
 
     Raises:
-        UsageError: it cannot be built, or nothing is installed that builds nodes.
+        UsageError: if it cannot be built, or no builder of nodes is installed.
     """
     return BUILD_NODE.need(f"the node {node.full_name} in C++")(node, params, others, config)
 
 
 def builder(cpp_nodes: str | None = None) -> NodeBuilder:
-    """What builds the nodes in C++ of a mission.
+    """Return the builder of a mission's nodes in C++.
 
     Args:
-        cpp_nodes: how, as a command line says, in place of what the mission says; see `cfepy.mission.cpp_nodes_of`.
+        cpp_nodes: settings from the command line, which override the mission; see `cfepy.mission.cpp_nodes_of`.
 
     Raises:
-        UsageError: there is no such file, or something in it is wrong.
+        UsageError: if the file does not exist or is wrong.
     """
     if cpp_nodes is None:
         return built_node
@@ -60,35 +60,34 @@ def builder(cpp_nodes: str | None = None) -> NodeBuilder:
 
 @dataclass(frozen=True, slots=True)
 class RunPlan:
-    """What to run, and on what.
+    """A mission to run, and all options that decide the run.
 
     Attributes:
-        words: a mission for `run`, a launch file with its arguments for `launch`, a script with its own for `node`:
-            what follows these commands of `cfepy`.
+        words: a mission for `run`, a launch file with its arguments for `launch`, a script with its own for `node`: the
+            words after these commands of `cfepy`.
         command: one of these three.
-        launch_args: of a launch file that is given as a mission, NAME and VALUE.
+        launch_args: arguments of a launch file given as a mission, NAME and VALUE.
         seconds: virtual time to run, from the boot, or from the start of the nodes of a launch file and of a single
-            node; None is as long as the script takes, or what each command takes by itself.
-        seed: of everything random in the mission.
-        board: name or file; None takes the mission's own.
-        tasks: "thread", "greenlet", or "auto": greenlets where they are installed, else threads.
-        schedule: which task goes first among equals.
+            node; None means the length of the script, or the default of each command.
+        seed: seed of everything random in the mission.
+        board: name or file of the board; None takes the mission's own.
+        tasks: "thread", "greenlet", or "auto": greenlets if they are installed, otherwise threads.
+        schedule: the rule for the next task.
         script: path of a mission script; None without one.
-        stop_on_failure: the run ends with the first step of the script that fails.
-        faults: what goes wrong: path of a fault plan, or seed:N; None for nothing.
-        play: path of a bag or an MCAP file whose topics are played into the mission; None for nothing.
-        play_options: how, as `rosbag play` is told: "--rate 2 --start 5 --topics /a /a:=/b"; None as it was recorded.
-        stall: seconds of wall time for which virtual time may stand still, because a task does not give up the CPU,
-            until the run is ended for that; 0 for any time. It decides only whether a run comes to its end, and none of
-            the trace of one that does.
-        races: accesses of Python code that nothing orders are looked for; it decides none of the trace.
-        guard: compiled applications get memory that nothing can be written past, and that is not zero.
-        cpp_nodes: how nodes in C++ are built: a profile, or a YAML file with a section `cpp_nodes:` in place of the
-            mission's own; None leaves it to the mission.
-        settings: ROS parameters in place of those that the mission says: full name, and value in YAML.
+        stop_on_failure: whether the run ends at the first failed step of the script.
+        faults: the faults: path of a fault plan, or seed:N; None for none.
+        play: path of a bag or an MCAP file to play into the mission; None for none.
+        play_options: options as for `rosbag play`: "--rate 2 --start 5 --topics /a /a:=/b"; None plays it as recorded.
+        stall: wall time in s for which virtual time may stand still, because a task does not give up the CPU, before
+            the run is ended; 0 for no limit. It does not affect the trace of a run that reaches its end.
+        races: whether to detect unordered accesses of Python code; it does not affect the trace.
+        guard: whether compiled applications get guarded, nonzero memory.
+        cpp_nodes: how nodes in C++ are built: a profile, or a YAML file with a section `cpp_nodes:` that overrides the
+            mission's; None takes the mission's.
+        settings: ROS parameters that override the mission's: full name, and value in YAML.
         spacecraft_id: number of the spacecraft; None takes the mission's own.
         processor_id: number of the processor; None takes the mission's own.
-        beside: missions that fly beside this one, on one network with it; each may say when it begins: "MISSION@0.5".
+        beside: missions that fly together with this one on one network; "MISSION@0.5" starts later.
     """
 
     words: tuple[str, ...]
@@ -118,10 +117,10 @@ class RunPlan:
             raise TypeError(f"the schedule of a plan is a Schedule; write Schedule.parse({self.schedule!r})")
 
     def spec(self) -> MissionSpec:
-        """The mission.
+        """Return the mission.
 
         Raises:
-            UsageError: there is no such mission, or something in it is wrong.
+            UsageError: if the mission does not exist or is wrong.
         """
         spec = self._spec()
         if self.guard:
@@ -134,10 +133,10 @@ class RunPlan:
         return self.with_played_bag(replace(spec, ids=self._ids(), beside=beside))
 
     def _ids(self) -> dict[str, int]:
-        """The identities that the run gives the mission.
+        """Return the identities that the run gives the mission.
 
         Raises:
-            UsageError: one of them has no room in 32 bits.
+            UsageError: if one of them does not fit in 32 bits.
         """
         said = {name: getattr(self, name) for name in IDENTITIES}
         for name, number in said.items():
@@ -159,10 +158,10 @@ class RunPlan:
         return read_mission(self.words[0], dict(self.launch_args), build)
 
     def with_played_bag(self, spec: MissionSpec) -> MissionSpec:
-        """A mission into which the bag of the plan is played, if it has one.
+        """Return a mission that plays the bag of the plan, if there is one.
 
         Raises:
-            UsageError: there is no such bag, it is broken, or cannot be played as the options say.
+            UsageError: if the bag does not exist, is damaged, or cannot be played with the options.
         """
         if self.play is None:
             if self.play_options is not None:
@@ -173,12 +172,13 @@ class RunPlan:
         return with_player(spec, self.play, self.play_options or "")
 
     def companions(self) -> list[tuple[str, RunPlan, int]]:
-        """The missions that fly beside this one: what the user wrote, the plan, the virtual ns at which it begins.
+        """Return the missions that fly together with this one: the user's text, the plan, the virtual ns at which it
+        starts.
 
-        They have the seed, the tasks and the patience of this plan, and nothing else of it.
+        They take only the seed, the tasks and the stall limit from this plan.
 
         Raises:
-            UsageError: a mission would fly beside itself.
+            UsageError: if a mission would fly together with itself.
         """
         found = []
         for text in self.beside:
@@ -193,12 +193,12 @@ class RunPlan:
         return found
 
     def attachments(self) -> list[Attachment]:
-        """What the plan itself brings to its run: nothing, but for a plan whose files lie elsewhere than they did."""
+        """Return the attachments of the plan itself: none, except for a plan whose files were moved."""
         return []
 
     @property
     def virtual_s(self) -> float | None:
-        """Virtual seconds from the boot; None is as long as the script takes, or 10 s without one."""
+        """The virtual seconds from the boot; None means the length of the script, or 10 s without one."""
         if self.command == RUN:
             return self.seconds
         if self.seconds is None and self.script is not None:
@@ -207,7 +207,7 @@ class RunPlan:
         return BOOT_S + (usual_s if self.seconds is None else self.seconds)
 
     def command_line(self, **changes: Any) -> str:
-        """The command that does this run again.
+        """Return the command that repeats this run.
 
         Args:
             changes: values of other attributes, such as schedule.
@@ -235,16 +235,16 @@ class RunPlan:
         return command_line(["cfepy", plan.command, *options, *plan.words])
 
     def to_dict(self) -> dict[str, Any]:
-        """Itself as plain values, for a file or another process."""
+        """Return the plan as plain values, for a file or another process."""
         return {each.name: getattr(self, each.name) for each in fields(self)} | {"schedule": self.schedule.text()}
 
     @classmethod
     def from_dict(cls, plain: Mapping[str, Any]) -> RunPlan:
-        """The other way round; lists become tuples again.
+        """Return a plan from the values of `to_dict`; lists become tuples again.
 
         Raises:
-            TypeError: an attribute that a plan does not have, or none where it needs one.
-            UsageError: its schedule is none.
+            TypeError: for an unknown or missing attribute.
+            UsageError: if its schedule is invalid.
         """
         known = {each.name for each in fields(cls)}
         unknown = sorted(set(plain) - known)

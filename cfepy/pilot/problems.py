@@ -1,8 +1,7 @@
-"""What went wrong in a run: the one definition of it, for every command, report, test and search.
+"""The problems of a run: their only definition, for every command, report, test and search.
 
-`problems_of` gives a line for each problem, as reports and commands show it, with the failures behind it, as searches
-compare them. A run without a problem went well; what its user should know besides, such as a fault that never happened,
-is no problem.
+`problems_of` returns a line for each problem, as reports and commands show it, with its failures, as searches compare
+them. A run without problems went well. Other notes for the user, such as a fault that never happened, are not problems.
 """
 
 from __future__ import annotations
@@ -22,17 +21,17 @@ if TYPE_CHECKING:
     from cfepy.script import Outcome
 
 BESIDE = "beside"
-"""The table of the record that has a row for each mission that flew beside it."""
+"""The table of the record with a row for each mission that flew together with it."""
 
 
 class RunProblem(NamedTuple):
-    """Something that went wrong in a run.
+    """A problem of a run.
 
     Attributes:
-        text: a line, or several, for a person.
-        at_ns: virtual time; None when it has no time of its own.
-        failures: what searches tell of it, an entry for each cause.
-        is_step: it is a step of the script that did not go well.
+        text: one or several lines for display.
+        at_ns: virtual time in ns; None if it has no time.
+        failures: its failures for searches, one for each cause.
+        is_step: whether it is a failed step of the script.
     """
 
     text: str
@@ -42,12 +41,12 @@ class RunProblem(NamedTuple):
 
 
 def problems_of(mission: Mission, endless: EndlessWaits, outcome: Outcome | None = None) -> list[RunProblem]:
-    """What went wrong in a run until now.
+    """Return the problems of a run so far.
 
     Args:
         mission: the mission.
-        endless: its waits that never end, of now or of when the time of the run was over.
-        outcome: of the script that the run had.
+        endless: its waits that never end, now or at the end of the run's time.
+        outcome: result of the run's script.
     """
     found = [*_startup(mission), *_stall(mission), *_deaths(mission), *_bad_ends(mission), *_events(mission, outcome)]
     found += [*_resets(mission), *_invariants(mission), *_deadlines(mission), *_of_compiled_code(mission)]
@@ -57,18 +56,18 @@ def problems_of(mission: Mission, endless: EndlessWaits, outcome: Outcome | None
 
 
 def is_reported(problem: RunProblem) -> bool:
-    """Whether a problem is only that an application reported one, in an ERROR or CRITICAL event."""
+    """Return whether a problem is only an ERROR or CRITICAL event of an application."""
     return bool(problem.failures) and all(each.kind is FailureKind.EVENT for each in problem.failures)
 
 
 def problems_so_far(mission: Mission) -> list[RunProblem]:
-    """Those of the instant at which they show, while the mission runs."""
+    """Return the problems with their own time that can be found while the mission runs."""
     found = [*_deaths(mission), *_events(mission, None), *_printed(mission), *_invariants(mission)]
     return [*found, *_of_compiled_code(mission)]
 
 
 def failures_of(problems: Iterable[RunProblem]) -> list[Failure]:
-    """The failures behind problems, by time; what has no time is true at the end and comes last."""
+    """Return the failures of problems, sorted by time; those about the end come last."""
     found = _failures(problems)
     timed = [each for each in found if each.at_ns is not None]
     return [*sorted(timed, key=lambda each: each.at_ns or 0), *(each for each in found if each.at_ns is None)]
@@ -82,14 +81,14 @@ def _failures(problems: Iterable[RunProblem]) -> list[Failure]:
 
 
 def startup_problems(mission: Mission) -> list[str]:
-    """What of the startup script could not be started; nothing as long as it was not read to its end."""
+    """Return the lines of the startup script that could not be started; empty until the script was read to its end."""
     if mission.booted is None:
         return []
     script, es = mission.spec.script, mission.cfe.es
     bad = (line for line in parse(mission.spec.startup_script) if isinstance(line, BadLine))
     libraries = [entry for entry in mission.spec.entries if entry.kind == CFE_LIB]
     loaded = {library.name for library in es.libs}
-    if mission.processor.booted is None:  # it was reset, and has not come to them again
+    if mission.processor.booted is None:  # the processor was reset, and has not reached them again
         loaded.update(each.name for each in libraries)
     return [
         *(f"{script}:{line.line}: {line.explanation}" for line in bad),
@@ -99,7 +98,7 @@ def startup_problems(mission: Mission) -> list[str]:
 
 
 def not_started(mission: Mission) -> list[StartupEntry]:
-    """The applications of the startup script that have never run, each name once."""
+    """Return the applications of the startup script that have never run, each name once."""
     entries = {each.name: each for each in mission.spec.entries if each.kind == CFE_APP}
     return [each for name, each in entries.items() if name not in mission.cfe.es.history]
 
@@ -122,7 +121,7 @@ def _stall(mission: Mission) -> Iterator[RunProblem]:
 
 
 def _deaths(mission: Mission) -> Iterator[RunProblem]:
-    """Exceptions out of tasks; a crash that a fault plan asks for is none."""
+    """Yield exceptions from tasks, except crashes injected by a fault plan."""
     history, lines = mission.record.history, mission.record.deaths_by_app()
     by_app: dict[str, list[RaisedError]] = {}
     for each in mission.record.part(FailedCode).died:
@@ -142,7 +141,9 @@ def _death(error: RaisedError) -> Failure:
 
 
 def _printed(mission: Mission) -> Iterator[RunProblem]:
-    """Exceptions whose tracebacks nodes have printed: of a callback, or of a thread, after which the node lives on."""
+    """Yield exceptions whose tracebacks nodes have printed, from a callback or a thread, after which the node
+    continues.
+    """
     by_title: dict[str, list[Failure]] = {}
     for each in mission.record.part(FailedCode).printed.found:
         failure = Failure(FailureKind.RAISED, each.who, each.text, each.at_ns, each.detail, each.task, each.cause)
@@ -152,7 +153,9 @@ def _printed(mission: Mission) -> Iterator[RunProblem]:
 
 
 def _bad_ends(mission: Mission) -> Iterator[RunProblem]:
-    """Applications and nodes that ended themselves with an error; no failure of its own behind an exception."""
+    """Yield applications and nodes that ended with an error, without a failure of their own if an exception
+    caused it.
+    """
     failed = mission.record.part(FailedCode)
     dead = failed.crashed | {each.who for each in (*failed.died, *failed.printed.found) if not each.circle}
     for name in _ended_badly(mission):
@@ -167,7 +170,7 @@ def _bad_ends(mission: Mission) -> Iterator[RunProblem]:
 
 
 def end_of(mission: Mission, name: str) -> str:
-    """What an application has ended with: of a node, its program's exit status."""
+    """Return the status with which an application ended: for a node, its program's exit status."""
     end = None if mission.ros is None else mission.ros.ended.get(name)
     if end is None or not end.status:
         return "CFE_ES_RunStatus_APP_ERROR"
@@ -175,22 +178,23 @@ def end_of(mission: Mission, name: str) -> str:
 
 
 def _ended_badly(mission: Mission) -> list[str]:
-    """Applications that ended themselves because of an error."""
+    """Return the applications that ended because of an error."""
     es = mission.cfe.es
     ended = [history.name for history in es.history.values() if history.error_exits]
     ending = [app.name for app in es.apps if app.control_request == APP_ERROR]
     built = {} if mission.ros is None else {app: mission.ros.ended.get(app) for app in mission.spec.built}
-    ending += [app for app, end in built.items() if end is not None and end.status]  # also where the run ended with it
+    # also if the run ended together with it
+    ending += [app for app, end in built.items() if end is not None and end.status]
     return list(dict.fromkeys(ended + ending))
 
 
 def own_errors(mission: Mission) -> dict[str, int]:
-    """ERROR and CRITICAL events of the mission's own applications."""
+    """Return the numbers of ERROR and CRITICAL events of the mission's own applications."""
     return {name: count for name, count in sorted(mission.record.errors_by_app.items()) if name not in CORE_APPS}
 
 
 def _events(mission: Mission, outcome: Outcome | None) -> Iterator[RunProblem]:
-    """ERROR and CRITICAL events of the mission's own applications, but for those that its script expects."""
+    """Yield ERROR and CRITICAL events of the mission's own applications, except those that its script expects."""
     expected = frozenset() if outcome is None else outcome.expected_events
     for name, count in own_errors(mission).items():
         failures = []
@@ -211,7 +215,7 @@ def _resets(mission: Mission) -> Iterator[RunProblem]:
             yield RunProblem(text, reset.at_ns, (Failure(FailureKind.RESET, "", reset.reason, reset.at_ns),))
 
 
-# -- what the mission file asks for ------------------------------------------------------------------------------------
+# -- rules of the mission file -----------------------------------------------------------------------------------------
 
 
 def _invariants(mission: Mission) -> Iterator[RunProblem]:
@@ -237,7 +241,7 @@ def _deadlines(mission: Mission) -> Iterator[RunProblem]:
 
 
 def _of_compiled_code(mission: Mission) -> Iterator[RunProblem]:
-    """Accesses that nothing orders, with the calls on either side, and memory that was written past."""
+    """Yield unordered accesses with the calls on both sides, and writes past memory blocks."""
     for race in mission.record.data_races:
         lines = "\n    ".join((race.text, *race.detail.splitlines()[1:]))
         failure = Failure(FailureKind.RACE, race.app, race.text, race.at_ns, race.detail, race.task, race.cause)
@@ -251,7 +255,7 @@ def _of_compiled_code(mission: Mission) -> Iterator[RunProblem]:
 
 
 def _circle(circle: Sequence[EndlessWait]) -> RunProblem:
-    """Tasks that wait for each other, or one that waits for another that has ended."""
+    """Return the problem of tasks that wait for each other, or of a task that waits for an ended task."""
     apps = " and ".join(dict.fromkeys(wait.app for wait in circle))
     text = "; ".join(f"{wait.task} waits for {wait.what}, held by {wait.holder}" for wait in circle)
     detail = "\n".join(wait.text for wait in circle)
@@ -260,7 +264,7 @@ def _circle(circle: Sequence[EndlessWait]) -> RunProblem:
 
 
 def _alone(waits: Sequence[EndlessWait], found: Sequence[Failure]) -> Iterator[RunProblem]:
-    """Tasks that nobody is left to wake; no failure of its own, if another one took away who would have done it."""
+    """Yield tasks that no task can wake; without a failure of their own if another failure removed the waking task."""
     follows = any(failure.kind in LEAVES_OTHERS_WAITING for failure in found)
     for wait in waits:
         failures = () if follows else (Failure(FailureKind.STUCK, wait.app, wait.text, task=wait.task),)
@@ -268,7 +272,7 @@ def _alone(waits: Sequence[EndlessWait], found: Sequence[Failure]) -> Iterator[R
 
 
 def _missed_steps(outcome: Outcome | None) -> Iterator[RunProblem]:
-    """Steps of the script that did not go well; those that were never reached follow from the one before."""
+    """Yield failed steps of the script; steps that were never reached follow from an earlier failure."""
     failed = [] if outcome is None else [each for each in outcome.verdicts if not each.ok]
     first = next((each for each in failed if not each.follows), failed[0] if failed else None)
     for each in failed:
@@ -282,7 +286,7 @@ def _missed_steps(outcome: Outcome | None) -> Iterator[RunProblem]:
 
 
 def _beside(mission: Mission) -> Iterator[RunProblem]:
-    """What went wrong in the missions that flew beside it."""
+    """Yield the problems of the missions that flew together with it."""
     for row in mission.record.rows(BESIDE):
         for text in row["problems"]:
             yield RunProblem(f"{row['mission']}: {text}", None, (Failure(FailureKind.PROBLEM, row["mission"], text),))

@@ -1,6 +1,6 @@
 """The results of a run: messages, applications, events, memory, as plain numbers for a table or a JSON file.
 
-`mark` is called when the time of the run is over, before the nodes are asked to shut down; `Results.of` after the
+`mark` is called at the end of the run's time, before the nodes are asked to shut down. `Results.of` is called after the
 mission was closed, when every task has ended and its CPU time is known.
 """
 
@@ -29,19 +29,19 @@ RESET_TYPES = {RST_TYPE_PROCESSOR: "PROCESSOR", RST_TYPE_POWERON: "POWERON"}
 NOT_STARTED = "NOT STARTED"
 ENDED = "ENDED"
 PERCENT_OF_FEW_DIGITS, LEAST_PERCENT = 0.1, 0.0001
-TOLERANCE = 1.1  # of a measured rate: what was sent shortly before the mission was operational counts too
+TOLERANCE = 1.1  # for a measured rate, because messages just before the mission was operational count too
 
 
 @dataclass(frozen=True, slots=True)
 class TopicResult:
-    """One MsgId.
+    """The results of one MsgId.
 
-    `sent` counts transmissions, `delivered` packets taken out of pipes (several a transmission, where several
-    subscribe), `waiting` those that were not taken before the end. `dropped` is the sum of its three reasons: a
-    subscription's message limit, a full pipe, a long ROS message that lost a segment. `no_subscriber` counts messages
-    without a subscriber and `held_back` those that a ROS publisher could send only later, because the board publishes
-    no faster; neither are losses. `rate_hz` is what was sent in the time since the mission was operational; `too_fast`
-    says that it is more than the board's `max_publish_hz`.
+    `sent` counts transmissions, `delivered` packets taken from pipes (several for each transmission if several
+    subscribe), and `waiting` those not taken before the end. `dropped` is the sum of three reasons: a subscription's
+    message limit, a full pipe, a long ROS message that lost a segment. `no_subscriber` counts messages without a
+    subscriber. `held_back` counts those that a ROS publisher could only send later because of the board's publishing
+    rate. Neither are losses. `rate_hz` is the rate of sending since the mission was operational. `too_fast` means that
+    it exceeds the board's `max_publish_hz`.
     """
 
     name: str
@@ -61,7 +61,7 @@ class TopicResult:
 
     @property
     def why(self) -> str:
-        """Why messages were not delivered, or not when their publisher wanted."""
+        """Why messages were not delivered, or later than their publisher wanted."""
         reasons = (
             ("message limit", self.dropped_limit),
             ("pipe full", self.dropped_pipe_full),
@@ -77,7 +77,9 @@ class TopicResult:
 
 @dataclass(frozen=True, slots=True)
 class AppResult:
-    """One application. `state` is that at the end of the run's time; `cpu_share` is 0 to 1, of virtual time."""
+    """The results of one application. `state` is its state at the end of the run's time; `cpu_share` is 0 to 1, of
+    virtual time.
+    """
 
     name: str
     state: str
@@ -89,7 +91,9 @@ class AppResult:
 
     @property
     def cpu_text(self) -> str:
-        """The share of the CPU in percent, with more digits when it is small: an idle application is not nothing."""
+        """The share of the CPU in percent, with more digits if it is small, so that an idle application does not show
+        0.
+        """
         percent = 100 * self.cpu_share
         if percent >= PERCENT_OF_FEW_DIGITS or not percent:
             return f"{percent:.2f}%"
@@ -98,7 +102,7 @@ class AppResult:
 
 @dataclass(frozen=True, slots=True)
 class PipeResult:
-    """One pipe: how many messages it takes, how many ever waited, how many did not get in."""
+    """The results of one pipe: its depth, the maximum number of waiting messages, the number of refused messages."""
 
     name: str
     app: str
@@ -109,7 +113,9 @@ class PipeResult:
 
 @dataclass(frozen=True, slots=True)
 class ResetResult:
-    """A reset of the processor: when in virtual s, "PROCESSOR" or "POWERON", why, and whether it was a failure."""
+    """A reset of the processor: its virtual time in s, "PROCESSOR" or "POWERON", the reason, and whether it was a
+    failure.
+    """
 
     at_s: float
     type: str
@@ -119,7 +125,7 @@ class ResetResult:
 
 @dataclass(frozen=True, slots=True)
 class MemoryResult:
-    """The board's RAM in bytes; `limit` is None on a board without one."""
+    """The use of the board's RAM in bytes; `limit` is None on a board without one."""
 
     used: int
     peak: int
@@ -129,7 +135,7 @@ class MemoryResult:
 
 @dataclass(frozen=True, slots=True)
 class InvariantResult:
-    """What became of an invariant: `judged` and `violated` count messages; what was wrong first, and when in s."""
+    """The results of an invariant: `judged` and `violated` count messages; the first violation and its time in s."""
 
     name: str
     place: str
@@ -141,7 +147,7 @@ class InvariantResult:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """The state of a run when its time was over."""
+    """The state of a run at the end of its time."""
 
     now_ns: int
     wall_ns: int
@@ -154,11 +160,11 @@ class Mark:
 
 
 def mark(mission: Mission, wall_ns: int) -> Mark:
-    """Take down what a shutdown of the nodes would change.
+    """Record the values that a shutdown of the nodes would change.
 
     Args:
         mission: after its run.
-        wall_ns: wall-clock time that the run took, in ns.
+        wall_ns: wall-clock time of the run, in ns.
     """
     sb, memory = mission.cfe.sb, mission.memory
     traffic = mission.record.traffic(sb, ())
@@ -176,18 +182,19 @@ def mark(mission: Mission, wall_ns: int) -> Mark:
 
 @dataclass(frozen=True, slots=True)
 class Results:
-    """The numbers of a run; `to_dict` gives the JSON form. Times in s, `speed` is virtual time by wall time.
+    """The numbers of a run; `to_dict` returns the JSON form. Times are in s, `speed` is virtual time divided by wall
+    time.
 
-    `booted_s` is of the first boot, `resets` are in order; pipes, memory and `sb` are of the processor since the last
-    one. `own_errors` counts ERROR and CRITICAL events of the mission's own applications. `problems` says, a line each,
-    all that went wrong: a run without one went well. `faults` has a row for each fault that was to happen, `deadlines`
-    one for each of the mission file, `inversions` one for each lock that a task waited for while a third one held up
-    its holder, `ros_peers` one for each ROS node outside that the run was joined to, `viewer_peers` one for what went
-    each way between each viewer and each topic, `beside` one for each mission that flew beside this one,
-    `script_problems` what of the startup script could not be started, `endless_waits` a line for each task that nobody
-    can wake any more, `missed_steps` those of the script that did not go well, `never_judged` which demands of the
-    mission file the run had nothing of, `missed_moves` which moves of the schedule were not possible, `why_tasks` why
-    tasks are threads where nobody asked for them and greenlets are installed.
+    `booted_s` is about the first boot. `resets` are in order; pipes, memory and `sb` are about the processor since the
+    last one. `own_errors` counts ERROR and CRITICAL events of the mission's own applications. `problems` has a line for
+    each problem; a run without problems went well. `faults` has a row for each planned fault, `deadlines` one for each
+    deadline of the mission file. `inversions` has one for each lock for which a task waited while a third task delayed
+    the holder. `ros_peers` has one for each connected external ROS node, `viewer_peers` one for the traffic between
+    each viewer and each topic, and `beside` one for each mission that flew together with it. `script_problems` are the
+    entries of the startup script that could not be started. `endless_waits` has a line for each task that no task can
+    wake any more. `missed_steps` are the failed steps of the script. `never_judged` are the rules of the mission file
+    without input. `missed_moves` are the moves of the schedule that were not possible. `why_tasks` is why tasks are
+    threads by default although greenlets are installed.
     """
 
     mission: str
@@ -225,13 +232,13 @@ class Results:
 
     @classmethod
     def of(cls, mission: Mission, at: Mark, trace: str, problems: Sequence[RunProblem] | None = None) -> Results:
-        """The results of a mission that is closed.
+        """Return the results of a closed mission.
 
         Args:
             mission: the mission.
-            at: what `mark` took down.
+            at: the result of `mark`.
             trace: the digest of the run, from before the tasks were ended.
-            problems: what went wrong in it; None looks for it.
+            problems: its problems; None determines them.
         """
         virtual_s, wall_s = at.now_ns / NS_PER_S, at.wall_ns / NS_PER_S
         record = mission.record
@@ -274,26 +281,26 @@ class Results:
 
     @property
     def task_kind(self) -> TaskKind:
-        """What its tasks ran on, and why not on greenlets that are installed."""
+        """The kind of its tasks, and why installed greenlets were not used."""
         return TaskKind(self.tasks, self.why_tasks)
 
     @property
     def never_happened(self) -> list[str]:
-        """What was asked for and never happened: faults, moves of the schedule, and what judges had nothing of."""
+        """The requests that never happened: faults, moves of the schedule, and rules without input."""
         return [*_never_happened(self.faults, self.missed_moves), *self.never_judged]
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain dicts, lists, numbers and text."""
+        """Return plain dicts, lists, numbers and text."""
         return asdict(self)
 
 
 def never_happened(mission: Mission) -> list[str]:
-    """See `Results.never_happened`; of a mission that may still fly."""
+    """Return `Results.never_happened` of a mission that may still fly."""
     return [*_never_happened(mission.record.rows("faults"), _missed_moves(mission)), *_never_judged(mission)]
 
 
 def _never_judged(mission: Mission) -> list[str]:
-    """What judges had nothing of; only a mission that demands something imports what finds that out."""
+    """Return the rules without input; only a mission with rules loads the code for it."""
     if not mission.spec.demands:
         return []
     from cfepy.pilot.never_judged import never_judged
@@ -302,7 +309,8 @@ def _never_judged(mission: Mission) -> list[str]:
 
 
 def _never_happened(rows: list[dict[str, Any]], missed_moves: list[str]) -> list[str]:
-    unseen = (row for row in rows if not row["times"] and not row["explored"])  # that is up to the schedule
+    # faults that are up to the schedule are left out
+    unseen = (row for row in rows if not row["times"] and not row["explored"])
     faults = [f"fault {row['name']} ({row['what']}) never happened: {row['never']}" for row in unseen]
     return [*faults, *missed_moves]
 
@@ -379,7 +387,7 @@ def _apps(mission: Mission, at: Mark) -> list[AppResult]:
 
 
 def _described(error: BaseException) -> str:
-    """What an application died of; a run in which none did imports nothing about tracebacks."""
+    """Return the error that ended an application; only a run with such an error loads the code for tracebacks."""
     from cfepy.mission import described
 
     return described(error)

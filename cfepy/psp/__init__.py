@@ -1,8 +1,8 @@
 """The board under a mission (cFE's Platform Support Package): its profile, memory, clock and resets.
 
-What belongs here is what a board has or lacks: the numbers of its profile, its memory and how much of it is in use,
-what outlives a reset, the watchdog, stored exceptions. How cFE answers a reset or an exception belongs to `cfepy.es`.
-The central file is `cfepy/psp/psp.py`.
+The properties of a board belong here: the numbers of its profile, its memory and the use of it, the memory that
+outlives a reset, the watchdog, and stored exceptions. The reactions of cFE to a reset or an exception belong to
+`cfepy.es`. The central file is `cfepy/psp/psp.py`.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ __all__ = [
     "read_limit",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

@@ -1,16 +1,16 @@
-"""Memory and I/O ports by address (CFE_PSP_Mem*, CFE_PSP_Eeprom*, CFE_PSP_Port*), and the order of their bytes.
+"""Memory and I/O ports by address (CFE_PSP_Mem*, CFE_PSP_Eeprom*, CFE_PSP_Port*), and byte order.
 
-Memory ranges hold bytes here when an area was attached to them, as the PSP does with the retained areas and the EEPROM;
-NASA's Linux PSP refuses direct RAM access, so reading and writing RAM works better here than there.
+A memory range holds bytes if an area is attached to it. The PSP attaches the retained areas and the EEPROM. NASA's
+Linux PSP refuses direct RAM access, so reading and writing RAM works better here than there.
 
-EEPROM is written by functions of its own, protected and switched off by bank. On a board with data flash both work, and
-it starts protected, as such a part does after a reset; on others they are what they are on NASA's Linux: a word may be
-written anywhere, at odd addresses and into RAM, too.
+EEPROM has its own write functions, and can be protected and switched off by bank. On a board with data flash both work,
+and the EEPROM starts protected, as such a part does after a reset. On other boards it behaves as on NASA's Linux: a
+word can be written anywhere, even at odd addresses and into RAM.
 
-Ports are registers of devices, as far as the board's profile declares some. A register reads what was written to it
-last, by flight software or by a test that plays the device (`port_areas`).
+Ports are the registers of devices that the board's profile declares. A register returns the value last written by
+flight software, or by a test that simulates the device (`port_areas`).
 
-The simulated processors are little-endian, so of CFE_PSP_HtoBE16 and the like the LE forms change nothing.
+The simulated processors are little-endian, so the LE forms of CFE_PSP_HtoBE16 and its relatives change nothing.
 """
 
 from __future__ import annotations
@@ -43,11 +43,11 @@ MEM_TABLE_SIZE = 10
 _WORD_SIZES = (1, 2, 4)
 NUM_EEPROM_BANKS = 1
 _ADDRESSES = 1 << 64
-"""cpuaddr counts round."""
+"""cpuaddr wraps around"""
 
 
 class MemRange(NamedTuple):
-    """One entry of the table (CFE_PSP_MemTable_t); one that was never set has zeros."""
+    """An entry of the table (CFE_PSP_MemTable_t); an entry that was never set has zeros."""
 
     memory_type: int = 0
     start_addr: int = 0
@@ -57,13 +57,13 @@ class MemRange(NamedTuple):
 
 
 class MemoryArea(Protocol):
-    """The bytes behind a range, such as a bytearray: read and written by slices with a start and a stop."""
+    """The bytes of a range, such as a bytearray: read and written by slices with a start and a stop."""
 
     def __getitem__(self, where: slice, /) -> bytes | bytearray | memoryview:
-        """Some of them."""
+        """Return a slice of the bytes."""
 
     def __setitem__(self, where: slice, data: bytes, /) -> None:
-        """Change some of them to as many others."""
+        """Replace a slice by the same number of bytes."""
 
 
 class AddressSpace:
@@ -72,10 +72,10 @@ class AddressSpace:
     def __init__(self) -> None:
         super().__init__()
         self._ranges = [MemRange()] * MEM_TABLE_SIZE
-        self._areas: dict[int, MemoryArea] = {}  # by number of the range, once they are needed
+        self._areas: dict[int, MemoryArea] = {}  # by number of the range; created when needed
 
     def mem_ranges(self) -> int:
-        """How many ranges the table holds (CFE_PSP_MemRanges)."""
+        """Return the number of ranges in the table (CFE_PSP_MemRanges)."""
         return MEM_TABLE_SIZE
 
     def mem_range_set(
@@ -97,7 +97,7 @@ class AddressSpace:
             size: bytes.
             word_size: 1, 2 or 4.
             attributes: MEM_ATTR_READ, _WRITE or _READWRITE.
-            area: the bytes that live there; None for new ones.
+            area: the bytes of the range; None for new bytes.
 
         Raises:
             OsalError: CFE_PSP_INVALID_MEM_RANGE, _TYPE, _WORDSIZE or _ATTR.
@@ -115,34 +115,36 @@ class AddressSpace:
             self._areas[range_num] = area
 
     def mem_range_get(self, range_num: int) -> MemRange:
-        """The definition of a range (CFE_PSP_MemRangeGet), or CFE_PSP_INVALID_MEM_RANGE."""
+        """Return the definition of a range (CFE_PSP_MemRangeGet); raises CFE_PSP_INVALID_MEM_RANGE."""
         self._check_number(range_num)
         return self._ranges[range_num]
 
     def mem_validate_range(self, address: int, size: int, memory_type: int) -> None:
-        """Check that a stretch of memory lies in one range of a type (CFE_PSP_MemValidateRange).
+        """Check that a block of memory lies in one range of a type (CFE_PSP_MemValidateRange).
 
         Raises:
-            OsalError: CFE_PSP_INVALID_MEM_TYPE for a bad or another type, CFE_PSP_INVALID_MEM_ADDR when it begins in
-                no range, CFE_PSP_INVALID_MEM_RANGE when it ends beyond it, or beyond the last address. Where it begins
-                in several ranges, one of them has to be right, and the last of them says why none is.
+            OsalError: CFE_PSP_INVALID_MEM_TYPE for an invalid or different type, CFE_PSP_INVALID_MEM_ADDR if it begins
+                in no range, CFE_PSP_INVALID_MEM_RANGE if it ends beyond the range or the last address. If it begins in
+                several ranges, one of them must match; otherwise the error is about the last one.
         """
         self._range_of(address, size, memory_type)
 
     def mem_read8(self, address: int) -> int:
-        """The byte at an address (CFE_PSP_MemRead8), or CFE_PSP_INVALID_MEM_*."""
+        """Return the byte at an address (CFE_PSP_MemRead8); raises CFE_PSP_INVALID_MEM_*."""
         return self._read(address, 1)
 
     def mem_read16(self, address: int) -> int:
-        """The 16-bit word at an even address (CFE_PSP_MemRead16); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
+        """Return the 16-bit word at an even address (CFE_PSP_MemRead16); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
         return self._read(address, 2)
 
     def mem_read32(self, address: int) -> int:
-        """The 32-bit word at an address divisible by 4 (CFE_PSP_MemRead32); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
+        """Return the 32-bit word at an address divisible by 4 (CFE_PSP_MemRead32); also
+        CFE_PSP_ERROR_ADDRESS_MISALIGNED.
+        """
         return self._read(address, 4)
 
     def mem_write8(self, address: int, value: int) -> None:
-        """Change a byte of RAM (CFE_PSP_MemWrite8), or CFE_PSP_INVALID_MEM_*."""
+        """Change a byte of RAM (CFE_PSP_MemWrite8); raises CFE_PSP_INVALID_MEM_*."""
         self._write(address, value, 1, MEM_RAM)
 
     def mem_write16(self, address: int, value: int) -> None:
@@ -154,11 +156,11 @@ class AddressSpace:
         self._write(address, value, 4, MEM_RAM)
 
     def mem_cpy(self, dest: int, src: int, size: int) -> None:
-        """Copy bytes between addresses (CFE_PSP_MemCpy), or CFE_PSP_INVALID_MEM_*."""
+        """Copy bytes between addresses (CFE_PSP_MemCpy); raises CFE_PSP_INVALID_MEM_*."""
         self._store(dest, self._load(src, size))
 
     def mem_set(self, dest: int, value: int, size: int) -> None:
-        """Set all bytes of a stretch (CFE_PSP_MemSet), or CFE_PSP_INVALID_MEM_*."""
+        """Set all bytes of a block (CFE_PSP_MemSet); raises CFE_PSP_INVALID_MEM_*."""
         self._store(dest, bytes([value & 0xFF]) * size)
 
     def _check_number(self, range_num: int) -> None:
@@ -166,7 +168,7 @@ class AddressSpace:
             raise OsalError(CFE_PSP_INVALID_MEM_RANGE, f"memory range {range_num} is not 0 to {MEM_TABLE_SIZE - 1}")
 
     def _range_of(self, address: int, size: int, memory_type: int) -> int:
-        """The number of the first range that has it all."""
+        """Return the number of the first range that contains the whole block."""
         if memory_type not in (MEM_RAM, MEM_EEPROM, MEM_ANY):
             raise OsalError(CFE_PSP_INVALID_MEM_TYPE, f"memory type {memory_type}")
         if (address + size) % _ADDRESSES < address:
@@ -203,7 +205,7 @@ class AddressSpace:
         return self._areas[number], slice(offset, offset + size)
 
     def _check_access(self, memory_type: int, is_write: bool) -> None:
-        """For kinds of memory that cannot always be read or written; see `cfepy.psp.addresses`."""
+        """Check the access to memory that cannot always be read or written; see `cfepy.psp.addresses`."""
 
     def _read(self, address: int, size: int) -> int:
         _check_alignment(address, size)
@@ -224,10 +226,10 @@ def _check_alignment(address: int, size: int) -> None:
 
 
 def _new_area(entry: MemRange) -> bytearray:
-    """The bytes of a range; a range may be all that can be addressed, which nobody has.
+    """Return the bytes of a range; a range may span the whole address space, which no host has.
 
     Raises:
-        OsalError: CFE_PSP_INVALID_MEM_ADDR when there is no room for so many.
+        OsalError: CFE_PSP_INVALID_MEM_ADDR if the host has no room for the bytes.
     """
     try:
         return bytearray(entry.size)
@@ -239,7 +241,7 @@ class EepromSpace(AddressSpace):
     """An address space whose EEPROM can be protected.
 
     Attributes:
-        has_eeprom_control: whether there is hardware that protects it and switches it off.
+        has_eeprom_control: whether the board has hardware that protects the EEPROM and switches it off.
         is_writable, is_powered: its state; always true without that hardware.
     """
 
@@ -249,7 +251,7 @@ class EepromSpace(AddressSpace):
         self.is_writable = self.is_powered = True
 
     def protect_eeprom(self) -> None:
-        """The board has hardware that protects the EEPROM; it does so from the start."""
+        """Enable the hardware that protects the EEPROM, which starts protected."""
         self.has_eeprom_control = True
         self.is_writable = False
 
@@ -257,27 +259,27 @@ class EepromSpace(AddressSpace):
         """Change a byte of EEPROM (CFE_PSP_EepromWrite8).
 
         Raises:
-            OsalError: CFE_PSP_INVALID_MEM_*; CFE_PSP_ERROR_TIMEOUT while it is protected or switched off. On a board
-                that cannot protect it any memory is written, as on NASA's Linux.
+            OsalError: CFE_PSP_INVALID_MEM_*; CFE_PSP_ERROR_TIMEOUT while it is protected or switched off. A board that
+                cannot protect it writes to any memory, as NASA's Linux does.
         """
         self._write_eeprom(address, value, 1)
 
     def eeprom_write16(self, address: int, value: int) -> None:
         """Change a 16-bit word of EEPROM (CFE_PSP_EepromWrite16); also CFE_PSP_ERROR_ADDRESS_MISALIGNED.
 
-        On a board that cannot protect its EEPROM an odd address is as good, as on NASA's Linux.
+        A board that cannot protect its EEPROM accepts odd addresses, as NASA's Linux does.
         """
         self._write_eeprom(address, value, 2)
 
     def eeprom_write32(self, address: int, value: int) -> None:
-        """Change a 32-bit word of EEPROM (CFE_PSP_EepromWrite32), as `eeprom_write16` does."""
+        """Change a 32-bit word of EEPROM (CFE_PSP_EepromWrite32); see `eeprom_write16`."""
         self._write_eeprom(address, value, 4)
 
     def eeprom_write_enable(self, bank: int) -> None:
-        """Let it be written (CFE_PSP_EepromWriteEnable).
+        """Allow writing to the EEPROM (CFE_PSP_EepromWriteEnable).
 
         Args:
-            bank: 0, there is one.
+            bank: must be 0, the only bank.
 
         Raises:
             OsalError: CFE_PSP_ERROR for another bank; CFE_PSP_ERROR_NOT_IMPLEMENTED on a board that cannot protect it.
@@ -286,18 +288,18 @@ class EepromSpace(AddressSpace):
         self.is_writable = True
 
     def eeprom_write_disable(self, bank: int) -> None:
-        """Protect it (CFE_PSP_EepromWriteDisable); errors as `eeprom_write_enable`."""
+        """Protect the EEPROM (CFE_PSP_EepromWriteDisable); see `eeprom_write_enable` for the errors."""
         self._check_control(bank)
         self.is_writable = False
 
     def eeprom_power_up(self, bank: int) -> None:
-        """Switch it on (CFE_PSP_EepromPowerUp); without effect on a board that cannot."""
+        """Switch the EEPROM on (CFE_PSP_EepromPowerUp); no effect on a board without this hardware."""
         if self.has_eeprom_control:
             self._check_control(bank)
             self.is_powered = True
 
     def eeprom_power_down(self, bank: int) -> None:
-        """Switch it off (CFE_PSP_EepromPowerDown); without effect on a board that cannot."""
+        """Switch the EEPROM off (CFE_PSP_EepromPowerDown); no effect on a board without this hardware."""
         if self.has_eeprom_control:
             self._check_control(bank)
             self.is_powered = False
@@ -331,37 +333,37 @@ class _Area(NamedTuple):
 
 
 class PortSpace:
-    """The CFE_PSP_Port* functions; `port_areas` has the bytes of every range by its name."""
+    """The CFE_PSP_Port* functions; `port_areas` has the bytes of every range by name."""
 
     def __init__(self) -> None:
         self.port_areas: dict[str, bytearray] = {}
         self._port_ranges: list[_Area] = []
 
     def declare_ports(self, ranges: Iterable[PortRange]) -> None:
-        """Make the ports of a board; all their bits are 0."""
+        """Create the ports of a board, with all bits 0."""
         for declared in ranges:
             data = self.port_areas[declared.name] = bytearray(declared.size)
             self._port_ranges.append(_Area(declared.address, data))
 
     def port_read8(self, port_address: int) -> int:
-        """An 8-bit register (CFE_PSP_PortRead8).
+        """Return an 8-bit register (CFE_PSP_PortRead8).
 
         Raises:
-            OsalError: CFE_PSP_INVALID_MEM_ADDR when there is no such port; CFE_PSP_ERROR_NOT_IMPLEMENTED on a board
+            OsalError: CFE_PSP_INVALID_MEM_ADDR if the port does not exist; CFE_PSP_ERROR_NOT_IMPLEMENTED on a board
                 without ports, as on NASA's Linux.
         """
         return self._read_port(port_address, 1)
 
     def port_read16(self, port_address: int) -> int:
-        """A 16-bit register (CFE_PSP_PortRead16); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
+        """Return a 16-bit register (CFE_PSP_PortRead16); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
         return self._read_port(port_address, 2)
 
     def port_read32(self, port_address: int) -> int:
-        """A 32-bit register (CFE_PSP_PortRead32); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
+        """Return a 32-bit register (CFE_PSP_PortRead32); also CFE_PSP_ERROR_ADDRESS_MISALIGNED."""
         return self._read_port(port_address, 4)
 
     def port_write8(self, port_address: int, value: int) -> None:
-        """Set an 8-bit register (CFE_PSP_PortWrite8); errors as `port_read8`."""
+        """Set an 8-bit register (CFE_PSP_PortWrite8); see `port_read8` for the errors."""
         self._write_port(port_address, value, 1)
 
     def port_write16(self, port_address: int, value: int) -> None:
@@ -394,40 +396,40 @@ def _swapped(value: int, size: int) -> int:
 
 
 def swap_16(value: int) -> int:
-    """The 16-bit number with its bytes the other way round (CFE_PSP_HtoBE16, CFE_PSP_BE16toH)."""
+    """Return a 16-bit number with its bytes reversed (CFE_PSP_HtoBE16, CFE_PSP_BE16toH)."""
     return _swapped(value, 2)
 
 
 def swap_32(value: int) -> int:
-    """The 32-bit number with its bytes the other way round (CFE_PSP_HtoBE32, CFE_PSP_BE32toH)."""
+    """Return a 32-bit number with its bytes reversed (CFE_PSP_HtoBE32, CFE_PSP_BE32toH)."""
     return _swapped(value, 4)
 
 
 def swap_64(value: int) -> int:
-    """The 64-bit number with its bytes the other way round (CFE_PSP_HtoBE64, CFE_PSP_BE64toH)."""
+    """Return a 64-bit number with its bytes reversed (CFE_PSP_HtoBE64, CFE_PSP_BE64toH)."""
     return _swapped(value, 8)
 
 
 def keep_16(value: int) -> int:
-    """The lower 16 bits as they are (CFE_PSP_HtoLE16, CFE_PSP_LE16toH)."""
+    """Return the lower 16 bits unchanged (CFE_PSP_HtoLE16, CFE_PSP_LE16toH)."""
     return value & 0xFFFF
 
 
 def keep_32(value: int) -> int:
-    """The lower 32 bits as they are (CFE_PSP_HtoLE32, CFE_PSP_LE32toH)."""
+    """Return the lower 32 bits unchanged (CFE_PSP_HtoLE32, CFE_PSP_LE32toH)."""
     return value & 0xFFFFFFFF
 
 
 def keep_64(value: int) -> int:
-    """The lower 64 bits as they are (CFE_PSP_HtoLE64, CFE_PSP_LE64toH)."""
+    """Return the lower 64 bits unchanged (CFE_PSP_HtoLE64, CFE_PSP_LE64toH)."""
     return value & 0xFFFFFFFFFFFFFFFF
 
 
 def is_big_endian() -> bool:
-    """Whether the processor is big-endian (CFE_PSP_IsBigEndian)."""
+    """Return whether the processor is big-endian (CFE_PSP_IsBigEndian)."""
     return False
 
 
 def is_little_endian() -> bool:
-    """Whether the processor is little-endian (CFE_PSP_IsLittleEndian)."""
+    """Return whether the processor is little-endian (CFE_PSP_IsLittleEndian)."""
     return True

@@ -1,8 +1,8 @@
 """Exceptions that the board stores until they are read (CFE_PSP_Exception_*, cfe_psp_exceptionstorage.c).
 
-A Python exception that ends a task is what a signal of the processor is to NASA's Linux PSP. The code that catches it
-hands it to `store_exception`; ES reads it out in its background task. The storage is retained memory: it outlives a
-processor reset, though CFE_PSP_AttachExceptions then discards unread entries.
+A Python exception that ends a task corresponds to a processor signal in NASA's Linux PSP. The code that catches it
+calls `store_exception`, and the background task of ES reads it. The storage is retained memory and outlives a processor
+reset, but CFE_PSP_AttachExceptions then discards unread entries.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _INDEX_MASK = 0xFFFF
 
 
 class StoredException(NamedTuple):
-    """One entry: its id, the task, what happened in words, and what else is known, as bytes."""
+    """A stored exception: its id, the task, a description, and further context as bytes."""
 
     context_id: int
     task_id: int
@@ -27,7 +27,7 @@ class StoredException(NamedTuple):
 
 
 class ExceptionSummary(NamedTuple):
-    """What `exception_get_summary` tells."""
+    """The result of `exception_get_summary`."""
 
     context_id: int
     task_id: int
@@ -35,20 +35,20 @@ class ExceptionSummary(NamedTuple):
 
 
 class ExceptionStorage:
-    """A ring of entries, each readable once as a summary, and as a context until its place is taken."""
+    """A ring of entries. Each summary can be read once, and each context until its slot is reused."""
 
     def __init__(self) -> None:
         self.written = 0
         self.read = 0
-        self.entries: dict[int, StoredException] = {}  # by place in the ring
+        self.entries: dict[int, StoredException] = {}  # by slot of the ring
 
     @property
     def unread(self) -> int:
-        """Entries whose summary has not been read."""
+        """The number of entries with an unread summary."""
         return self.written - self.read
 
     def add(self, task_id: int, reason: str, context: bytes) -> int:
-        """Store an exception; its id, 0 when the ring is full of unread ones."""
+        """Store an exception; return its id, or 0 if the ring is full of unread entries."""
         if self.unread >= MAX_EXCEPTION_ENTRIES:
             return 0
         context_id = EXCEPTION_ID_BASE + (self.written & _INDEX_MASK)
@@ -58,59 +58,59 @@ class ExceptionStorage:
         return context_id
 
     def _expire(self, place: int) -> None:
-        """The context of the entry that is overwritten next is not given out any more, its summary is."""
+        """Expire the context of the entry to be overwritten next; its summary stays readable."""
         if place in self.entries:
             self.entries[place] = self.entries[place]._replace(context_id=0)
 
     def find(self, context_id: int) -> StoredException | None:
-        """The entry of an id, if it has not expired."""
+        """Return the entry of an id, or None if it has expired."""
         found = self.entries.get(context_id % MAX_EXCEPTION_ENTRIES)
         return found if context_id and found is not None and found.context_id == context_id else None
 
     def clear(self) -> None:
-        """A power-on reset."""
+        """Remove all entries, for a power-on reset."""
         self.written = self.read = 0
         self.entries.clear()
 
 
 class ExceptionApi:
-    """The CFE_PSP functions on exceptions; a `Psp` has the console and the storage that they use."""
+    """The CFE_PSP functions on exceptions; `Psp` provides the console and the storage."""
 
     console: Console
     exceptions: ExceptionStorage
 
     def attach_exceptions(self) -> None:
-        """Watch for exceptions from now on, and forget unread ones (CFE_PSP_AttachExceptions)."""
+        """Start to watch for exceptions, and discard unread ones (CFE_PSP_AttachExceptions)."""
         self.console.write("CFE_PSP: CFE_PSP_AttachExceptions called")
         self.exceptions.read = self.exceptions.written
 
     def set_default_exception_environment(self) -> None:
-        """Nothing: every task is watched alike (CFE_PSP_SetDefaultExceptionEnvironment)."""
+        """Do nothing, because every task is watched in the same way (CFE_PSP_SetDefaultExceptionEnvironment)."""
 
     def store_exception(self, task_id: int, reason: str, context: bytes = b"") -> int:
-        """Keep an exception that ended a task; what a signal handler does in NASA's PSP.
+        """Store an exception that ended a task, like a signal handler in NASA's PSP.
 
-        The caller then tells ES, as the PSP's idle task does with CFE_ES_ProcessAsyncEvent.
+        The caller must then notify ES, as the PSP's idle task does with CFE_ES_ProcessAsyncEvent.
 
         Args:
-            task_id: OSAL's id of the task, kept even when the task is gone by the time it is read.
-            reason: what happened, in words.
-            context: what else is known, for the exception and reset log.
+            task_id: OSAL's id of the task; it is kept even if the task is gone when it is read.
+            reason: a description.
+            context: further context for the exception and reset log.
 
         Returns:
-            The entry's id; 0 when there are as many unread ones as the storage holds, and this one is lost.
+            The entry's id, or 0 if the storage is full of unread entries and this exception is lost.
         """
         return self.exceptions.add(task_id, reason, context)
 
     def exception_get_count(self) -> int:
-        """The number of exceptions that are still unread (CFE_PSP_Exception_GetCount)."""
+        """Return the number of unread exceptions (CFE_PSP_Exception_GetCount)."""
         return self.exceptions.unread
 
     def exception_get_summary(self) -> ExceptionSummary:
-        """The oldest unread exception, which is read from then on (CFE_PSP_Exception_GetSummary).
+        """Return the oldest unread exception and mark it as read (CFE_PSP_Exception_GetSummary).
 
         Raises:
-            OsalError: CFE_PSP_NO_EXCEPTION_DATA when there is none.
+            OsalError: CFE_PSP_NO_EXCEPTION_DATA if there is none.
         """
         storage = self.exceptions
         entry = storage.entries.get(storage.read % MAX_EXCEPTION_ENTRIES) if storage.unread else None
@@ -120,14 +120,14 @@ class ExceptionApi:
         return ExceptionSummary(entry.context_id, entry.task_id, entry.reason)
 
     def exception_copy_context(self, context_log_id: int, context_size: int) -> bytes:
-        """What else is known of an exception (CFE_PSP_Exception_CopyContext).
+        """Return the context of an exception (CFE_PSP_Exception_CopyContext).
 
         Args:
             context_log_id: an entry's id.
-            context_size: bytes at most; what is longer is cut off, with a line on the console.
+            context_size: maximum number of bytes; a longer context is truncated, with a line on the console.
 
         Raises:
-            OsalError: CFE_PSP_NO_EXCEPTION_DATA for no id, or when it has expired.
+            OsalError: CFE_PSP_NO_EXCEPTION_DATA if the id is unknown or has expired.
         """
         entry = self.exceptions.find(context_log_id)
         if entry is None:

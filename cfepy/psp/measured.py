@@ -1,10 +1,10 @@
-"""A board's profile from three times that were measured on it.
+"""A board profile from three times measured on the board.
 
     round trip   two tasks wake each other by binary semaphores: four calls of OSAL, two changes of task
     short, long  one task sends a message to its own pipe and takes it out: two calls, and each byte copied once
 
-These are what the simulation charges for the same, so an application that measures them on the profile finds the times
-that it was made of. boards/board_times is one, in C.
+The simulation charges the same times for these actions. So an application that measures them under the profile gets the
+times that the profile was made from. boards/board_times is such an application in C.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ CALLS_OF_ROUND_TRIP, SWITCHES_OF_ROUND_TRIP, CALLS_OF_MESSAGE = 4, 2, 2
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """What was measured on a board.
+    """Times measured on a board.
 
     Attributes:
-        cpu_hz: its processor clock.
-        round_trip_ns: of two tasks that wake each other.
-        short_ns, long_ns: to send and take a message of 32 and of 2048 bytes.
+        cpu_hz: processor clock in Hz.
+        round_trip_ns: time of the round trip of two tasks that wake each other, in ns.
+        short_ns, long_ns: time to send and receive a message of 32 and of 2048 bytes, in ns.
     """
 
     cpu_hz: int
@@ -34,10 +34,10 @@ class Measured:
     long_ns: float
 
     def cycles(self) -> dict[str, int]:
-        """The costs of a profile, in processor cycles, by the names of its fields.
+        """Return the costs of a profile, in processor cycles, by the names of its fields.
 
         Raises:
-            UsageError: the times do not fit together.
+            UsageError: if the times are inconsistent.
         """
         byte_ns = (self.long_ns - self.short_ns) / (LONG_BYTES - SHORT_BYTES)
         call_ns = (self.short_ns - SHORT_BYTES * byte_ns) / CALLS_OF_MESSAGE

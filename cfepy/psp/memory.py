@@ -1,7 +1,7 @@
-"""The memory budget of a board: how much RAM each owner uses and for what, and the refusal when there is no more.
+"""The memory budget of a board: the RAM that each owner uses, by purpose, and the refusal when no RAM is left.
 
-Objects and stacks do not live in that RAM here; they are booked, in bytes, as they would be on the board. On a board
-without limits everything is booked too, so that a mission can be sized before it moves to a small one.
+Objects and stacks are not really placed in this RAM. They are accounted for in bytes, as on the board. A board without
+limits accounts for them too, so that you can size a mission before it moves to a small board.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from cfepy.status import CFE_STATUS_EXTERNAL_RESOURCE_FAIL, CfeError
 
 
 class Claim(NamedTuple):
-    """One booking."""
+    """An accounted block of memory."""
 
     owner: str
     kind: str
@@ -22,11 +22,11 @@ class Claim(NamedTuple):
 
 
 class OverBudget(CfeError):
-    """A claim does not fit into the board's RAM.
+    """Exception for a claim that does not fit into the board's RAM.
 
     Args:
-        claim: what was asked for.
-        missing: bytes that are missing for it.
+        claim: the refused claim.
+        missing: number of missing bytes.
         report: the table of all claims.
     """
 
@@ -41,10 +41,10 @@ class OverBudget(CfeError):
 
 
 class MemoryBudget:
-    """Books memory against the RAM of a board.
+    """Accounts for memory in the RAM of a board.
 
     Args:
-        profile: the board; one without RAM regions has no limit.
+        profile: the board; a board without RAM regions has no limit.
     """
 
     def __init__(self, profile: BoardProfile) -> None:
@@ -57,23 +57,23 @@ class MemoryBudget:
 
     @property
     def free(self) -> int | None:
-        """Bytes left, None where there is no limit."""
+        """The free bytes; None if there is no limit."""
         return None if self.limit is None else self.limit - self.used
 
     def claim(self, owner: str, kind: str, size: int) -> int:
-        """Book `size` bytes.
+        """Claim `size` bytes.
 
         Args:
             owner: the application, or "system".
-            kind: what for: "stack", "queue", "table", ...
+            kind: the purpose: "stack", "queue", "table", ...
             size: bytes.
 
         Returns:
-            A token to give them back with.
+            A token to release the claim with.
 
         Raises:
-            OverBudget: they do not fit; the text lists the owners and their shares.
-            CfeError: a negative size.
+            OverBudget: if the bytes do not fit; the text lists the owners and their shares.
+            CfeError: for a negative size.
         """
         if size < 0:
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"{owner} asks for {size} bytes ({kind})")
@@ -87,34 +87,34 @@ class MemoryBudget:
         return self._last_token
 
     def release(self, token: int) -> None:
-        """Give a claim back; a token that was given back already does nothing."""
+        """Release a claim; a released token has no effect."""
         claim = self._claims.pop(token, None)
         if claim is not None:
             self.used -= claim.size
 
     def totals(self) -> dict[tuple[str, str], int]:
-        """Bytes by (owner, kind), largest first."""
+        """Return the bytes by (owner, kind), the largest first."""
         sums: dict[tuple[str, str], int] = {}
         for owner, kind, size in self._claims.values():
             sums[owner, kind] = sums.get((owner, kind), 0) + size
         return dict(sorted(sums.items(), key=lambda item: (-item[1], item[0])))
 
     def sizes(self) -> dict[tuple[str, str], list[int]]:
-        """The bytes of each claim by (owner, kind)."""
+        """Return the bytes of each claim by (owner, kind)."""
         found: dict[tuple[str, str], list[int]] = {}
         for owner, kind, size in self._claims.values():
             found.setdefault((owner, kind), []).append(size)
         return found
 
     def by_owner(self) -> dict[str, int]:
-        """Bytes by owner, largest first."""
+        """Return the bytes by owner, the largest first."""
         sums: dict[str, int] = {}
         for claim in self._claims.values():
             sums[claim.owner] = sums.get(claim.owner, 0) + claim.size
         return dict(sorted(sums.items(), key=lambda item: (-item[1], item[0])))
 
     def report(self) -> str:
-        """A table of owner, kind and bytes, with the sum and the board's RAM below."""
+        """Return a table of owner, kind and bytes, with the sum and the board's RAM below."""
         rows = [(owner, kind, f"{size:,}") for (owner, kind), size in self.totals().items()]
         rows.append(("used", "", f"{self.used:,}"))
         rows.append((f"RAM of {self.board}", "", "unlimited" if self.limit is None else f"{self.limit:,}"))
@@ -123,7 +123,7 @@ class MemoryBudget:
 
 
 def object_sizes(profile: BoardProfile) -> ObjectSizes:
-    """What the operating system of a board takes for each object."""
+    """Return the memory that a board's operating system uses for each object."""
     costs = profile.memory_costs
     return ObjectSizes(
         task=costs.task_control_block,

@@ -1,6 +1,6 @@
-"""The board a mission runs on: processor speed, clock tick, memory, cost of kernel calls, and the limits that follow.
+"""The board of a mission: processor speed, clock tick, memory, cost of kernel calls, and the resulting limits.
 
-A profile is a file, boards/<name>.yaml; a number that is 0 or left out means "no limit" or "costs nothing".
+A profile is a file, boards/<name>.yaml. A number that is 0 or missing means "no limit" or "costs nothing".
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from cfepy.units import NS_PER_S, PS_PER_NS
 
 DEFAULT_NODE_CALL_NS = 1000
 _UNITS = {"B": 1, "KiB": 1024, "MiB": 1024 * 1024}
-MOST_BYTES = 1 << 32  # a board with more needs none of this
+MOST_BYTES = 1 << 32  # a board with more memory needs no limit
 MOST_LIMIT = (1 << 31) - 1
-MOST_OBJECTS = SERIAL_MAX - 1  # a resource id has 16 bits for them
+MOST_OBJECTS = SERIAL_MAX - 1  # a resource id has 16 bits for the serial number
 LIMIT_NAMES = tuple(known.name for known in fields(PlatformConfig) if known.name not in NOT_LIMITS)
 Limit = int | str | tuple[int, ...]
 """A value of `PlatformConfig`."""
@@ -42,7 +42,7 @@ _NUMBERS = (
 
 @dataclass(frozen=True, slots=True)
 class MemoryRegion:
-    """A stretch of RAM: its name, its bytes, and whether it keeps its content through a reset."""
+    """A block of RAM: its name, its size in bytes, and whether it keeps its content through a reset."""
 
     name: str
     size: int
@@ -51,7 +51,7 @@ class MemoryRegion:
 
 @dataclass(frozen=True, slots=True)
 class PortRange:
-    """Registers of a device: its name, the first address, and how many bytes."""
+    """The registers of a device: a name, the first address, and the size in bytes."""
 
     name: str
     address: int
@@ -60,7 +60,7 @@ class PortRange:
 
 @dataclass(frozen=True, slots=True)
 class MemoryCosts:
-    """RAM that the kernel's objects take, bytes each; 0 costs nothing."""
+    """RAM used by each object of the kernel, in bytes; 0 costs nothing."""
 
     task_control_block: int = 0
     queue_control_block: int = 0
@@ -72,24 +72,25 @@ class MemoryCosts:
 
 @dataclass(frozen=True, slots=True)
 class BoardProfile:
-    """What a mission has to live with.
+    """The properties of a board.
 
     Attributes:
         name: the board's name.
-        description: one line about it.
-        cpu_hz: processor clock; 0 means that computing costs no virtual time.
-        tick_ns: the kernel's clock tick, to which delays are rounded up; 0 for none.
-        program_flash, data_flash: bytes; 0 for no limit.
-        sram: regions of RAM; none for no limit.
-        ports: I/O ports; none on a board without.
-        watchdog_max_ms: the longest time of the watchdog, which resets the processor; 0 for one that does nothing.
-        context_switch_cycles: processor cycles to go from one task to another.
+        description: a line about it.
+        cpu_hz: processor clock in Hz; 0 means that computing costs no virtual time.
+        tick_ns: the kernel's clock tick, to which delays are rounded up, in ns; 0 for none.
+        program_flash, data_flash: size in bytes; 0 for no limit.
+        sram: regions of RAM; empty for no limit.
+        ports: I/O ports; empty for none.
+        watchdog_max_ms: longest time of the watchdog, which resets the processor, in ms; 0 for a watchdog without
+            effect.
+        context_switch_cycles: processor cycles of a task switch.
         syscall_cycles: cycles of a kernel call.
-        copy_cycles_per_byte: cycles to copy one byte of a message.
-        max_publish_hz: messages a second that one publisher may send; 0 for no limit.
-        node_call_ns: virtual time of one call of a ROS node into the middleware.
-        limits: values that replace those of `PlatformConfig`.
-        memory_costs: RAM that each object takes.
+        copy_cycles_per_byte: cycles to copy a byte of a message.
+        max_publish_hz: maximum number of messages per second of one publisher; 0 for no limit.
+        node_call_ns: virtual time of a call of a ROS node into the middleware, in ns.
+        limits: values that replace values of `PlatformConfig`.
+        memory_costs: RAM used by each object.
     """
 
     name: str
@@ -111,11 +112,11 @@ class BoardProfile:
 
     @property
     def sram_size(self) -> int:
-        """Bytes of all RAM; 0 for no limit."""
+        """The total bytes of RAM; 0 for no limit."""
         return sum(region.size for region in self.sram)
 
     def cpu_costs(self) -> CpuCosts:
-        """What calls cost on this board; the time of a byte is rounded up to a picosecond."""
+        """Return the times of calls on this board; the time of a byte is rounded up to a picosecond."""
         byte_ps = -(-self.copy_cycles_per_byte * PS_PER_NS * NS_PER_S // self.cpu_hz) if self.cpu_hz else 0
         return CpuCosts(
             call_ns=self.cycles_ns(self.syscall_cycles),
@@ -125,20 +126,20 @@ class BoardProfile:
         )
 
     def cycles_ns(self, cycles: int) -> int:
-        """Nanoseconds that some processor cycles take, rounded up; 0 on a board without a clock rate."""
+        """Return the time of processor cycles in ns, rounded up; 0 on a board without a clock rate."""
         return -(-cycles * NS_PER_S // self.cpu_hz) if self.cpu_hz else 0
 
     def config(self, base: PlatformConfig | None = None) -> PlatformConfig:
-        """The platform configuration under this board's limits.
+        """Return the platform configuration under this board's limits.
 
         Args:
-            base: what the limits are applied to; cFE's defaults when None.
+            base: the configuration to apply the limits to; None for cFE's defaults.
         """
         return (base or PlatformConfig()).with_limits(self.limits)
 
 
 def available_boards() -> list[str]:
-    """Names of the boards that cfepy brings along, sorted."""
+    """Return the names of the boards included in cfepy, sorted."""
     return sorted(path.stem for path in shipped("boards").glob("*.yaml"))
 
 
@@ -149,7 +150,7 @@ def load_profile(name_or_path: str | Path) -> BoardProfile:
         name_or_path: a shipped board's name such as "rx64m", or the path of a .yaml file.
 
     Raises:
-        UsageError: no such board, or its file is wrong; says file, line and field.
+        UsageError: if the board does not exist or its file is wrong; the error names file, line and field.
     """
     root = load(_find(name_or_path))
     entries = root.mapping([known.name for known in fields(BoardProfile)])
@@ -180,7 +181,7 @@ def _number(key: str, entry: Marked) -> int:
 
 
 def _size(entry: Marked) -> int:
-    """Bytes: a whole number, or one with a unit, "512 KiB"."""
+    """Return a size in bytes, from a whole number or a number with a unit, such as "512 KiB"."""
     if not isinstance(entry.value, str):
         return entry.integer(highest=MOST_BYTES)
     count, _, unit = entry.value.partition(" ")
@@ -222,14 +223,14 @@ def _limits(entry: Marked) -> dict[str, Limit]:
 
 
 def read_limit(name: str, entry: Marked) -> Limit:
-    """One value of the platform configuration, as it stands in a file.
+    """Return a value of the platform configuration, as read from a file.
 
     Args:
         name: a field of `PlatformConfig`.
         entry: its value.
 
     Raises:
-        UsageError: it is of another kind, or no number that cFE could be built with.
+        UsageError: if it has the wrong type, or is a number that cFE cannot be built with.
     """
     default = getattr(PlatformConfig(), name)
     if isinstance(default, str):

@@ -1,8 +1,8 @@
 """`Psp`: the board under a mission as one object, `cfe.psp` (cFE's Platform Support Package).
 
-It boots the board with the console lines of NASA's Linux PSP, gives the processor's name and time, keeps the memory
-that outlives resets, and passes resets on to the mission. Names are NASA's in snake case without CFE_PSP_. What a
-simulated board does not have (a segment of machine code, caches, a recorder) fails as on NASA's Linux PSP.
+It boots the board with the console lines of NASA's Linux PSP, provides the processor's name and time, keeps the memory
+that outlives resets, and passes resets on to the mission. Names are NASA's in snake case without CFE_PSP_. Functions
+for hardware that a simulated board lacks (a segment of machine code, caches, a recorder) fail as on NASA's Linux PSP.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ RESTART_DELAY_MS = 10_000
 EEPROM_ADDRESS = 0x1000_0000
 RESET_AREA_ADDRESS = 0x2000_0000
 USER_RESERVED_ADDRESS = 0x3000_0000
-# The modules of NASA's Linux PSP that there is a counterpart of here, with their ids there and what they say.
+# The modules of NASA's Linux PSP with a counterpart here, their ids, and their console lines.
 _MODULES = (
     ("soft_timebase", 0x0110FF00, f"Instantiated software timebase '{SOFT_TIMEBASE_NAME}' running at 10000 usec"),
     ("ram_notimpl", 0x0110FF03, "Physical RAM access not implemented"),
@@ -64,16 +64,16 @@ User Reserved Area Shared memory segment removed"""
 
 
 class AbsentHardware:
-    """The functions of the PSP that find nothing."""
+    """The functions of the PSP for absent hardware."""
 
     console: Console
 
     def flush_caches(self, cache_type: int, address: int, size: int) -> None:
-        """Say that there are none (CFE_PSP_FlushCaches)."""
+        """Report that there are no caches (CFE_PSP_FlushCaches)."""
         self.console.write("CFE_PSP_FlushCaches called -- Currently no Linux/OSX/Cygwin implementation")
 
     def init_ssr(self, bus: int, device: int, device_name: str) -> None:
-        """There is no solid state recorder (CFE_PSP_InitSSR).
+        """Fail, because there is no solid state recorder (CFE_PSP_InitSSR).
 
         Raises:
             OsalError: CFE_PSP_ERROR, always.
@@ -81,11 +81,13 @@ class AbsentHardware:
         raise OsalError(CFE_PSP_ERROR, f"there is no recorder {device_name} on bus {bus}, device {device}")
 
     def get_volatile_disk_mem(self) -> memoryview:
-        """The memory of the RAM disk, of size 0: its files are no bytes at addresses (CFE_PSP_GetVolatileDiskMem)."""
+        """Return the memory of the RAM disk, of size 0, because its files have no addresses
+        (CFE_PSP_GetVolatileDiskMem).
+        """
         return memoryview(b"")
 
     def get_kernel_text_segment_info(self) -> memoryview:
-        """The code of the operating system (CFE_PSP_GetKernelTextSegmentInfo).
+        """Fail to return the code of the operating system (CFE_PSP_GetKernelTextSegmentInfo).
 
         Raises:
             OsalError: CFE_PSP_ERROR_NOT_IMPLEMENTED, always.
@@ -93,7 +95,8 @@ class AbsentHardware:
         raise OsalError(CFE_PSP_ERROR_NOT_IMPLEMENTED, "the kernel has no text segment")
 
     def get_cfe_text_segment_info(self) -> memoryview:
-        """The machine code of the cFE core (CFE_PSP_GetCFETextSegmentInfo): Python has none, unlike NASA's Linux.
+        """Fail to return the machine code of the cFE core, because Python has none, unlike NASA's Linux
+        (CFE_PSP_GetCFETextSegmentInfo).
 
         Raises:
             OsalError: CFE_PSP_ERROR_NOT_IMPLEMENTED, always.
@@ -102,32 +105,32 @@ class AbsentHardware:
 
 
 class RestartType(NamedTuple):
-    """Why the processor started: a RST_TYPE_* and a RST_SUBTYPE_*."""
+    """The cause of the processor's start: a RST_TYPE_* and a RST_SUBTYPE_*."""
 
     reset_type: int
     subtype: int
 
 
 class Timebase(NamedTuple):
-    """What `get_timebase` reads: seconds, and ns within the second."""
+    """The result of `get_timebase`: seconds, and ns within the second."""
 
     upper: int
     lower: int
 
 
 class PanicError(CfeError):
-    """CFE_PSP_Panic was called: the run is over."""
+    """Exception for CFE_PSP_Panic, which ends the run."""
 
 
 class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions):
-    """One board.
+    """A simulated board.
 
     Args:
         kernel: its clock and tasks.
-        profile: what kind of board it is.
+        profile: the kind of board.
         config: spacecraft id, processor id and name.
-        console: where its lines go.
-        osal: for the software time base.
+        console: the output of its lines.
+        osal: provides the software time base.
         retained: memory that outlives a processor reset; None makes a new one.
         on_restart: called with the reset type, the reason and whether it is a fault; None stops the run.
     """
@@ -185,11 +188,11 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         """Start the board, up to where NASA's PSP calls CFE_ES_Main (CFE_PSP_Main, OS_Application_Startup).
 
         Args:
-            reset_type: RST_TYPE_PROCESSOR or RST_TYPE_POWERON; 0 takes what the last restart asked for.
-            subtype: one of RST_SUBTYPE_*; 0 takes what the hardware says.
+            reset_type: RST_TYPE_PROCESSOR or RST_TYPE_POWERON; 0 takes the type that the last restart requested.
+            subtype: one of RST_SUBTYPE_*; 0 takes the subtype that the hardware reports.
 
         Returns:
-            The type of the start: power-on when nothing else was asked for.
+            The type of the start: power-on if no other type was requested.
         """
         known_subtype = subtype or self.retained.next_subtype
         self._announce(known_subtype)
@@ -208,25 +211,26 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
             self._clear_memory()
         self.retained.exited = False
         self.retained.next_subtype = 0
-        # What comes when it ends without a restart: once a processor reset, then from scratch.
+        # The reset type after an end without a restart: a processor reset once, then power-on.
         self.retained.next_reset_type = RST_TYPE_POWERON if is_processor else RST_TYPE_PROCESSOR
         return self._restart_type
 
     def restart(self, reset_type: int, reason: str = "CFE_PSP_Restart", fault: bool = False) -> None:
-        """Reset the processor, and record how it starts again (CFE_PSP_Restart). A task does not come back from it.
+        """Reset the processor, and record the type of the next start (CFE_PSP_Restart). The call does not return to a
+        task.
 
         Args:
             reset_type: RST_TYPE_PROCESSOR or RST_TYPE_POWERON.
-            reason: for the report of the run.
-            fault: something failed; otherwise it was asked for.
+            reason: the reason for the report of the run.
+            fault: whether a failure caused it; otherwise it was requested.
         """
-        if not self._is_resetting:  # else a `finally` block of a task that is being ended asks once more
+        if not self._is_resetting:  # otherwise a `finally` block of a task that is being ended would request it again
             self._is_resetting = True
             self._say_goodbye(reset_type)
         self._reset(reset_type, reason, fault)
 
     def _say_goodbye(self, reset_type: int) -> None:
-        """What is said, and what the retained memory knows of the reset."""
+        """Print the console lines of the reset, and record it in the retained memory."""
         is_poweron = reset_type == RST_TYPE_POWERON
         self.console.write(f"CFE_PSP: Exiting cFE with {'POWERON' if is_poweron else 'PROCESSOR'} Reset status.")
         if is_poweron:
@@ -236,10 +240,10 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         self.retained.exited = not is_poweron
 
     def bite(self, reason: str = "") -> None:
-        """The watchdog resets the processor; software has no say in it.
+        """Reset the processor by the watchdog, which software cannot prevent.
 
         Args:
-            reason: why; empty stands for the usual one, that no task served it in time.
+            reason: the reason; empty means that no task served the watchdog in time.
         """
         self.retained.next_reset_type = RST_TYPE_PROCESSOR
         self.retained.next_subtype = RST_SUBTYPE_HW_WATCHDOG
@@ -255,14 +259,14 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
             self.osal.task_exit()
 
     def panic(self, error_code: int, cause: object = None) -> None:
-        """The cFE cannot go on (CFE_PSP_Panic).
+        """End the run after a fatal error (CFE_PSP_Panic).
 
         Args:
-            error_code: for the console.
-            cause: what the error that is raised tells as its reason.
+            error_code: code for the console.
+            cause: the reason in the text of the exception.
 
         Raises:
-            PanicError: always; NASA's calls abort().
+            PanicError: always; NASA's PSP calls abort().
         """
         self.console.write(f"CFE_PSP_Panic called with error code = 0x{error_code & 0xFFFFFFFF:08X}. Exiting.")
         self.console.write("The cFE could not start.")
@@ -270,50 +274,50 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         raise PanicError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"the PSP panics, code {error_code}{because}")
 
     def get_restart_type(self) -> RestartType:
-        """Type and subtype of the start of this run (CFE_PSP_GetRestartType)."""
+        """Return the type and subtype of the start of this run (CFE_PSP_GetRestartType)."""
         return self._restart_type
 
-    # -- who and when ----------------------------------------------------------------------------------------------
+    # -- identity and time --------------------------------------------------------------------------------------------
 
     def get_spacecraft_id(self) -> int:
-        """Number of the spacecraft (CFE_PSP_GetSpacecraftId)."""
+        """Return the number of the spacecraft (CFE_PSP_GetSpacecraftId)."""
         return self.config.spacecraft_id
 
     def get_processor_id(self) -> int:
-        """Number of the processor (CFE_PSP_GetProcessorId)."""
+        """Return the number of the processor (CFE_PSP_GetProcessorId)."""
         return self.config.processor_id
 
     def get_processor_name(self) -> str:
-        """Name of the processor (CFE_PSP_GetProcessorName)."""
+        """Return the name of the processor (CFE_PSP_GetProcessorName)."""
         return self.config.processor_name
 
     def get_time(self) -> OsTime:
-        """Monotonic time since the start, in OSAL's ticks of 100 ns (CFE_PSP_GetTime)."""
+        """Return the monotonic time since the start, in OSAL's ticks of 100 ns (CFE_PSP_GetTime)."""
         return time_from_total_nanoseconds(self.kernel.now)
 
     def get_timebase(self) -> Timebase:
-        """The same as whole seconds and ns (CFE_PSP_Get_Timebase)."""
+        """Return the same as whole seconds and ns (CFE_PSP_Get_Timebase)."""
         return Timebase(*divmod(self.kernel.now, NS_PER_S))
 
     def get_timer_ticks_per_second(self) -> int:
-        """Ticks per second of the lower part of `get_timebase` (CFE_PSP_GetTimerTicksPerSecond)."""
+        """Return the ticks per second of the lower part of `get_timebase` (CFE_PSP_GetTimerTicksPerSecond)."""
         return TICKS_PER_SECOND
 
     def get_timer_low32_rollover(self) -> int:
-        """Where that part begins anew (CFE_PSP_GetTimerLow32Rollover)."""
+        """Return the value at which that part wraps around (CFE_PSP_GetTimerLow32Rollover)."""
         return TICKS_PER_SECOND
 
     # -- memory ----------------------------------------------------------------------------------------------------
 
     def get_cds_size(self) -> int:
-        """Bytes of the critical data store (CFE_PSP_GetCDSSize)."""
+        """Return the bytes of the critical data store (CFE_PSP_GetCDSSize)."""
         return len(self.retained.cds)
 
     def write_to_cds(self, data: bytes | bytearray | memoryview, cds_offset: int) -> None:
         """Copy bytes into the critical data store (CFE_PSP_WriteToCDS).
 
         Raises:
-            OsalError: CFE_PSP_ERROR when they do not lie within it.
+            OsalError: CFE_PSP_ERROR if the bytes do not lie within it.
         """
         self._check_cds(cds_offset, len(data))
         self.retained.cds[cds_offset : cds_offset + len(data)] = data
@@ -322,25 +326,25 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         """Copy bytes out of the critical data store (CFE_PSP_ReadFromCDS).
 
         Raises:
-            OsalError: CFE_PSP_ERROR when they do not lie within it.
+            OsalError: CFE_PSP_ERROR if the bytes do not lie within it.
         """
         self._check_cds(cds_offset, num_bytes)
         return bytes(self.retained.cds[cds_offset : cds_offset + num_bytes])
 
     def get_reset_area(self) -> memoryview:
-        """The memory that outlives a processor reset (CFE_PSP_GetResetArea)."""
+        """Return the memory that outlives a processor reset (CFE_PSP_GetResetArea)."""
         return memoryview(self.retained.reset_area)
 
     def get_user_reserved_area(self) -> memoryview:
-        """The same for users (CFE_PSP_GetUserReservedArea)."""
+        """Return the memory for users that outlives a processor reset (CFE_PSP_GetUserReservedArea)."""
         return memoryview(self.retained.user_reserved)
 
     def move_area(self, name: str, make: Callable[[int], bytearray | memoryview]) -> None:
-        """Keep an area of the retained memory elsewhere from now on; its bytes stay what they are.
+        """Move an area of the retained memory to another place; its bytes are kept.
 
         Args:
             name: "reset_area", "user_reserved" or "eeprom".
-            make: gives room for so many bytes. A view that was taken of the area before still shows the old place.
+            make: returns room for the given number of bytes. An earlier view of the area still shows the old place.
         """
         before = getattr(self.retained, name)
         after = make(len(before))
@@ -351,25 +355,26 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
                 self._areas[number] = after
 
     def compute(self, microseconds: int) -> None:
-        """The calling task works for so long: a stand-in for code whose time counts (no function of NASA's).
+        """Use virtual CPU time in the calling task, in place of code whose execution time matters (not a function of
+        NASA's).
 
         Args:
-            microseconds: of virtual CPU time. More urgent tasks get in meanwhile, and the work goes on behind them.
+            microseconds: virtual CPU time in us. More urgent tasks run meanwhile, and the work continues after them.
 
         Raises:
-            TypeError: it is no whole number.
-            ValueError: it is negative.
+            TypeError: if it is not a whole number.
+            ValueError: if it is negative.
         """
         self.kernel.compute(microseconds * NS_PER_US)
 
     def watchdog_get(self) -> int:
-        """The watchdog's time in ms (CFE_PSP_WatchdogGet)."""
+        """Return the watchdog's time in ms (CFE_PSP_WatchdogGet)."""
         return self.watchdog.value_ms
 
     status_to_string = staticmethod(status_to_decimal)
 
     def _announce(self, subtype: int) -> None:
-        """Print the name of the computer and the reset's subtype; 0 stands for the default one."""
+        """Print the name of the computer and the reset's subtype; 0 means the default."""
         ids = {"processor_id": "CPU ID", "spacecraft_id": "Spacecraft ID"}
         numbers = {title: getattr(self.config, name) for name, title in ids.items()}
         given = [ids[name] for name in self.config.given]
@@ -393,7 +398,7 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
             self.console.write(f"CFE_PSP: {says}")
 
     def _map_memory(self) -> None:
-        """Give the areas that are bytes here an address; the EEPROM is the second range, as in NASA's."""
+        """Map the areas to addresses; the EEPROM is the second range, as in NASA's PSP."""
         kept, eeprom = self.retained, self.retained.eeprom
         for number, kind, address, area in (
             (0, MEM_RAM, RESET_AREA_ADDRESS, kept.reset_area),

@@ -1,6 +1,6 @@
 """Memory that outlives a reset: the boot record, the reset area, the CDS, the user reserved area, and the EEPROM.
 
-The mission keeps one `Retained` for each simulated processor and hands it to the `Psp` of every boot. It stands for the
+The mission keeps one `Retained` for each simulated processor and passes it to the `Psp` of every boot. It models the
 shared memory segments of NASA's Linux PSP (cfe_psp_memory.c).
 """
 
@@ -17,7 +17,7 @@ EEPROM_BYTES = 0x80000
 
 
 class Retained:
-    """Areas of bytes, and objects kept for services whose reset data are no bytes here.
+    """Areas of bytes, and objects of services whose reset data are not bytes here.
 
     Args:
         reset_bytes: size of the reset area.
@@ -39,15 +39,15 @@ class Retained:
         self.eeprom: bytearray | memoryview = bytearray(eeprom_bytes)
         self.exceptions = ExceptionStorage()
         self.kept: dict[str, Any] = {}  # by service: system log, event log, reset counters
-        self.next_reset_type = 0  # 0: nothing was recorded yet
-        self.next_subtype = 0  # why the hardware reset the processor, 0 when software did
-        self.exited = False  # the last run ended by a restart
+        self.next_reset_type = 0  # 0 if no reset type was recorded
+        self.next_subtype = 0  # subtype of a hardware reset, 0 if software caused the reset
+        self.exited = False  # whether the last run ended by a restart
 
     def clear(self) -> None:
-        """A power-on reset: all but the EEPROM is gone, also for code that holds the areas."""
+        """Clear all areas except the EEPROM for a power-on reset, in place, for code that holds references to them."""
         for area in (self.reset_area, self.cds, self.user_reserved):
             blank = bytes(len(area))
-            if bytes(area) != blank:  # an area that was never written to costs the host no memory, and stays so
+            if bytes(area) != blank:  # an area that was never written uses no memory of the host and should stay so
                 area[:] = blank
         self.exceptions.clear()
         self.kept.clear()

@@ -1,7 +1,7 @@
-"""The watchdog of a board (CFE_PSP_Watchdog*): if no task serves it in time, it bites.
+"""The watchdog of a board (CFE_PSP_Watchdog*): it resets the processor if no task serves it in time.
 
-NASA's Linux PSP only keeps the value. On a board that has a watchdog it counts virtual time and calls `on_bite`, which
-resets the processor; without that it keeps the value, as on Linux.
+NASA's Linux PSP only keeps the value. On a board with a watchdog it counts virtual time and calls `on_bite`, which
+resets the processor. On other boards it only keeps the value, as on Linux.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ WATCHDOG_PRIORITY = 0
 
 
 class Watchdog:
-    """Counts down while enabled.
+    """A counter that runs down while it is enabled.
 
     Args:
         kernel: the clock.
-        on_bite: called in a task of priority 0 when the time is over; None for a dog without teeth.
-        longest_ms: the most that it can count.
+        on_bite: called in a task of priority 0 when the time has expired; None for no effect.
+        longest_ms: longest time that it can count, in ms.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class Watchdog:
         self.enabled = False
 
     def enable(self) -> None:
-        """Count from now on (CFE_PSP_WatchdogEnable)."""
+        """Start counting (CFE_PSP_WatchdogEnable)."""
         self.enabled = True
         self.service()
         if self.on_bite is None:
@@ -60,11 +60,11 @@ class Watchdog:
         self.enabled = False
 
     def service(self) -> None:
-        """Begin the count anew (CFE_PSP_WatchdogService); costs no wake-up."""
+        """Restart the count (CFE_PSP_WatchdogService); this wakes no task."""
         self._deadline = self.kernel.now + self.value_ms * NS_PER_MS
 
     def set(self, value_ms: int) -> None:
-        """Change the time in ms, to the longest there is if it is longer, and begin anew (CFE_PSP_WatchdogSet)."""
+        """Change the time in ms, at most to the longest time, and restart the count (CFE_PSP_WatchdogSet)."""
         self.value_ms = min(value_ms, self.longest_ms)
         self.service()
         if self._watching:

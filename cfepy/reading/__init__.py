@@ -1,5 +1,5 @@
-"""How input is read: files of a bounded size, YAML and XML with the line of each field, and hints for what is misspelt.
+"""How input is read: files of limited size, YAML and XML with the line of each field, and hints for misspelt names.
 
-What belongs here knows files and texts, and none of their meanings. What a mission file says does not: that is
-`cfepy.mission`. The central file is `cfepy/reading/input_files.py`.
+Code that handles files and texts without knowing their meaning belongs here. The meaning of a mission file, for
+example, is in `cfepy.mission`. The central file is `cfepy/reading/input_files.py`.
 """

@@ -1,8 +1,8 @@
-"""Files that are put below a folder and nowhere else, whatever their names say.
+"""Files that are written below a folder and nowhere else, whatever their names are.
 
-Journals, shipments and missions name files by absolute paths of some computer; each goes to that path below a folder.
-Packages of ROS and applications of cFS name files of what is made of them. A name that leaves the folder, by `..` or
-through a symbolic link that is already there, is refused.
+Journals, shipments and missions name files by absolute paths of some computer. Each file goes to that path below a
+folder. ROS packages and cFS applications also name the files to be generated. A name that leaves the folder, by `..` or
+through an existing symbolic link, is refused.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from pathlib import Path
 
 from cfepy.status import UsageError
 
-_LONGEST = 4_096  # bytes of a path, as Linux has it
+_LONGEST = 4_096  # bytes of a path, as on Linux
 _FLAGS = os.O_WRONLY | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
-_FLAGS |= getattr(os, "O_NONBLOCK", 0)  # a pipe that has the name is not waited for
+_FLAGS |= getattr(os, "O_NONBLOCK", 0)  # do not wait for a pipe with that name
 
 
 def is_contained(name: object) -> bool:
-    """Whether a name is an absolute path, in its shortest form, which stays below a folder that it is put after."""
+    """Return whether a name is a normalized absolute path that stays below any folder it is appended to."""
     if not isinstance(name, str) or not name.startswith("/") or name.startswith("//") or "\0" in name:
         return False
     try:
@@ -30,15 +30,15 @@ def is_contained(name: object) -> bool:
 
 
 def make_folder(root: Path, name: str) -> Path:
-    """The folder of a name below a root, made if it is not there.
+    """Return the folder of a name below a root, and create it if it is missing.
 
     Args:
         root: a folder.
         name: an absolute path; "/" is the root itself.
 
     Raises:
-        UsageError: the name leaves the root.
-        OSError: it cannot be made.
+        UsageError: if the name leaves the root.
+        OSError: if if it cannot be created.
     """
     path = root
     for path in _ways(root, name):
@@ -47,7 +47,7 @@ def make_folder(root: Path, name: str) -> Path:
 
 
 def place_contained(root: Path, name: str) -> Path:
-    """Find where a file of a name is below a root, or would be. Nothing is made.
+    """Return the path of a file name below a root, without creating anything.
 
     Args:
         root: a folder.
@@ -57,7 +57,7 @@ def place_contained(root: Path, name: str) -> Path:
         The path, which is not a symbolic link.
 
     Raises:
-        UsageError: the name leaves the root, or is that of a link or of something else that is not a file.
+        UsageError: if the name leaves the root, or belongs to a link or to anything else that is not a file.
     """
     *_, path = _ways(root, name if name != "/" else "")
     if path.exists() and not path.is_file():
@@ -66,13 +66,13 @@ def place_contained(root: Path, name: str) -> Path:
 
 
 def write_contained(root: Path, name: str, data: bytes, mode: int = 0o666) -> None:
-    """Put a file below a root; a link of that name is not followed. Errors as `make_folder`.
+    """Write a file below a root without following a link of that name; see `make_folder` for the errors.
 
     Args:
         root: a folder.
         name: an absolute path.
         data: its content.
-        mode: its permissions, from which the process's mask is taken.
+        mode: its permissions, reduced by the process's umask.
     """
     path = _place(root, name)
     with open(path, "wb", opener=lambda file, _: os.open(file, _FLAGS, mode)) as file:
@@ -83,9 +83,9 @@ def write_contained(root: Path, name: str, data: bytes, mode: int = 0o666) -> No
 
 
 def link_contained(root: Path, name: str) -> None:
-    """Let a name below a root stand for the file of this computer that has it. Errors as `make_folder`."""
+    """Link a name below a root to the file of this computer with that name; see `make_folder` for the errors."""
     path = _place(root, name)
-    if os.path.isfile(name):  # a folder would lead out
+    if os.path.isfile(name):  # a link to a folder would lead out of the root
         path.symlink_to(name)
 
 
@@ -96,7 +96,7 @@ def _place(root: Path, name: str) -> Path:
 
 
 def _ways(root: Path, name: str) -> list[Path]:
-    """The folders from a root to what has a name, and that itself; none of them is a symbolic link."""
+    """Return the folders from a root to a name, then the named path itself; none of them is a symbolic link."""
     if not is_contained(name):
         raise UsageError(f"names {name!r}, which does not stay in the folder that its files are put into")
     parts = name.strip("/").split("/") if name != "/" else []

@@ -1,11 +1,11 @@
-"""Opening and reading files of somebody else's: the one way in which cfepy takes inputs.
+"""Opening and reading of input files from others: the only way for cfepy to read inputs.
 
 A file must be a regular file. A device or a pipe may never end, and opening a pipe may wait forever. The exception is a
-descriptor that the caller of the command handed over, such as `/dev/stdin` or the `/dev/fd/63` of `<(...)` in a shell:
-a path that the command line names may be one, a path inside a file may not.
+descriptor that the caller of the command passed, such as `/dev/stdin`, or the `/dev/fd/63` of `<(...)` in a shell. A
+path on the command line may be a descriptor; a path inside a file may not.
 
-Reading never waits: a file of the system that has nothing to say yet, such as `/proc/kmsg`, is refused. How large a
-file may be is said by the limits of `cfepy.reading.input_limits`.
+Reading never waits. A system file without data to read yet, such as `/proc/kmsg`, is refused. The limits of
+`cfepy.reading.input_limits` set the maximum sizes.
 """
 
 from __future__ import annotations
@@ -28,25 +28,25 @@ def open_input(path: str | Path, *, handed: bool = False) -> BufferedReader:
 
     Args:
         path: the file.
-        handed: whether the command line names it, which may hand over a descriptor instead.
+        handed: whether the path is from the command line, which may pass a descriptor.
 
     Returns:
         The open file.
 
     Raises:
-        UsageError: it is a device or a pipe, or no file can have such a path.
-        OSError: it cannot be opened, or is a folder.
+        UsageError: if if it is a device or a pipe, or the path is not legal.
+        OSError: if if it cannot be opened or is a folder.
     """
     if handed and _DESCRIPTOR.fullmatch(str(path)):
         return open(path, "rb")
     try:
         found = os.stat(path)
-    except ValueError:  # a NUL, or a surrogate
+    except ValueError:  # the path has a NUL or a surrogate
         raise UsageError(f"{str(path)!r} is not a path that a file can have; correct it") from None
     _check_kind(found, path)
     file = open(path, "rb", opener=lambda name, _: os.open(name, _FLAGS))  # noqa: SIM115  # the caller closes it
     try:
-        _check_kind(os.fstat(file.fileno()), path)  # it may be another one by now
+        _check_kind(os.fstat(file.fileno()), path)  # the path may refer to another file by now
     except UsageError:
         file.close()
         raise
@@ -54,7 +54,7 @@ def open_input(path: str | Path, *, handed: bool = False) -> BufferedReader:
 
 
 def _check_kind(found: os.stat_result, path: str | Path) -> None:
-    if not stat.S_ISREG(found.st_mode) and not stat.S_ISDIR(found.st_mode):  # a folder cannot be read, as ever
+    if not stat.S_ISREG(found.st_mode) and not stat.S_ISDIR(found.st_mode):  # reading a folder fails later, as usual
         raise UsageError("is a device or a pipe, which may never end; name a file", file=path)
 
 
@@ -63,15 +63,15 @@ def read_limited(path: str | Path, most: int, *, handed: bool = False) -> bytes:
 
     Args:
         path: the file.
-        most: bytes that it may have.
+        most: maximum number of bytes.
         handed: see `open_input`.
 
     Returns:
         Its content.
 
     Raises:
-        UsageError: it has more bytes; otherwise see `open_input`.
-        OSError: it cannot be read.
+        UsageError: if it has more bytes; otherwise see `open_input`.
+        OSError: if it cannot be read.
     """
     parts: list[bytes] = []
     with open_input(path, handed=handed) as file:
@@ -89,33 +89,33 @@ def read_limited(path: str | Path, most: int, *, handed: bool = False) -> bytes:
 
 
 def text_limited(path: str | Path, most: int, errors: str = "strict", *, handed: bool = False) -> str:
-    """Read a file of text in UTF-8. Other arguments and errors as `read_limited`.
+    """Read a text file in UTF-8; see `read_limited` for further errors.
 
     Args:
         path: the file.
-        most: bytes that it may have.
-        errors: what to do with bytes that are not UTF-8, as of `bytes.decode`.
+        most: maximum number of bytes.
+        errors: the treatment of bytes that are not UTF-8, as in `bytes.decode`.
         handed: see `open_input`.
 
     Returns:
-        The text, its lines ended by "\\n".
+        The text, with "\\n" at the end of each line.
 
     Raises:
-        UnicodeDecodeError: it is not UTF-8, and `errors` does not say what to do then.
+        UnicodeDecodeError: if if it is not UTF-8 and `errors` is "strict".
     """
     text = read_limited(path, most, handed=handed).decode("utf-8", errors)
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def beginning_of(path: str | Path, count: int) -> bytes:
-    """Read the first bytes of a file, to see of which kind it is.
+    """Read the first bytes of a file, to determine its type.
 
     Args:
         path: the file.
-        count: how many bytes.
+        count: number of bytes.
 
     Returns:
-        The bytes; none for what is not a file that can be read.
+        The bytes; empty if the path is not a readable file.
     """
     try:
         with open_input(path) as file:

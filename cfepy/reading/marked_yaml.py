@@ -1,8 +1,8 @@
-"""YAML read so that every value knows its line, and an error about a file can give it.
+"""YAML with the line of every value, so that errors can name it.
 
-`load` gives a tree of `Marked`. A file is refused when it is not YAML, is too much (`cfepy.reading.plain_yaml`), has a
-key twice, or a key that is no text. A reader of such a tree reports mistakes to `Mistakes`, which raises the first or
-keeps all.
+`load` returns a tree of `Marked`. It refuses a file that is not YAML, exceeds a limit (`cfepy.reading.plain_yaml`), has
+a duplicate key, or has a key that is not text. A reader of the tree reports mistakes to `Mistakes`, which raises the
+first one or collects all.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from cfepy.reading.plain_yaml import YamlError, constructed, opened
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS
 
-MOST = (1 << 62) - 1  # what times in ns can hold
+MOST = (1 << 62) - 1  # the largest time in ns
 MOST_SECONDS = 1e9
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
 class Marked:
-    """A value of a file and its place.
+    """A value of a file with its position.
 
     Attributes:
         value: a scalar, a list of Marked, or a dict of text to Marked.
-        file: the file it was read from.
-        line: line in it, from 1.
+        file: the file of the value.
+        line: its line in the file, from 1.
         field: dotted path, "limits.sb_max_pipes"; "" for the whole file.
     """
 
@@ -40,17 +40,17 @@ class Marked:
     field: str
 
     def fail(self, text: str) -> UsageError:
-        """The error to raise about this value; `text` says what is wrong and what to do."""
+        """Return the error to raise about this value; `text` describes the mistake and the remedy."""
         return UsageError(text, file=self.file, line=self.line, field=self.field or None)
 
     def mapping(self, known: Iterable[str] | None = None) -> dict[str, Marked]:
-        """The value as a mapping, an empty one when nothing was written.
+        """Return the value as a mapping, empty if there is no value.
 
         Args:
-            known: the keys it may have; any when None.
+            known: the allowed keys; None for any.
 
         Raises:
-            UsageError: it is no mapping, or has another key.
+            UsageError: if it is not a mapping or has an unknown key.
         """
         if self.value is None:
             return {}
@@ -63,14 +63,14 @@ class Marked:
         return self.value
 
     def unknown(self, known: Iterable[str]) -> UsageError:
-        """The error to raise about a key that is none of those that are known."""
+        """Return the error to raise about an unknown key."""
         return self.fail(f"is not known here; known are {', '.join(known)}")
 
     def items(self) -> list[Marked]:
-        """The value as a list, an empty one when nothing was written.
+        """Return the value as a list, empty if there is no value.
 
         Raises:
-            UsageError: it is no list.
+            UsageError: if it is not a list.
         """
         if self.value is None:
             return []
@@ -79,10 +79,10 @@ class Marked:
         return self.value
 
     def integer(self, lowest: int = 0, highest: int = MOST) -> int:
-        """The value as a whole number from `lowest` to `highest`.
+        """Return the value as a whole number from `lowest` to `highest`.
 
         Raises:
-            UsageError: it is something else.
+            UsageError: if if it is not.
         """
         if not isinstance(self.value, int) or isinstance(self.value, bool) or self.value < lowest:
             raise self.fail(f"is {self.plain()!r}, it must be a whole number of at least {lowest}")
@@ -91,30 +91,30 @@ class Marked:
         return self.value
 
     def text(self) -> str:
-        """The value as text.
+        """Return the value as text.
 
         Raises:
-            UsageError: it is something else.
+            UsageError: if if it is not text.
         """
         if not isinstance(self.value, str):
             raise self.fail(f"is {self.plain()!r}, it must be text; put it in quotes")
         return self.value
 
     def flag(self) -> bool:
-        """The value as true or false.
+        """Return the value as true or false.
 
         Raises:
-            UsageError: it is something else.
+            UsageError: if if it is neither.
         """
         if not isinstance(self.value, bool):
             raise self.fail(f"is {self.plain()!r}, it must be true or false")
         return self.value
 
     def time(self) -> int:
-        """The value as a time in ns, from a number of seconds, with or without a unit: 0.5, "0.5 s", "20 ms", "50 us".
+        """Return the value as a time in ns. It is a number of seconds, or has a unit: 0.5, "0.5 s", "20 ms", "50 us".
 
         Raises:
-            UsageError: it is no such time.
+            UsageError: if it is not a time.
         """
         number, unit = (self.value, "s") if not isinstance(self.value, str) else _split(self.value)
         try:
@@ -125,26 +125,26 @@ class Marked:
             raise self.fail(f"is {self.plain()!r}, it must be a time such as 0.5, 0.5 s or 20 ms") from None
 
     def plain(self) -> Any:
-        """The value without its marks."""
+        """Return the value without its marks."""
         if isinstance(self.value, dict):
             return {name: item.plain() for name, item in self.value.items()}
         return [item.plain() for item in self.value] if isinstance(self.value, list) else self.value
 
 
 def _split(text: str) -> tuple[str, str]:
-    """A number and its unit."""
+    """Return a number and its unit."""
     number = text.rstrip("abcdefghijklmnopqrstuvwxyz ")
     return number, text[len(number) :].strip() or "s"
 
 
 class Mistakes:
-    """Takes what is wrong with a file while it is read: the first mistake ends the reading, or all are kept.
+    """Collects mistakes while a file is read, or ends the reading at the first one.
 
     Args:
-        keep: keep all, as a check of the file does; otherwise the first one is raised, as before a run.
+        keep: collect all, as a check of the file does; otherwise raise the first one, as before a run.
 
     Attributes:
-        errors: those that were kept.
+        errors: the collected mistakes.
     """
 
     def __init__(self, keep: bool = False) -> None:
@@ -152,17 +152,17 @@ class Mistakes:
         self._keep = keep
 
     def add(self, error: UsageError) -> None:
-        """There is one.
+        """Report a mistake.
 
         Raises:
-            UsageError: the mistake, unless mistakes are kept.
+            UsageError: the mistake, unless mistakes are collected.
         """
         if not self._keep:
             raise error
         self.errors.append(error)
 
     def attempt(self, read: Callable[[], T]) -> T | None:
-        """What `read` returns; None when it fails. Errors as `add`."""
+        """Return the result of `read`, or None if it fails; see `add` for the errors."""
         try:
             return read()
         except UsageError as error:
@@ -170,11 +170,13 @@ class Mistakes:
             return None
 
     def mapping(self, entry: Marked) -> dict[str, Marked]:
-        """A value as a mapping with any keys, an empty one when it is none. Errors as `add`."""
+        """Return a value as a mapping with any keys, or an empty one if it is not a mapping; see `add` for the
+        errors.
+        """
         return self.attempt(entry.mapping) or {}
 
     def fields(self, entry: Marked, known: Iterable[str]) -> Iterator[tuple[str, Marked]]:
-        """Keys and values of a value that is a mapping, without keys that are not known. Errors as `add`."""
+        """Yield the known keys of a mapping with their values, and report unknown keys; see `add` for the errors."""
         allowed = tuple(known)
         for name, item in self.mapping(entry).items():
             if name in allowed:
@@ -188,10 +190,10 @@ def load(path: Path, *, handed: bool = False) -> Marked:
 
     Args:
         path: the file.
-        handed: whether the command line names it; see `cfepy.reading.input_files.open_input`.
+        handed: whether the path is from the command line; see `cfepy.reading.input_files.open_input`.
 
     Raises:
-        UsageError: it cannot be read, or is not good YAML.
+        UsageError: if if it cannot be read or is not valid YAML.
     """
     try:
         text = text_limited(path, YAML_BYTES, handed=handed)
@@ -208,7 +210,7 @@ def load(path: Path, *, handed: bool = False) -> Marked:
 
 
 def _mark(loader: Any, node: Any, path: Path, field: str) -> Marked:
-    """A composed node as Marked; the loader's own constructor turns scalars into Python values."""
+    """Return a composed node as Marked; the loader's own constructor turns scalars into Python values."""
     line = node.start_mark.line + 1
     if node.id != "scalar" and not node.tag.endswith((":map", ":seq", ":omap", ":set")):
         raise YamlError(f"has the tag {node.tag}, which is not known; leave it out", line)

@@ -1,6 +1,6 @@
-"""XML of somebody else's: read without other files, and within the limits of `cfepy.reading.input_limits`.
+"""XML from others, read without other files and within the limits of `cfepy.reading.input_limits`.
 
-Entities may only be short texts, so that none multiplies; tags may be inside each other and many, up to a limit.
+Entities may only be short texts, so that they cannot multiply. The number and the nesting of tags are limited.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 
 class XmlError(ValueError):
-    """A text is not XML, or more than it may be.
+    """Exception for a text that is not XML or exceeds a limit.
 
     Args:
-        text: what is wrong.
-        line: where, from 1.
-        tag: the tag that is too much; None when it is something else.
-        is_malformed: the parser got lost there.
+        text: the error.
+        line: its line, from 1.
+        tag: the tag that exceeds a limit; None for other errors.
+        is_malformed: whether the parser cannot continue there.
     """
 
     def __init__(self, text: str, line: int, tag: str | None = None, is_malformed: bool = False) -> None:
@@ -42,7 +42,7 @@ def plain_xml(data: bytes) -> Element:
         Its outermost element.
 
     Raises:
-        XmlError: it is not XML, or too much.
+        XmlError: if if it is not XML or exceeds a limit.
     """
     from xml.etree.ElementTree import TreeBuilder
 
@@ -63,10 +63,10 @@ def parse_xml(
         data: the document.
         start: gets the name, attributes and line of each tag that begins.
         end: gets the name of each tag that ends.
-        text: gets the text between them, in one piece or several.
+        text: gets the text between them, in one or several parts.
 
     Raises:
-        XmlError: it is not XML, or too much.
+        XmlError: if if it is not XML or exceeds a limit.
     """
     from xml.parsers import expat
 
@@ -106,5 +106,5 @@ def parse_xml(
         raise XmlError(what, error.lineno, is_malformed=True) from None
     except XmlError:
         raise
-    except (LookupError, ValueError) as error:  # of the encoding that the file names
+    except (LookupError, ValueError) as error:  # an error of the encoding that the file names
         raise XmlError(f"is not XML: {error}", 1) from None

@@ -1,9 +1,9 @@
-"""YAML of files and of texts inside files, read within limits: the one way that cfepy reads YAML.
+"""YAML of files and of texts inside files, read within limits: the only way for cfepy to read YAML.
 
-A document is looked through before anything is made of it, so that nothing that it makes of itself counts: aliases
-that multiply or contain themselves, lists inside lists, numbers without end (`cfepy.reading.input_limits`). Whatever a
-value does wrong is a YamlError with its line. `cfepy.reading.marked_yaml` reads files whose values know their lines.
-PyYAML is imported when there is something to read.
+A document is checked before any value is built from it. The check counts expanded values: aliases that multiply or
+contain themselves, nested lists, long numbers (`cfepy.reading.input_limits`). Any error in a value is a YamlError with
+its line. `cfepy.reading.marked_yaml` reads files whose values keep their lines. PyYAML is loaded when there is a text
+to read.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from cfepy.reading.input_limits import YAML_BYTES, YAML_DEPTH, YAML_DIGITS, YAML
 _NUMBER = re.compile(r"[-+0-9][0-9a-fA-F_:.xXoO]*")
 _QUOTED = ("'", '"', "|", ">")
 _TOO_DEEP = "exceeded maximum nesting depth"
-"""What libyaml says of it that comes with PyYAML 6.0.4 and later: it reads ahead, so `_Sizes` is not asked first."""
+"""The error of the libyaml in PyYAML 6.0.4 and later; it reads ahead, so its limit can apply before `_Sizes`."""
 _FLAWED = (ValueError, AttributeError, LookupError, TypeError, ArithmeticError)
-"""What PyYAML's constructors raise of a value that does not fit its tag, such as `!!timestamp soon`."""
+"""The exceptions of PyYAML's constructors for a value that does not match its tag, such as `!!timestamp soon`."""
 
 
 class YamlError(ValueError):
-    """A text is not YAML, or more than it may be.
+    """Exception for a text that is not YAML or exceeds a limit.
 
     Args:
-        text: what is wrong.
-        line: where, from 1; None when that is not known.
+        text: the error.
+        line: its line, from 1; None if unknown.
     """
 
     def __init__(self, text: str, line: int | None = None) -> None:
@@ -38,7 +38,7 @@ class YamlError(ValueError):
 
 
 def safe_loader() -> type[Any]:
-    """PyYAML's safe loader, the quick one where it was built."""
+    """Return PyYAML's safe loader, the fast one if it was built."""
     import yaml
 
     found: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -46,14 +46,14 @@ def safe_loader() -> type[Any]:
 
 
 def plain_yaml(text: str, loader: type[Any] | None = None) -> Any:
-    """The value of a YAML text with one document; None when it is empty.
+    """Return the value of a YAML text with one document, or None if it is empty.
 
     Args:
         text: the document.
-        loader: a loader that is derived from `safe_loader`, None for that one.
+        loader: a loader derived from `safe_loader`; None for `safe_loader` itself.
 
     Raises:
-        YamlError: it is not YAML, or too much.
+        YamlError: if if it is not YAML or exceeds a limit.
     """
     with opened(text, loader) as found:
         node = found.get_single_node()
@@ -61,7 +61,7 @@ def plain_yaml(text: str, loader: type[Any] | None = None) -> Any:
 
 
 def plain_documents(text: str) -> list[Any]:
-    """The values of the documents of a YAML text. Errors as `plain_yaml`."""
+    """Return the values of the documents of a YAML text; see `plain_yaml` for the errors."""
     values = []
     with opened(text) as found:
         while found.check_node():
@@ -71,7 +71,9 @@ def plain_documents(text: str) -> list[Any]:
 
 @contextmanager
 def opened(text: str, loader: type[Any] | None = None) -> Iterator[Any]:
-    """PyYAML's loader of a text that is not too much. Errors as `plain_yaml`, also for what is done inside."""
+    """Open PyYAML's loader on a text within the limits; see `plain_yaml` for the errors, also of code inside the `with`
+    block.
+    """
     import yaml
 
     make = safe_loader() if loader is None else loader
@@ -96,10 +98,10 @@ def opened(text: str, loader: type[Any] | None = None) -> Iterator[Any]:
 
 
 def constructed(loader: Any, node: Any) -> Any:
-    """The Python value of a node without nodes inside it.
+    """Return the Python value of a node without nodes inside it.
 
     Raises:
-        YamlError: it does not fit its tag.
+        YamlError: if if it does not match its tag.
     """
     try:
         return loader.construct_object(node)
@@ -138,7 +140,7 @@ def _flaw(node: Any, error: Exception) -> YamlError:
 
 
 def _check(text: str, loader: type[Any]) -> None:
-    """Look through a text, event by event, and refuse what is too much."""
+    """Check a text event by event, and refuse one that exceeds a limit."""
     if len(text) > YAML_BYTES:
         raise YamlError(f"has more than {YAML_BYTES:,} characters; split it")
     found = loader(text)
@@ -149,15 +151,15 @@ def _check(text: str, loader: type[Any]) -> None:
 
 
 class _Sizes:
-    """Counts the values of a text, its aliases written out."""
+    """Counts the values of a text with its aliases expanded."""
 
     def __init__(self) -> None:
-        self._inside: list[tuple[str | None, int]] = []  # anchors of what is open, and how many values were before
+        self._inside: list[tuple[str | None, int]] = []  # anchors of open nodes, and the number of values before each
         self._values = 0
-        self._sizes: dict[str, int | None] = {}  # by anchor; None for one that is not complete
+        self._sizes: dict[str, int | None] = {}  # by anchor; None for a node that is not complete
 
     def take(self, loader: Any) -> None:
-        """All events of a loader."""
+        """Count all events of a loader."""
         from yaml import events
 
         while loader.check_event():
@@ -201,7 +203,7 @@ class _Sizes:
             raise YamlError(f"has a number of more than {YAML_DIGITS:,} digits", event.start_mark.line + 1)
 
     def _alias(self, event: Any) -> None:
-        size = self._sizes.get(event.anchor, 1)  # one that is not there is told by the composer
+        size = self._sizes.get(event.anchor, 1)  # the composer reports a missing anchor
         if size is None:
             raise YamlError("has an alias of something inside itself", event.start_mark.line + 1)
         self._add(size, event)

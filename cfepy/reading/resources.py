@@ -1,6 +1,6 @@
-"""Paths of the files that cfepy brings along (boards, ready missions, apps) and of cfepy itself.
+"""Paths of the files included in cfepy (boards, missions, apps) and of cfepy itself.
 
-In a source checkout they lie next to the package, in an installed wheel under cfepy/share.
+In a source checkout they are next to the package, in an installed wheel under cfepy/share.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from cfepy.status import UsageError
 
 
 def shipped(kind: str) -> Path:
-    """The directory of one kind of shipped files.
+    """Return the directory of one kind of shipped files.
 
     Args:
         kind: "apps", "boards", "missions" or "roscfe", the interface library for nodes in C++.
 
     Raises:
-        UsageError: this installation has no such directory.
+        UsageError: if this installation does not have the directory.
     """
     package = Path(__file__).resolve().parents[1]
     places = [package / "share" / kind, package.parent / kind]
@@ -31,13 +31,13 @@ def shipped(kind: str) -> Path:
 
 
 def import_path() -> str:
-    """PYTHONPATH of a process that is to find cfepy, however this process found it."""
+    """Return the PYTHONPATH for a process that must find cfepy, however this process found it."""
     return os.pathsep.join(path for path in sys.path if path) or os.curdir
 
 
 def python_command() -> tuple[str, ...]:
-    """The start of a command line that runs a module of cfepy in another Python; give it `import_path`.
+    """Return the start of a command line that runs a module of cfepy in another Python; pass `import_path` to it.
 
-    The working directory is kept off its path (-P): a file there may have the name of a module of Python's.
+    The working directory is not on its path (-P), because a file there may have the name of a Python module.
     """
     return (sys.executable, "-P")

@@ -1,21 +1,21 @@
-"""`did you mean X?`: what was probably meant by a name that is not there, in one form for all that is named."""
+"""`did you mean X?`: suggestions for an unknown name, in one form for all kinds of names."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-LIKENESS = 0.6  # of 1, as difflib counts
-_LONGEST, _MOST = 100, 2_000  # characters of a name, and names, that are looked at; more would take long
+LIKENESS = 0.6  # out of 1, as difflib counts
+_LONGEST, _MOST = 100, 2_000  # characters of a name and number of names to compare; more would take long
 
 
 def like(name: str, known: Iterable[str], most: int = 1, likeness: float = LIKENESS) -> list[str]:
-    """The names that are most like one that is not there; capitals count for nothing.
+    """Return the known names most similar to an unknown one, ignoring case.
 
     Args:
-        name: as it was written.
-        known: the names that there are.
-        most: how many.
-        likeness: of 1, what makes a name like another.
+        name: the unknown name.
+        known: the existing names.
+        most: maximum number of names.
+        likeness: minimum similarity, out of 1.
     """
     from difflib import get_close_matches
 
@@ -35,16 +35,16 @@ def did_you_mean(
     most: int = 1,
     likeness: float = LIKENESS,
 ) -> str:
-    """The end of an error about a name that is not there.
+    """Return the end of an error text about an unknown name.
 
     Args:
-        name: as it was written.
-        known: the names that there are.
-        otherwise: what to say when none is like it.
-        before: what stands before either, such as "; ".
-        form: how a name is shown, such as "<{}>".
-        most: how many names to offer.
-        likeness: as of `like`.
+        name: the unknown name.
+        known: the existing names.
+        otherwise: the text if no name is similar.
+        before: text before either, such as "; ".
+        form: the format of a name, such as "<{}>".
+        most: maximum number of names.
+        likeness: minimum similarity; see `like`.
     """
     near = like(name, known, most, likeness)
     text = f"did you mean {' or '.join(form.format(each) for each in near)}?" if near else otherwise

@@ -1,8 +1,9 @@
-"""The simulated real-time kernel: virtual time, tasks with priorities, and the objects tasks wait for.
+"""The simulated real-time kernel: virtual time, tasks with priorities, and the objects that tasks wait for.
 
-What belongs here makes tasks run or wait, decides which task runs next, or charges virtual time for it. OSAL's tasks,
-queues and mutexes do not: OSAL builds them on the names below. The host's threads, CPUs and clock are touched in
-`context`, `cpus`, `realtime` and `watchdog`, and in no package above. The central file is `cfepy/rtos/scheduler.py`.
+Code that makes tasks run or wait, decides which task runs next, or charges virtual time for it belongs here. Tasks,
+queues and mutexes of OSAL are in OSAL, which builds them on the names below. Only `context`, `cpus`, `realtime` and
+`watchdog` use the host's threads, CPUs and clock, and no package above does. The central file is
+`cfepy/rtos/scheduler.py`.
 """
 
 from __future__ import annotations
@@ -104,7 +105,7 @@ __all__ = [
     "wrapping",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

@@ -1,10 +1,10 @@
-"""What a task runs on: real threads, which are the reference, or greenlets, which are the fast alternative.
+"""The execution context of tasks: real threads, which are the reference, or greenlets, which are the fast alternative.
 
-A context gives each task `resume` (let it go on, from the outside) and `park` (called by the task itself when it gave
-the CPU away; None when `resume` already switched). `make_context` makes the one that a run asks for.
+A context gives each task `resume` (makes the task continue, called from outside) and `park` (called by the task after
+it gave the CPU away; None if `resume` already switched). `make_context` creates the context of a run.
 
-OS threads are kept for the next simulation in a pool, the one piece of process-wide state in cfepy: it cannot be seen
-from a simulation, and makes one in a property test start and end in a tenth of a millisecond.
+Idle OS threads stay in a pool for the next simulation. The pool is the only process-wide state of cfepy. It is
+invisible to a simulation. It lets a simulation in a property test start and end in a tenth of a millisecond.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import _thread
 import contextvars
 import os
 import sys
-import threading  # first imported in a task, it would take that task for the process's main thread
+import threading  # imported first in a task, it would take that task for the main thread of the process
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -26,13 +26,13 @@ from cfepy.rtos.task import Task, TaskExit
 from cfepy.status import UsageError
 
 STACK_BYTES = 512 * 1024  # 64 KiB crashes in deep C recursion, 256 KiB still gives a clean RecursionError
-FIRST_PATIENCE_S = 0.2  # how long a computing task may take to reach its next kernel call after Ctrl-C
-UNWIND_S = 0.1  # how long what a struck task does at its end may take: a second blow must not hit that
-BLOWS_S = 0.5  # how long it is struck in quick succession, when it swallows the first blows
+FIRST_PATIENCE_S = 0.2  # time for a computing task to reach its next kernel call after Ctrl-C
+UNWIND_S = 0.1  # time for the cleanup of a struck task, which a second strike must not hit
+BLOWS_S = 0.5  # time of strikes in quick succession at a task that swallows the first ones
 BLOW_S = 1e-5
 STAY_NS = 100_000_000  # wall time for which a run stays on a CPU
-LOOK_UP_S = 0.25  # how long a signal may wait for the host in the worst case
-EACH_STEP_S = 1e-6  # for `sys.setswitchinterval`: another thread may get in after each step of a loop
+LOOK_UP_S = 0.25  # longest time that a signal may wait for the host
+EACH_STEP_S = 1e-6  # for `sys.setswitchinterval`: another thread can run after each step of a loop
 _HAS_BATCH = hasattr(os, "SCHED_BATCH")
 
 
@@ -40,51 +40,55 @@ class Context(Protocol):
     """A way to run tasks."""
 
     name: str
-    interrupts: tuple[type[BaseException], ...]  # come from outside the simulation: they end the run, not just a task
+    interrupts: tuple[type[BaseException], ...]  # from outside the simulation; they end the run, not only a task
 
     def bind_host(self, host: Task) -> None:
-        """Prepare the caller of `Kernel.run`, which takes part as a task of its own."""
+        """Prepare the caller of `Kernel.run`, which acts as a task of its own."""
 
     def stranger(self) -> str:
-        """Why the caller cannot let the tasks go on; empty when it can."""
+        """Return why the caller cannot make the tasks continue; empty if it can."""
 
     def create(self, task: Task, main: Callable[[Task], Task]) -> None:
-        """Prepare a task: its first `resume` runs `main(task)`, which returns the task to resume at its end."""
+        """Prepare a task. Its first `resume` runs `main(task)`, which returns the task to resume at the end."""
 
     def prepare_run(self, tasks: list[Task]) -> None:
-        """A run begins, on whatever CPU the host is now."""
+        """Prepare a run on the CPU that the host uses now."""
 
     def be_prompt(self) -> None:
-        """Somebody outside waits for answers: tasks are to go on at once when other programs keep the CPUs busy."""
+        """Schedule tasks promptly even if other programs keep the CPUs busy, because an external client waits for
+        answers.
+        """
 
     def end_run(self) -> None:
-        """No task is left; give back what a run has of this computer."""
+        """Release the host resources of a run, after its last task has ended."""
 
     def enter(self, host: Task, is_lost: Callable[[], bool]) -> None:
-        """Wait in the host until the baton comes back, or is lost; the kernel handed it out before."""
+        """Wait in the host until the baton comes back or is lost; the kernel has handed it out before."""
 
     def interrupt(self, running: Callable[[], Task], host: Task) -> bool:
-        """The host was woken by a signal while a task had the baton, `running()` at any moment.
+        """Wait for the baton after a signal woke the host while the task `running()` has it.
 
-        Wait for the baton, which comes at the task's next kernel call, and strike a task that makes none. False when
-        the task does not give it back whatever is done.
+        The baton comes back at the task's next kernel call. A task that makes none is struck.
+
+        Returns:
+            False if the task does not give the baton back at all.
         """
 
     def thread_of(self, task: Task, host_ident: int) -> int:
-        """The identifier of the OS thread that a task runs on; `host_ident` is the host's."""
+        """Return the identifier of a task's OS thread; `host_ident` is the host's."""
 
     def frame_of(self, task: Task) -> FrameType | None:
-        """The innermost Python frame of a task that does not run now; None before it has begun."""
+        """Return the innermost Python frame of a task that is not running; None before it has started."""
 
     def spoil(self, task: Task) -> None:
-        """A task is about to be struck; what it runs on must not be used for another one."""
+        """Mark the thread of a task that will be struck, so that no other task uses it."""
 
     def disown(self, task: Task) -> None:
-        """A task will never give the baton back. Should it end after all, it must not hand it on."""
+        """Give up a task that will never return the baton. If it ends after all, it must not pass the baton on."""
 
 
 class _Carrier:
-    """An OS thread that runs one task after another."""
+    """An OS thread that runs tasks one after another."""
 
     __slots__ = ("alive", "cpu", "disowned", "ident", "is_batch", "lock", "main", "native_id", "spoilt", "task")
 
@@ -108,7 +112,7 @@ class _Carrier:
             ) from error
 
     def _live(self) -> None:
-        with suppress(TaskExit):  # that was meant for a task, and came late
+        with suppress(TaskExit):  # a strike at a task that came late
             self._loop()
         self.alive = False
 
@@ -124,7 +128,7 @@ class _Carrier:
             if self.cpu >= 0:
                 pin(0, self.cpu)
             _trace_as_threads_are()
-            following = contextvars.Context().run(main, task)  # context variables are a thread's own, and die with it
+            following = contextvars.Context().run(main, task)  # context variables belong to one thread and end with it
             self.main = self.task = task = main = None
             if self.spoilt:
                 if not self.disowned:
@@ -136,7 +140,9 @@ class _Carrier:
 
 
 def _trace_as_threads_are() -> None:
-    """Do what `threading` does for a thread of its own: coverage, profilers and debuggers ask for all of them."""
+    """Install the trace and profile functions of `threading`, which coverage, profilers and debuggers set for all
+    threads.
+    """
     tracer, profiler = threading.gettrace(), threading.getprofile()
     if tracer is not sys.gettrace():
         sys.settrace(tracer)
@@ -145,7 +151,7 @@ def _trace_as_threads_are() -> None:
 
 
 _idle: list[_Carrier] = []
-_stack_size = threading.Lock()  # it is one number for the whole process
+_stack_size = threading.Lock()  # the stack size is one number for the whole process
 
 
 def _start_thread(loop: Callable[[], None]) -> int:
@@ -158,7 +164,7 @@ def _start_thread(loop: Callable[[], None]) -> int:
 
 
 def _in_forked_process() -> None:
-    """It has none of its parent's other threads, and one of them may have held the lock."""
+    """Replace the lock, which another thread of the parent may have held; the child has none of these threads."""
     global _stack_size
     _stack_size = threading.Lock()
     _idle.clear()
@@ -168,7 +174,7 @@ in_forked_process(_in_forked_process)
 
 
 def drain() -> None:
-    """End the idle threads of the pool and wait until they are gone."""
+    """End the idle threads of the pool and wait until they have ended."""
     carriers, _idle[:] = _idle[:], []
     for carrier in carriers:
         carrier.lock.release()
@@ -177,13 +183,13 @@ def drain() -> None:
 
 
 class ThreadContext:
-    """The reference context: a real OS thread a task.
+    """The reference context: a real OS thread for each task.
 
-    One raw lock a task is the baton, handed straight from the task that yields to the next. Measured ways to be slower:
-    a central dispatcher thread (twice the switches), Condition or Event (two to ten times), and threads on several CPUs
-    (up to fifteen times: an idle CPU must be woken for every hand-over). So all threads of a run are pinned to one CPU
-    (`cfepy.rtos.cpus`) and, where there is such a thing, run as SCHED_BATCH: a woken thread then does not preempt its
-    waker, and a hand-over costs exactly one switch. Which CPU that is, `cfepy.rtos.cpus` says.
+    One raw lock for each task is the baton. The task that yields hands it directly to the next task. Measured
+    alternatives are slower: a central dispatcher thread (twice the switches), Condition or Event (two to ten times),
+    and threads on several CPUs (up to fifteen times, because each hand-over must wake an idle CPU). So all threads of a
+    run are pinned to one CPU, which `cfepy.rtos.cpus` chooses. Where the system has SCHED_BATCH, they use it: a woken
+    thread then does not preempt its waker, and a hand-over costs exactly one switch.
     """
 
     name = "thread"
@@ -219,9 +225,9 @@ class ThreadContext:
         task.resume, task.park = carrier.lock.release, carrier.lock.acquire
 
     def prepare_run(self, tasks: list[Task]) -> None:
-        """Move the run to the CPU of its process, which follows the host's where it can, now and then.
+        """Move the run to the CPU of its process, which follows the host's CPU from time to time where possible.
 
-        A paced run comes here a thousand times a second, and looking for a CPU takes as long as a message.
+        A paced run calls this a thousand times a second, and choosing a CPU takes as long as a message.
         """
         now_ns = time.monotonic_ns()
         if self._seat is None:
@@ -241,7 +247,9 @@ class ThreadContext:
                     pin(carrier.native_id, cpu)
 
     def be_prompt(self) -> None:
-        """A SCHED_BATCH thread that is woken on another CPU waits for the end of a slice."""
+        """Use the normal scheduling policy. A SCHED_BATCH thread that is woken on another CPU waits for the end of a
+        slice.
+        """
         self._is_prompt = True
 
     def end_run(self) -> None:
@@ -250,7 +258,7 @@ class ThreadContext:
     def enter(self, host: Task, is_lost: Callable[[], bool]) -> None:
         assert host.park is not None
         while not (host.park(True, LOOK_UP_S) or is_lost()):
-            pass  # a signal that came just before the wait is only handled between two waits
+            pass  # a signal just before the wait is handled only between two waits
 
     def interrupt(self, running: Callable[[], Task], host: Task) -> bool:
         park = host.park
@@ -278,19 +286,22 @@ class ThreadContext:
 
 
 def frame_of_thread(ident: int) -> FrameType | None:
-    """What an OS thread of this process executes."""
+    """Return the current frame of an OS thread of this process."""
     return sys._current_frames().get(ident)
 
 
 def insist(strike: Callable[[], None], is_back: Callable[[float], bool]) -> bool:
-    """Strike until the baton is back; False when it does not come whatever is done, as out of a C function.
+    """Strike until the baton is back.
 
-    The first blows leave time for what a task does at its end. A loop that swallows them meets the others in quick
-    succession: the next one strikes where the error was caught, outside of the `try`.
+    The first strikes leave time for the task's cleanup. A loop that swallows them is struck in quick succession: the
+    next strike then hits where the error was caught, outside of the `try`.
 
     Args:
         strike: raises `TaskExit` in the running task, from this thread.
-        is_back: waits for the baton, so many seconds at the most, and says whether it is back.
+        is_back: waits for the baton for at most the given number of seconds; returns whether it is back.
+
+    Returns:
+        False if the baton does not come back, for example from a C function.
     """
     for patience in (UNWIND_S, UNWIND_S):
         strike()
@@ -317,41 +328,41 @@ def raise_in_thread(ident: int, error: type[BaseException]) -> None:
 
 
 class _InItsPlace(BaseException):
-    """Is raised and caught at once."""
+    """An exception that is raised and caught at once."""
 
 
 def take_back() -> None:
-    """What another thread was about to raise in this one is not raised any more.
+    """Cancel an exception that another thread scheduled in this one.
 
-    CPython 3.11 and 3.12 mark the interpreter when something is to be raised in any thread, and take the mark away
-    when something is raised. With nothing left to raise, the mark would stay: all code would be slower, and a function
-    that is traced, as by a debugger or for coverage, would not get past its first instruction. So something else is
-    raised in its place.
+    CPython 3.11 and 3.12 set a flag in the interpreter when an exception is scheduled in any thread, and clear it when
+    one is raised. With no exception left to raise, the flag would stay set. All code would be slower, and a traced
+    function (debugger or coverage) would not pass its first instruction. So another exception is raised in its place.
     """
     try:
         raise_in_thread(threading.get_ident(), _InItsPlace)
         while True:
-            pass  # up to the next instruction at which Python looks
+            pass  # until the next instruction at which Python checks
     except _InItsPlace:
         pass
 
 
 def _schedule_as(native_id: int, policy: int) -> None:
-    """Give a thread of this process, 0 for the calling one, a policy of the system."""
+    """Set the scheduling policy of a thread of this process; 0 is the calling thread."""
     try:
         os.sched_setscheduler(native_id, policy, os.sched_param(0))
     except OSError:
-        pass  # a container may forbid it; hand-overs are then about twice as slow
+        pass  # a container may forbid this; hand-overs are then about twice as slow
 
 
 class GreenletContext:
-    """One greenlet a task; needs the library greenlet (`pip install cfepy[fast]`).
+    """One greenlet for each task; requires the library greenlet (`pip install cfepy[fast]`).
 
-    Six times cheaper to switch than threads, and the trace of a run is the same. What differs is the host's view: one
-    OS thread, so `faulthandler` shows the running task only, and thread-bound C libraries see a single thread.
+    Greenlets switch six times faster than threads, and the trace of a run is the same. Only the host's view differs:
+    there is one OS thread. So `faulthandler` shows only the running task, and thread-bound C libraries see a single
+    thread.
 
-    Every greenlet is first entered from one shallow "starter": entered from each other, they would nest their C
-    stacks and end in a RecursionError at about a thousand tasks.
+    Every greenlet is first entered from one shallow "starter". If greenlets entered each other, their C stacks would
+    nest and end in a RecursionError at about a thousand tasks.
     """
 
     name = "greenlet"
@@ -394,7 +405,7 @@ class GreenletContext:
         pass
 
     def be_prompt(self) -> None:
-        """Its one thread is the host's."""
+        """Do nothing: the only thread is the host's."""
 
     def end_run(self) -> None:
         pass
@@ -403,7 +414,7 @@ class GreenletContext:
         pass
 
     def interrupt(self, running: Callable[[], Task], host: Task) -> bool:
-        """Nothing to do: a signal is raised in the running task itself, which is on the host's own thread."""
+        """Do nothing: a signal raises its exception in the running task itself, which is on the host's own thread."""
         return True
 
     def thread_of(self, task: Task, host_ident: int) -> int:
@@ -427,13 +438,13 @@ def _start_all(first: Any) -> None:
 
 
 def make_context(name: str) -> Context:
-    """The context called `name`.
+    """Return a new context.
 
     Args:
         name: "thread" or "greenlet".
 
     Raises:
-        ValueError: another name, or greenlet is not installed.
+        ValueError: if the name is invalid or greenlet is not installed.
     """
     if name == "thread":
         return ThreadContext()

@@ -1,7 +1,7 @@
-"""Which kind of tasks a run gets that names none: greenlets where they are installed, else threads.
+"""The default kind of tasks: greenlets if they are installed, otherwise threads.
 
-Both make the same run, so it is a matter of speed alone: greenlets are quicker to switch. Threads remain where
-greenlets would take something away from the caller; why, the report of the run says.
+Both give the same run, and greenlets switch faster. Threads are used if greenlets would take away something from the
+caller. The report of the run gives the reason.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ ELSEWHERE = "begun outside of Python's main thread"
 
 
 class TaskKind(NamedTuple):
-    """What the tasks of a run are.
+    """The kind of a run's tasks.
 
     Attributes:
         name: "thread" or "greenlet".
-        why: why `AUTO` leaves installed greenlets alone; empty when it does not.
+        why: why `AUTO` does not use installed greenlets; empty if it uses them.
     """
 
     name: str
@@ -32,11 +32,11 @@ class TaskKind(NamedTuple):
 
 
 def task_kind(asked: str) -> TaskKind:
-    """The kind of tasks for a run that begins here and now.
+    """Return the kind of tasks for a run that starts in this thread.
 
-    A tool that `threading.settrace` has told to follow all threads keeps a stack for each of them, and greenlets would
-    look like one. A run that begins in another thread than the main one may be meant to go on in yet another, as with
-    `asyncio.to_thread`; greenlets stay in theirs.
+    A tool that set `threading.settrace` keeps a stack for each thread, and greenlets would look like one thread. A run
+    that starts outside the main thread may continue in another thread, as with `asyncio.to_thread`. Greenlets cannot
+    change their thread.
 
     Args:
         asked: "thread", "greenlet" or "auto".
@@ -53,7 +53,7 @@ def task_kind(asked: str) -> TaskKind:
 
 
 def has_greenlets() -> bool:
-    """Whether the library greenlet is installed, and can be loaded."""
+    """Return whether the library greenlet is installed and can be loaded."""
     try:
         import_module("greenlet")
     except ImportError:

@@ -1,7 +1,7 @@
-"""What a call into cFE or the operating system costs in virtual time: one object for all code that charges for calls.
+"""The virtual CPU time of calls into cFE and the operating system: one object for all code that charges for calls.
 
-A board's profile makes it (`cfepy.psp.BoardProfile.cpu_costs`); OSAL, the Software Bus and nodes take from it the
-times that they charge with `Kernel.charge`, and so does any further kind of code that calls cFE.
+A board profile creates it (`cfepy.psp.BoardProfile.cpu_costs`). OSAL, the Software Bus, nodes and all other code that
+calls cFE take from it the times that they charge with `Kernel.charge`.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from cfepy.units import PS_PER_NS
 
 @dataclass(frozen=True, slots=True)
 class CpuCosts:
-    """Virtual CPU time; all 0 on a computer whose speed does not matter.
+    """Virtual CPU times; all 0 on a computer whose speed does not matter.
 
     Attributes:
-        call_ns: a call into the operating system or the Software Bus.
-        byte_ps: copying one byte, in picoseconds (a byte a cycle at 120 MHz is 8333).
-        switch_ns: a change of task, the kernel's `switch_cost_ns`.
-        polling_ns: a call of code that may wait by asking again and again, such as a ROS node or a compiled
-            application: reading a clock, an empty pipe, whether to run on. A board has it also when its other calls
-            cost nothing, 1 us unless its profile says otherwise, so that such a loop comes to its end.
+        call_ns: time of a call into the operating system or the Software Bus, in ns.
+        byte_ps: time of copying a byte, in picoseconds (a byte per cycle at 120 MHz is 8333).
+        switch_ns: time of a task switch, the kernel's `switch_cost_ns`, in ns.
+        polling_ns: time, in ns, of a call that code may repeat to poll: reading a clock, an empty pipe, or whether to
+            run on. It applies to ROS nodes and compiled applications. Boards whose other calls cost nothing have it
+            too, so that such a loop ends; it is 1 us unless the profile sets it.
     """
 
     call_ns: int = 0
@@ -30,9 +30,9 @@ class CpuCosts:
     polling_ns: int = 0
 
     def of(self, size: int) -> int:
-        """ns of a call that copies `size` bytes."""
+        """Return the time of a call that copies `size` bytes, in ns."""
         return self.call_ns + size * self.byte_ps // PS_PER_NS
 
     def of_copying(self, size: int) -> int:
-        """ns of copying `size` bytes."""
+        """Return the time of copying `size` bytes, in ns."""
         return size * self.byte_ps // PS_PER_NS

@@ -1,12 +1,12 @@
-"""Which CPU of the host the threads of a run share.
+"""The CPU of the host that the threads of a run share.
 
-Only one of them runs at a time, and a hand-over between two CPUs costs up to fifteen times as much, so all of them are
-pinned to one. Two processes that pinned themselves to the same CPU would keep each other waiting for as long as they
-run, for the scheduler cannot part them. So each process takes a seat: a CPU that no other cfepy process sits on, as
-long as there is one, and then one with the fewest on it. The seat is given back when the process has no run any more.
+Only one of these threads runs at a time, and a hand-over between two CPUs costs up to fifteen times as much. So all of
+them are pinned to one CPU. Two processes pinned to the same CPU would delay each other for their whole lifetime,
+because the host's scheduler cannot separate them. So each process claims a seat: a CPU that no other cfepy process has.
+If every CPU is taken, it claims one with the fewest processes. The process gives the seat back when it has no run left.
 
-A seat is the name of a socket that nothing is ever sent to, in Linux's abstract namespace: only one process can have
-it, there is no file to leave behind, and the system takes it back from a process that ends in whatever way.
+A seat is the name of a socket in Linux's abstract namespace to which nothing is ever sent. Only one process can have
+the name, no file is left behind, and the system releases it whenever the process ends.
 
     CFEPY_PIN=auto    the default
     CFEPY_PIN=3       the runs of this process are pinned to CPU 3
@@ -25,18 +25,18 @@ from cfepy.status import UsageError
 
 VARIABLE = "CFEPY_PIN"
 NAME = "cfepy on CPU"
-MOST_ON_ONE = 64  # processes that sit on one CPU before counting ends
+MOST_ON_ONE = 64  # number of processes on one CPU at which counting ends
 _CAN_PIN = hasattr(os, "sched_setaffinity")
 _CAN_CLAIM = sys.platform == "linux"
 
 
 def allowed_cpus() -> list[int]:
-    """Numbers of the CPUs that the calling thread may use."""
+    """Return the numbers of the CPUs that the calling thread may use."""
     return sorted(os.sched_getaffinity(0)) if _CAN_PIN else list(range(os.cpu_count() or 1))
 
 
 def current_cpu() -> int:
-    """The CPU that the calling thread runs on, -1 where that cannot be told or pinning is not possible."""
+    """Return the CPU that the calling thread runs on, or -1 if it is unknown or pinning is not possible."""
     if not _CAN_PIN:
         return -1
     try:
@@ -48,18 +48,18 @@ def current_cpu() -> int:
 
 
 def pin(native_id: int, cpu: int) -> None:
-    """Let a thread of this process run on one CPU only; 0 is the calling thread."""
+    """Pin a thread of this process to one CPU; 0 is the calling thread."""
     if _CAN_PIN:
         os.sched_setaffinity(native_id, {cpu})
 
 
 class _Claim:
-    """One of the places on a CPU, for as long as this object lives; use `_claim`."""
+    """A claimed place on a CPU, for as long as this object lives; use `_claim`."""
 
     __slots__ = ("_socket", "cpu", "others")
 
     def __init__(self, cpu: int, others: int) -> None:
-        from _socket import AF_UNIX, SOCK_DGRAM, socket  # `socket` itself would be a tenth of the time of a boot
+        from _socket import AF_UNIX, SOCK_DGRAM, socket  # `socket` itself would take a tenth of the boot time
 
         self.cpu, self.others = cpu, others
         self._socket = socket(AF_UNIX, SOCK_DGRAM)
@@ -74,7 +74,7 @@ class _Claim:
 
 
 def _claim(cpu: int, others: int) -> _Claim | None:
-    """The place on a CPU that is taken when so many others are; None when another process has it."""
+    """Claim the place on a CPU after `others` earlier ones; return None if another process has it."""
     try:
         return _Claim(cpu, others)
     except OSError:
@@ -82,12 +82,12 @@ def _claim(cpu: int, others: int) -> _Claim | None:
 
 
 class Seat:
-    """The CPU of this process's runs; `process_seat` gives it.
+    """The CPU of this process's runs, from `process_seat`.
 
-    It is given back when nothing refers to it any more.
+    It is given back when the last reference to it goes.
 
     Attributes:
-        lock: runs may be made in several threads.
+        lock: protects the choice, because several threads can make runs.
     """
 
     def __init__(self) -> None:
@@ -99,24 +99,24 @@ class Seat:
 
     @property
     def cpu(self) -> int:
-        """The CPU; -1 before the first choice."""
+        """The CPU, or -1 before the first choice."""
         return -1 if self._claimed is None else self._claimed.cpu
 
     def leave(self) -> None:
-        """Give it back."""
+        """Give the CPU back."""
         claimed, self._claimed = self._claimed, None
         if claimed is not None:
             claimed.give_back()
 
     def choose(self, here: int) -> int:
-        """The CPU for a run that is about to go on, -1 for any.
+        """Return the CPU for a run that is about to continue, or -1 for any.
 
         Args:
-            here: the CPU that the host's thread is on. The system chose it, and may have left one for it that another
-                program keeps busy: it is taken unless more of ours sit there.
+            here: the current CPU of the host's thread. The system chose it, perhaps to avoid a CPU that another program
+                keeps busy. So it is taken unless more cfepy processes are on it.
 
         Raises:
-            UsageError: CFEPY_PIN is no such thing, or a CPU that this process may not use.
+            UsageError: if CFEPY_PIN is invalid, or a CPU that this process may not use.
         """
         wanted = os.environ.get(VARIABLE, "auto")
         if wanted != "auto":
@@ -131,7 +131,9 @@ class Seat:
             return here if self._claimed is None else self._claimed.cpu
 
     def _better(self, here: int) -> _Claim | None:
-        """A place with fewer others than ours has; or with as many, if it is where the host is."""
+        """Return a place with fewer other processes than the present one, or with as many if it is on the
+        host's CPU.
+        """
         now = self._claimed
         if now is not None and now.cpu == here and not now.others:
             return None
@@ -163,7 +165,7 @@ _asking = threading.Lock()
 
 
 def process_seat() -> Seat:
-    """The seat that all runs of this process share, since Python runs one thread of a process at a time."""
+    """Return the seat that all runs of this process share, because Python runs one thread of a process at a time."""
     global _shared
     with _asking:
         seat = None if _shared is None else _shared()
@@ -174,7 +176,9 @@ def process_seat() -> Seat:
 
 
 def _in_forked_process() -> None:
-    """The seat is the parent's: the child's copy of the socket must not outlive it, and the child takes its own."""
+    """Drop the parent's seat. The child's copy of the socket must not outlive the parent, and the child takes its own
+    seat.
+    """
     global _asking
     _asking = threading.Lock()
     seat = None if _shared is None else _shared()

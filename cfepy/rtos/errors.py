@@ -1,4 +1,4 @@
-"""The errors of the kernel itself."""
+"""The exceptions of the kernel itself."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from typing import Any
 
 
 class DeadlockError(RuntimeError):
-    """No task can ever go on: none is ready and no deadline is left. The text says which task waits for what.
+    """Exception for a deadlock: no task is ready and no deadline is left. The text gives each task and the object it
+    waits for.
 
     Args:
-        text: that.
-        circle: the tasks that wait for each other, each a `Wait`, where the error comes out of a call that would have
-            closed their circle.
+        text: the text.
+        circle: the tasks that wait for each other, each as a `Wait`, if a call would have closed the cycle.
     """
 
     def __init__(self, text: str, circle: tuple[Any, ...] = ()) -> None:
@@ -20,7 +20,7 @@ class DeadlockError(RuntimeError):
 
 
 class InjectedCrash(BaseException):
-    """What comes out of a call of a task that a fault lets crash.
+    """Exception that a fault raises in a call of a task to crash it.
 
-    It is no `Exception`, as a processor exception in C is none that an application could catch.
+    It is not an `Exception`, because an application cannot catch a processor exception in C either.
     """

@@ -1,7 +1,7 @@
-"""The simulated real-time kernel: the scheduler, the life of tasks, and the host that lets them run.
+"""The simulated real-time kernel: the scheduler, the lifecycle of tasks, and the host that runs them.
 
-`Scheduler` decides which task runs; this adds the start and end of tasks, and `run`, which the host calls. It may be
-used by one host thread at a time.
+`Scheduler` decides which task runs. `Kernel` adds the start and end of tasks and `run`, which the host calls. One host
+thread at a time may use it.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from cfepy.rtos.task import Task, TaskExit
 from cfepy.rtos.wait_graph import Wait, circles, endless, waiting_report
 
 ENDLESS = 1 << 62
-COLLECT_NS = 10_000_000_000  # garbage is collected at multiples of this: finalizers always run at the same place
+COLLECT_NS = 10_000_000_000  # garbage is collected at multiples of this, so finalizers run at fixed times
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
@@ -33,19 +33,19 @@ class Kernel(Scheduler):
 
     Args:
         context: "thread" or "greenlet"; see `cfepy.rtos.context`.
-        trace: where the records of the run go; None records nothing (for measurements only).
+        trace: the trace that records the run; None records nothing (for measurements only).
         tick_ns: deadlines are rounded up to multiples of this; 0 for a tickless clock.
-        switch_cost_ns: virtual CPU time that a change of task takes.
-        seed: what random streams above the kernel are derived from; the kernel itself uses no randomness.
+        switch_cost_ns: virtual CPU time of a task switch.
+        seed: the seed for random streams above the kernel; the kernel itself uses no randomness.
 
     Attributes:
-        is_running: the host lets tasks run or end, and waits for that.
-        is_collecting: the host itself runs finalizers.
-        broken: why the run was broken off; None as long as it was not.
-        is_lost: the running task will not give the CPU back; the host is about to go on without it.
-        guard: held by who looks at these from another thread and acts on it.
-        frames_wanted: somebody looks at the Python frames of tasks, so code that is no Python shows itself in one.
-        call_heard: gets the place and the arguments of each call that code which is no Python makes; None for nobody.
+        is_running: whether the host is running or ending tasks.
+        is_collecting: whether the host itself runs finalizers.
+        broken: why the run was broken off; None if it was not.
+        is_lost: whether the running task will not return the CPU and the host is about to continue without it.
+        guard: lock for another thread that reads these attributes and acts on them.
+        frames_wanted: whether a tool reads the Python frames of tasks, so that other code must show a frame too.
+        call_heard: gets the place and the arguments of each call made by code other than Python; None if unused.
     """
 
     def __init__(
@@ -87,10 +87,13 @@ class Kernel(Scheduler):
         """Create a task and make it ready.
 
         Args:
-            name: for traces and reports.
+            name: name for traces and reports.
             entry: called without arguments in the new task.
-            priority: 0 (most urgent) to 255; a more urgent task runs before this call returns.
-            owner: kept in `Task.owner`; None takes over the caller's.
+            priority: 0 (most urgent) to 255; a task more urgent than the caller runs before this call returns.
+            owner: value of `Task.owner`; None takes the caller's owner.
+
+        Returns:
+            The task.
         """
         self._idents = ident = self._idents + 1
         task = Task(name, ident, entry, priority)
@@ -98,24 +101,25 @@ class Kernel(Scheduler):
         task.owner = parent.owner if owner is None else owner
         parent.children += 1
         task.path = f"{parent.path}.{parent.children}" if parent.path else str(parent.children)
-        self.context.create(task, self._main)  # fails where the host has no more threads
+        self.context.create(task, self._main)  # fails if the host has no more threads
         self._enlist(task)
         self.make_ready(task, None)
         return task
 
     def _enlist(self, task: Task) -> None:
-        """It is one of the tasks from now on."""
+        """Add a task to the list of tasks."""
         self.tasks.append(task)
 
     @property
     def tasks_made(self) -> int:
-        """How many tasks there have been."""
+        """Number of tasks created so far."""
         return self._idents
 
     def kill(self, task: Task) -> None:
-        """End a task: `TaskExit` comes out of the call it waits in, and its `finally` blocks run, before this returns.
+        """End a task: raise `TaskExit` in the call that it waits in, and run its `finally` blocks, before this call
+        returns.
 
-        A task that kills itself does not come back from this call.
+        For a task that kills itself, this call does not return.
         """
         if task is self.current:
             raise TaskExit
@@ -133,10 +137,10 @@ class Kernel(Scheduler):
         self.preempt()  # its end may have made a more urgent task ready
 
     def interrupt(self, task: Task, error: BaseException) -> None:
-        """Have an exception come out of the call that another task waits in; it goes on from there.
+        """Raise an exception in the call that another task waits in; the task continues from there.
 
         Args:
-            task: one that has started and has not ended; else nothing happens.
+            task: a task that has started and not ended; other tasks are left alone.
             error: the exception.
         """
         if task.done or task.dying or not task.started:
@@ -150,7 +154,7 @@ class Kernel(Scheduler):
 
     @staticmethod
     def is_waiting(task: Task) -> bool:
-        """Whether a task waits for something, a time included."""
+        """Return whether a task waits for an object or for a time."""
         return task.waits is not None or task.timer != 0
 
     @staticmethod
@@ -165,13 +169,13 @@ class Kernel(Scheduler):
         raise TaskExit
 
     def set_priority(self, task: Task, priority: int) -> None:
-        """Change the priority that a task has by itself; what it inherited from waiters of its mutexes stays."""
+        """Set the base priority of a task; a priority inherited from waiters of its mutexes stays."""
         task.base_priority = priority
         self.inherit(task)
         self.preempt()
 
     def _finish_in(self, task: Task) -> None:
-        """Let a dying task unwind, and come back."""
+        """Let a dying task unwind, then return."""
         killer = self.current
         task.killer = killer
         if killer is self.host:
@@ -190,7 +194,7 @@ class Kernel(Scheduler):
             self.current = killer
 
     def _main(self, task: Task) -> Task:
-        """The life of a task; returns the one to resume at its end."""
+        """Run a task from start to end; return the task to resume next."""
         try:
             if not task.dying:
                 task.started = True
@@ -201,7 +205,7 @@ class Kernel(Scheduler):
         except BaseException as error:
             if not task.done:
                 self._failure(task, error)
-        if task.done:  # the host went on without it
+        if task.done:  # the host has continued without it
             return self.host
         task.done = True
         task.entry = None
@@ -225,7 +229,7 @@ class Kernel(Scheduler):
             handled = self.on_task_error(task, error)
         except TaskExit:
             handled = True
-        except Exception as broken:  # the hook itself; were it to come out here, the baton would be lost
+        except Exception as broken:  # an error of the hook itself; if it left here, the baton would be lost
             task.error = broken
             handled = False
         if not handled:
@@ -237,13 +241,13 @@ class Kernel(Scheduler):
         """Run tasks; only the host may call this.
 
         Args:
-            until_ns: virtual time at which to come back; events at that very instant are included. None runs until no
-                task can ever go on.
+            until_ns: virtual time at which to return, in ns; events at exactly this time still happen. None runs until
+                no task can ever continue.
 
         Raises:
-            DeadlockError: without `until_ns`, when tasks are left that can never go on.
-            BaseException: what a task raised, when `on_task_error` did not handle it; KeyboardInterrupt; what the run
-                was broken off for, also in every later call.
+            DeadlockError: if `until_ns` is None and tasks are left that can never continue.
+            BaseException: the error of a task that `on_task_error` did not handle; KeyboardInterrupt; or the reason why
+                the run was broken off, also in every later call.
         """
         if self.current is not self.host:
             raise RuntimeError("run() was called from inside the simulation")
@@ -269,14 +273,17 @@ class Kernel(Scheduler):
             raise DeadlockError(self.waiting())
 
     def _check_whole(self) -> None:
-        """That the run was not broken off."""
+        """Check that the run was not broken off."""
         if self.broken is not None:
             raise self.broken
 
     def passes(self, until_ns: int) -> bool:
-        """Let virtual time go by, if nothing happens before it is `until_ns` or at that instant; whether it did.
+        """Let virtual time pass to `until_ns` if nothing happens until then or at that time.
 
-        A run that waits for the wall clock mostly finds it so, and who brings something in for it waits for this.
+        A paced run can usually do so. Code that brings input into such a run waits for this.
+
+        Returns:
+            Whether the time has passed.
         """
         if self.current is not self.host or self.broken is not None or not self._is_idle_until(until_ns):
             return False
@@ -285,14 +292,14 @@ class Kernel(Scheduler):
         return True
 
     def _is_idle_until(self, end: int) -> bool:
-        """Whether nothing happens up to a virtual time."""
+        """Return whether nothing happens until a virtual time."""
         if not self._begun or self.ready or self._failed or self._interrupted is not None or end >= self._collect_at:
             return False
         upcoming = self.next_event()
         return upcoming is not None and upcoming > end
 
     def _run_until(self, end: int) -> None:
-        """Run piece by piece: between the pieces, at fixed virtual times, garbage is collected."""
+        """Run in parts, and collect garbage between them, at fixed virtual times."""
         while self.now <= end:
             if self.now >= self._collect_at:
                 self._collect(gc.collect)
@@ -306,21 +313,21 @@ class Kernel(Scheduler):
 
     @property
     def is_stopped(self) -> bool:
-        """Whether the last run ended before its time, because it was stopped."""
+        """Whether the last run was stopped before its end."""
         return self._stopped
 
     def stop(self) -> None:
-        """End the run: `run` returns as soon as the current task reaches its next wait, or at once from the host."""
+        """End the run: `run` returns when the current task reaches its next wait, or at once if the host calls this."""
         self._stopped = True
         self._until = -1
         if self.current is not self.host:
             heappush(self.ready, (-1, 0, self.host))
 
     def break_off(self, why: BaseException) -> None:
-        """Called by another thread, which holds `guard`: the run ends as soon as the running task gives the CPU away.
+        """End the run as soon as the running task gives the CPU away; called by another thread, which holds `guard`.
 
         Args:
-            why: what `run` raises, now and from now on.
+            why: the error that `run` raises, now and in later calls.
         """
         if self.broken is None:
             self.broken = why
@@ -330,12 +337,12 @@ class Kernel(Scheduler):
             heappush(self.ready, (-1, 0, self.host))
 
     def give_up(self) -> None:
-        """Called by another thread: tasks that have not ended yet are left where they are."""
+        """Leave tasks that have not ended where they are; called by another thread."""
         self._gave_up = self.is_lost = True
 
     @contextmanager
     def _letting_run(self) -> Iterator[None]:
-        """Around what the host lets tasks do. An error that was meant for one of them may strike the host."""
+        """Mark the time while the host runs tasks; an error for one of the tasks can strike the host here."""
         was_running, self.is_running = self.is_running, True
         try:
             yield
@@ -354,7 +361,7 @@ class Kernel(Scheduler):
                 take_back()
 
     def _collect(self, collect: Callable[[], object]) -> None:
-        """Collect garbage. What strikes a finalizer may come a little late."""
+        """Collect garbage; a strike at a finalizer may arrive late."""
         self.is_collecting = True
         try:
             with suppress(TaskExit):
@@ -363,13 +370,13 @@ class Kernel(Scheduler):
             self.is_collecting = False
 
     def _await(self) -> None:
-        """Wait in the host until the baton comes back; go on without it when its task is lost."""
+        """Wait in the host until the baton comes back; continue without it if its task is lost."""
         self.context.enter(self.host, lambda: self.is_lost)
         if self.is_lost:
             self._leave(self.current)
 
     def _leave(self, task: Task) -> None:
-        """Go on in the host without a task: it will never run again as far as this kernel is concerned."""
+        """Continue in the host without a task; this kernel never runs the task again."""
         self.is_lost = False
         self.current = self.host
         if task is self.host or task.done:
@@ -382,7 +389,9 @@ class Kernel(Scheduler):
             mutex.abandon(task)
 
     def unwind(self) -> None:
-        """End every task, youngest first; the clock and the trace go on. The host calls it when a computer is reset."""
+        """End every task, the youngest first; the clock and the trace continue. The host calls this when it resets a
+        computer.
+        """
         while self.tasks:
             self.kill(self.tasks[-1])
         self.ready.clear()
@@ -390,21 +399,20 @@ class Kernel(Scheduler):
         self._last = None
 
     def check_caller(self) -> None:
-        """That the caller can let the tasks go on.
+        """Check that the caller can make the tasks continue.
 
         Raises:
-            RuntimeError: it is in another process than they are, or for greenlets in another thread.
+            RuntimeError: if the tasks belong to another process, or, with greenlets, to another thread.
         """
         why = self.context.stranger()
         if why:
             raise RuntimeError(f"this mission cannot go on from here: {why}")
 
     def shutdown(self, tidy: bool = False) -> None:
-        """Unwind every task and let their threads go. The host calls it at the end.
+        """Unwind every task and release their threads; the host calls this at the end.
 
         Args:
-            tidy: what the run leaves is worth looking for garbage, which is hardly ever done by itself: it is off
-                while tasks run.
+            tidy: collect the garbage of the run, because Python hardly collects any: collection is off while tasks run.
         """
         self.unwind()
         self.context.end_run()
@@ -414,23 +422,25 @@ class Kernel(Scheduler):
         self._begun = False
 
     def waiting(self) -> str:
-        """The deadlock report: each waiting task, what it waits for, and its holder."""
+        """Return the deadlock report: each waiting task, the object it waits for, and the holder of the object."""
         return waiting_report(self.tasks, self.timers)
 
     def deadlocked(self) -> list[tuple[Wait, ...]]:
-        """The circles of tasks that wait for each other for ever, and the tasks that wait for one that has ended.
+        """Return the cycles of tasks that wait for each other forever, and the tasks that wait for an ended task.
 
-        Known are the holders of OSAL's mutexes and readers-writer locks, of the recursive locks of nodes, and, while
-        schedules are explored, of their plain locks.
+        Holders are known for OSAL's mutexes and readers-writer locks, for recursive locks of nodes and, while schedules
+        are explored, for their plain locks.
         """
         return circles(endless(self.tasks))
 
     def progress(self) -> tuple[int, int, int]:
-        """Numbers of which one changes with every kernel call that lets time or another task go on."""
+        """Return numbers of which at least one changes with every kernel call that makes time or another task
+        advance.
+        """
         return self.now, self.sequence, self._front
 
     def next_event(self) -> int | None:
-        """Virtual time of the next thing to happen: now if a task is ready, None if there is nothing."""
+        """Return the virtual time of the next event in ns: now if a task is ready, None if there is no event."""
         if self.ready:
             return self.now
         timers = self.timers
@@ -439,12 +449,12 @@ class Kernel(Scheduler):
         return timers[0][0] if timers else None
 
     def _drop_pause_mark(self) -> None:
-        """Take the host's empty mark, recorded when the host got the CPU, out of the trace."""
+        """Remove the host's empty mark from the trace, recorded when the host got the CPU."""
         if self.trace is not None:
             self.trace.drop_empty()
 
     def _drop_host(self) -> None:
-        """`stop` put the host among the ready tasks; it is back now."""
+        """Remove the host from the ready tasks after a `stop`."""
         self._drop_pause_mark()
         self.ready = [entry for entry in self.ready if entry[2] is not self.host]
         heapify(self.ready)
@@ -471,7 +481,7 @@ class Kernel(Scheduler):
             raise failed.error
 
     def _go_on_with(self, task: Task) -> None:
-        """Dispatch the first task after a pause, with the record and the cost it would have had without the pause."""
+        """Dispatch the first task after a pause, with the same record and cost as without the pause."""
         last, self._last = self._last, None
         self.current = task
         if task is last:
@@ -483,7 +493,7 @@ class Kernel(Scheduler):
             task.cpu_ns += self.switch_cost_ns
 
     def _take_back(self, error: BaseException) -> None:
-        """A signal woke the host while a task has the baton: stop the clock and never go on before it is back."""
+        """Stop the clock after a signal woke the host while a task has the baton, and wait for the baton."""
         if self.current is not self.host:
             self._until = -1
             self._stopped = True
@@ -495,5 +505,5 @@ class Kernel(Scheduler):
                     else:
                         self._leave(self.current)
                 except KeyboardInterrupt:
-                    continue  # Ctrl-C once more; there is nothing more to do about it
+                    continue  # another Ctrl-C changes nothing
         raise error

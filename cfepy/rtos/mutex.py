@@ -10,11 +10,11 @@ from cfepy.rtos.wait_list import WaitList
 
 
 class Mutex:
-    """One task at a time; it is as urgent as the most urgent task that waits for it.
+    """A mutex for one task at a time; its owner gets the priority of the most urgent waiter.
 
     Args:
-        kernel: where the tasks live.
-        name: for reports.
+        kernel: the kernel of the tasks.
+        name: name for reports.
     """
 
     __slots__ = ("count", "kernel", "name", "owner", "waits")
@@ -28,10 +28,10 @@ class Mutex:
         self.waits.holders = lambda: () if self.owner is None else (self.owner,)
 
     def take(self) -> None:
-        """Wait until the mutex is free or ours.
+        """Wait until the mutex is free or belongs to the caller.
 
         Raises:
-            DeadlockError: the owner waits, directly or through others, for a mutex that we hold.
+            DeadlockError: if the owner waits, directly or through others, for a mutex of the caller.
         """
         kernel = self.kernel
         task = kernel.current
@@ -44,7 +44,11 @@ class Mutex:
             self._wait(task)
 
     def give(self) -> bool:
-        """Free the mutex, or undo one of several takes; False when it is not ours."""
+        """Free the mutex, or undo one of several takes.
+
+        Returns:
+            False if the caller does not own the mutex.
+        """
         kernel = self.kernel
         task = kernel.current
         if self.owner is not task:
@@ -61,7 +65,7 @@ class Mutex:
         return True
 
     def abandon(self, owner: Task) -> None:
-        """Take the mutex from its owner and hand it to the first waiter, without letting that run yet."""
+        """Take the mutex from its owner and give it to the first waiter, without running the waiter yet."""
         kernel = self.kernel
         owner.held.remove(self)
         self.owner, self.count = None, 0
@@ -90,10 +94,12 @@ class Mutex:
         finally:
             task.mutex = None
             if self.owner is not None and self.owner is not task:
-                kernel.inherit(self.owner)  # we were killed while waiting: our urgency goes with us
+                kernel.inherit(self.owner)  # the waiter was killed, so its priority no longer counts
 
     def _circle(self, task: Task) -> tuple[Wait, ...]:
-        """The tasks of the circle that would arise if this task waited here, the oldest in front; empty without one."""
+        """Return the cycle of tasks that would arise if this task waited here, the oldest task first; empty if there is
+        none.
+        """
         waits: list[Wait] = []
         waiter = task
         mutex: Mutex | None = self

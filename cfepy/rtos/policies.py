@@ -1,4 +1,4 @@
-"""The policies that schedules are made of: by a seed, PCT, deviations from fifo, an order, and what limits another one.
+"""Scheduling policies: seeded random, PCT, deviations from fifo, a given order, and policies that restrict another one.
 
 A run without a schedule of its own needs none of them.
 """
@@ -13,17 +13,19 @@ from cfepy.rtos.policy import AskingPolicy, Decision, Policy, Question
 from cfepy.rtos.task import Task
 from cfepy.rtos.task_starters import StartersFirst
 
-HOLD_ODDS = 16  # one in so many chances to hold a task up is taken: time would else run away from the work
-STAY_ODDS = (0.0, 0.5, 0.7)  # that the running task stays, where there are points between calls
-STARTERS_ODDS = 3 / 4  # of schedules in which who starts a task goes on before that
+HOLD_ODDS = 16  # take one in this many chances to hold a task up; otherwise time would pass faster than the work
+STAY_ODDS = (0.0, 0.5, 0.7)  # probabilities that the running task continues, with preemption points between calls
+STARTERS_ODDS = 3 / 4  # share of the schedules in which a task that starts others continues before them
 
 
 class SeededRandom(Policy):
-    """Any of the candidates, the same ones for the same seed; the other arguments are those of `Policy`.
+    """Chooses any candidate at random, always the same ones for the same seed. The other arguments are those of
+    `Policy`.
 
-    With points between calls a run has so many decisions that no task would come far while another one waits. The
-    running task then stays as often as the seed draws it, so that some schedules have long stretches and some have
-    short ones. As those it starts would find nobody in a long stretch, it mostly starts all of them before.
+    With preemption points between calls, a run has very many decisions, and a task would hardly advance while another
+    one waits. So the running task continues with a probability drawn from the seed: some schedules have long stretches
+    of one task, others short ones. In a long stretch, the tasks that it starts would meet no other task. So it usually
+    starts all of them first.
     """
 
     def __init__(
@@ -47,7 +49,7 @@ class SeededRandom(Policy):
         return int(self._random() * width)
 
     def _going_on(self, decision: Decision) -> int:
-        """The running task where it stays, or any."""
+        """Return the running task if it continues, otherwise any candidate."""
         tasks = decision.tasks
         if self._starters is not None:
             if decision.left is not None:
@@ -59,10 +61,10 @@ class SeededRandom(Policy):
 
 
 class Seldom:
-    """Draws when a question that is asked again and again has its second answer.
+    """Draws when a frequent question gets its second answer.
 
-    How often it will be asked is not known. So the number is drawn from 1 to `MOST`, any power of two being as likely
-    as the next: early and late occasions both have their chance.
+    The number of questions is unknown. So the number of the question is drawn from 1 to `MOST`, with every power of two
+    equally likely. Early and late occasions both have a chance.
     """
 
     MOST = 1024
@@ -72,7 +74,7 @@ class Seldom:
         self._left: dict[str, int] = {}
 
     def choose(self, question: Question) -> int:
-        """The answer, 0 or 1."""
+        """Return the answer, 0 or 1."""
         left = self._left.get(question.name)
         if left is None:
             left = int(self.MOST ** self._random()) - 1
@@ -86,18 +88,18 @@ class Seldom:
 class PCT(Policy):
     """Probabilistic concurrency testing (Burckhardt, Kothari, Musuvathi, Nagarakatte: ASPLOS 2010).
 
-    Every task draws a rank; of the candidates the one of highest rank runs. At `depth - 1` of `steps` decisions, drawn
-    beforehand, the task that would run falls below all others (or, where it can be, is held up instead, half of the
-    times). A bug that needs `depth` ordered events is found with a probability of at least 1 / (tasks * steps **
-    (depth - 1)). A task that gives up its turn, as one that polls does at the end of each slice, falls below all
-    others too: the paper's guarantee assumes that no task waits for another by polling.
+    Every task draws a rank, and the candidate with the highest rank runs. At `depth - 1` of `steps` decisions, drawn in
+    advance, the task that would run drops below all others. In half of the cases where it can be held up, it is held up
+    instead. A bug that needs `depth` ordered events is found with a probability of at least 1 / (tasks * steps **
+    (depth - 1)). A task that gives up its turn drops below all others too, such as a polling task at the end of each
+    slice. The paper's guarantee assumes that no task waits for another by polling.
 
-    Questions are no tasks: each draws its answer.
+    Questions have no rank: each draws its answer.
 
     Args:
-        seed: of ranks and places.
-        depth: of the bugs that are looked for, at least 1.
-        steps: how many decisions a run has, about.
+        seed: seed of the ranks and the decisions.
+        depth: depth of the bugs to find, at least 1.
+        steps: approximate number of decisions of a run.
         any_priority: see `Policy`.
         hold_ns: see `Policy`.
         connect_ns: see `Policy`.
@@ -151,10 +153,10 @@ class PCT(Policy):
 
 
 class Deviations(Policy):
-    """Fifo but for some decisions.
+    """Fifo, except for some decisions.
 
     Args:
-        choices: the answer by number of the decision; one that is not possible becomes the last that is.
+        choices: the answer for each decision number; an impossible answer becomes the last possible one.
         any_priority: see `Policy`.
         hold_ns: see `Policy`.
         connect_ns: see `Policy`.
@@ -177,11 +179,11 @@ class Deviations(Policy):
 
 
 class InOrder(Policy):
-    """Lets tasks run in a given order, as far as that is possible, and goes on as fifo then.
+    """Runs tasks in a given order as far as possible, then continues as fifo.
 
     Args:
-        runs: pairs of a task's path and a number: that task runs until it has passed so many places (`Task.passed`).
-        settings: those of the policy.
+        runs: pairs of a task's path and a number: the task runs until its `Task.passed` reaches the number.
+        settings: the settings of `Policy`.
     """
 
     def __init__(self, runs: Iterable[tuple[str, int]], *settings: Any) -> None:
@@ -189,7 +191,7 @@ class InOrder(Policy):
         self._runs = list(runs)
 
     def choose(self, decision: Decision) -> int:
-        """A task that cannot run now keeps its turns for later."""
+        """Choose the next task of the order; a task that cannot run now keeps its turns for later."""
         candidates = {task.path: (at, task) for at, task in enumerate(decision.tasks)}
         runs = self._runs
         for place, (path, number) in enumerate(runs):
@@ -203,11 +205,11 @@ class InOrder(Policy):
 
 
 class From(AskingPolicy):
-    """Fifo up to an instant, then another policy.
+    """Fifo until a given time, then another policy.
 
     Args:
-        inner: the other one.
-        from_ns: the instant, in virtual ns.
+        inner: the other policy.
+        from_ns: the virtual time, in ns.
     """
 
     def __init__(self, inner: Policy, from_ns: int) -> None:
@@ -224,12 +226,12 @@ class From(AskingPolicy):
 
 
 class Fair(AskingPolicy):
-    """Another policy, but nobody is passed over for ever.
+    """Another policy, with a limit on how often a task is passed over.
 
     Args:
-        inner: the other one.
-        most: decisions in which a task may be among the candidates and not run, one after the other; then it runs, of
-            several the one that was passed over most often.
+        inner: the other policy.
+        most: number of consecutive decisions in which a candidate may be passed over; then it runs. Of several such
+            tasks, the one passed over most often runs.
     """
 
     def __init__(self, inner: Policy, most: int) -> None:

@@ -1,10 +1,9 @@
-"""What a policy is: it decides which task runs next, where there is a choice. The policies are in `policies`.
+"""The interface of scheduling policies, which decide which task runs next. The policies themselves are in `policies`.
 
-Without a policy the kernel goes on with the running task, or takes the one that has been ready for longest (fifo). A
-policy is asked at every scheduling point of an `ExploringKernel` that has more than one candidate, and each `Question`
-that is open, such as how long a connection between two nodes takes: these decisions, counted from 0, are what a
-schedule is made of.
-Giving the same answers again gives the same run.
+Without a policy the kernel continues with the running task, or takes the task that has been ready longest (fifo). An
+`ExploringKernel` asks its policy at every scheduling point with more than one candidate, and for each open `Question`,
+such as the delay of a connection between two nodes. These decisions, counted from 0, form a schedule. The same answers
+give the same run.
 """
 
 from __future__ import annotations
@@ -16,19 +15,19 @@ from typing import NamedTuple
 from cfepy.rtos.task import Task
 
 Settings = tuple[bool, int, int, str]
-"""What the kernel reads of a policy besides its answers; see the arguments of `Policy`."""
+"""The settings of a policy that the kernel reads; see the arguments of `Policy`."""
 HOLD = "hold"  # in place of a task's name: no task runs until the next timer
 
 
 class Question(NamedTuple):
-    """Something other than who runs that is open to the schedule: how long a connection takes, whether a fault strikes.
+    """A choice of the schedule other than the next task, such as the delay of a connection or whether a fault occurs.
 
     Attributes:
-        name: what it is called in moves and reports.
-        kind: what another answer than the first is counted as, such as "slow connection".
-        answers: those that there are, in words; the first one is as without a policy.
-        told: what an answer makes of it, in words, with {} for the answer.
-        is_rare: whether it is asked again and again, and seldom has another answer than the first.
+        name: its name in deviations and reports.
+        kind: the name under which answers other than the first are counted, such as "slow connection".
+        answers: the possible answers as text; the first is the one without a policy.
+        told: the description of an answer, with {} for the answer.
+        is_rare: whether it is asked very often and rarely has another answer than the first.
     """
 
     name: str
@@ -40,17 +39,17 @@ class Question(NamedTuple):
 
 @dataclass(slots=True)
 class Decision:
-    """What a policy is asked.
+    """A decision that a policy makes.
 
     Attributes:
-        number: how many decisions there were before it in the run.
+        number: number of decisions before it in the run.
         now: virtual time in ns.
-        tasks: those that could run, the one that fifo would take first.
-        running: whether `tasks[0]` is the running task, which could go on: another answer than 0 preempts it.
-        hold: whether there is one more answer, `len(tasks)`: the running task is held up until the next timer is due.
-        left: the task that gave up its turn just now, as it yields or used the CPU for a whole time slice, or None.
-        question: not who runs is asked, but this; None for all other decisions, and `tasks` are empty when there is
-            one.
+        tasks: the candidates; fifo's choice comes first. Empty for a question.
+        running: whether `tasks[0]` is the running task and could continue; any answer but 0 then preempts it.
+        hold: whether there is one more answer, `len(tasks)`, which holds up the running task until the next timer is
+            due.
+        left: the task that just gave up its turn, by yielding or by using a whole time slice, or None.
+        question: the question to answer; None if the decision is about the next task.
     """
 
     number: int
@@ -63,43 +62,43 @@ class Decision:
 
     @property
     def width(self) -> int:
-        """The number of possible answers, 2 or more; 1 where a policy (`From`) leaves no choice."""
+        """The number of possible answers, 2 or more; 1 if a policy (`From`) leaves no choice."""
         return len(self.tasks) + self.hold if self.question is None else len(self.question.answers)
 
     @property
     def subject(self) -> str:
-        """What it is about: the task that fifo would run, or the question."""
+        """The task that fifo would run, or the question."""
         return self.tasks[0].name if self.question is None else self.question.name
 
     @property
     def answers(self) -> list[str]:
-        """The possible answers in words: tasks by name, `HOLD`, or those of the question, such as 25ms."""
+        """The possible answers as text: tasks by name and `HOLD`, or the answers of the question, such as 25ms."""
         if self.question is not None:
             return list(self.question.answers)
         return [*(task.name for task in self.tasks), *([HOLD] if self.hold else [])]
 
     @property
     def alias(self) -> str:
-        """As `subject`, by the name that a task has in moves."""
+        """`subject`, with the name that the task has in deviations."""
         return self.tasks[0].alias if self.question is None else self.question.name
 
     @property
     def alias_answers(self) -> list[str]:
-        """As `answers`, tasks by their names in moves."""
+        """`answers`, with the names that the tasks have in deviations."""
         if self.question is not None:
             return list(self.question.answers)
         return [*(task.alias for task in self.tasks), *([HOLD] if self.hold else [])]
 
 
 class Policy:
-    """Goes on as fifo would; the base of the others.
+    """Continues as fifo would; the base class of policies.
 
     Args:
-        any_priority: candidates are all ready tasks, not only those of the most urgent priority.
-        hold_ns: a task may be held up until the next timer is due, if that is within so many ns; 0 for never.
-        connect_ns: a connection between two nodes may take up to so many ns; 0 leaves it as the mission has it.
-        points: where mission code lets others in besides calls (`cfepy.schedules.preemption_points`); empty for
-            nowhere.
+        any_priority: whether all ready tasks are candidates, not only those of the most urgent priority.
+        hold_ns: a task may be held up until the next timer is due, if that is within this time in ns; 0 for never.
+        connect_ns: longest delay of a connection between two nodes in ns; 0 keeps the mission's value.
+        points: places besides calls where mission code can be preempted (`cfepy.schedules.preemption_points`); empty
+            for none.
     """
 
     def __init__(self, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0, points: str = "") -> None:
@@ -110,29 +109,29 @@ class Policy:
 
     @property
     def settings(self) -> Settings:
-        """The arguments of this class, for a policy that asks this one."""
+        """The arguments of this class, for a policy that wraps this one."""
         return self.any_priority, self.hold_ns, self.connect_ns, self.points
 
     def choose(self, decision: Decision) -> int:
-        """The answer, from 0 to below `decision.width`."""
+        """Return the answer, from 0 to below `decision.width`."""
         return 0
 
     @property
     def missed(self) -> tuple[str, ...]:
-        """What of its schedule was not possible in the run until now, as text."""
+        """The parts of its schedule that were not possible in the run so far, as text."""
         return ()
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the user of a run should know of its schedule when the run is over."""
+        """Notes about its schedule for the user, after the run."""
         return ()
 
 
 class AskingPolicy(Policy):
-    """Answers as another policy does; the base of those that look on, or overrule it.
+    """Answers as another policy does; the base class of policies that observe or overrule another one.
 
     Args:
-        inner: the other one, whose options it has.
+        inner: the other policy, whose options it takes.
     """
 
     def __init__(self, inner: Policy) -> None:
@@ -152,16 +151,16 @@ class AskingPolicy(Policy):
 
 
 class Moment(NamedTuple):
-    """A decision that was not fifo's.
+    """A decision that differs from fifo.
 
     Attributes:
         decision: its number.
         choice: the answer.
-        now: virtual ns.
+        now: virtual time in ns.
         instead_of: name of the task that fifo would have run, or of the question.
         chosen: name of the task that ran, or `HOLD`, or the answer.
-        preemption: whether the one that fifo would have run was running, and could have gone on.
-        question: the kind of the question that it answers; empty for a change of turns.
+        preemption: whether the task that fifo would have run was running and could have continued.
+        question: kind of the question that it answers; empty for a choice of the next task.
     """
 
     decision: int
@@ -174,23 +173,23 @@ class Moment(NamedTuple):
 
     @classmethod
     def of(cls, decision: Decision, choice: int) -> Moment:
-        """What a decision and its answer were, which is not 0."""
+        """Create the record of a decision and its answer, which is not 0."""
         chosen = decision.answers[choice]
         question = "" if decision.question is None else decision.question.kind
         return cls(decision.number, choice, decision.now, decision.subject, chosen, decision.running, question)
 
 
 class NotingPolicy(AskingPolicy):
-    """Asks another policy, and keeps what was decided.
+    """Asks another policy and records its decisions.
 
     Args:
         inner: the policy that decides; None is fifo.
 
     Attributes:
         choices: the answers, in order.
-        widths: how many answers each decision had.
-        running: for each decision, whether the running task could have gone on.
-        moments: the decisions that were not fifo's.
+        widths: the number of possible answers of each decision.
+        running: for each decision, whether the running task could have continued.
+        moments: the decisions that differ from fifo.
     """
 
     def __init__(self, inner: Policy | None = None) -> None:
@@ -211,15 +210,15 @@ class NotingPolicy(AskingPolicy):
 
     @property
     def deviations(self) -> dict[int, int]:
-        """The answers that were not fifo's, by number of the decision: with `Deviations` they give the run again."""
+        """The answers that differ from fifo, by decision number; `Deviations` repeats the run with them."""
         return {moment.decision: moment.choice for moment in self.moments}
 
     @property
     def decisions(self) -> int:
-        """How many there were that left a choice."""
+        """The number of decisions with a choice."""
         return sum(width > 1 for width in self.widths)
 
     @property
     def preemptions(self) -> int:
-        """How many of the deviations took the CPU from a task that could have gone on."""
+        """The number of deviations that took the CPU from a task that could have continued."""
         return sum(moment.preemption for moment in self.moments)

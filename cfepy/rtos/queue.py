@@ -12,7 +12,7 @@ from cfepy.rtos.wait_list import WaitList
 
 
 class Empty:
-    """The type of `EMPTY`, what a poll of an empty queue gives."""
+    """The type of `EMPTY`, the result of polling an empty queue."""
 
     def __repr__(self) -> str:
         return "EMPTY"
@@ -26,12 +26,12 @@ EMPTY = Empty()
 
 @mypyc_attr(allow_interpreted_subclasses=True)
 class Queue:
-    """First in, first out, of at most `depth` items; a waiting reader gets an item straight from the writer.
+    """A first-in, first-out queue of at most `depth` items; a waiting reader gets an item directly from the writer.
 
     Args:
-        kernel: where the tasks live.
-        depth: largest number of items that wait.
-        name: for reports.
+        kernel: the kernel of the tasks.
+        depth: maximum number of waiting items.
+        name: name for reports.
     """
 
     __slots__ = ("depth", "items", "kernel", "name", "peak", "waits")
@@ -45,7 +45,11 @@ class Queue:
         self.peak = 0
 
     def put(self, item: Any) -> bool:
-        """Add an item without ever waiting; False when the queue is full."""
+        """Add an item without waiting.
+
+        Returns:
+            False if the queue is full.
+        """
         waits = self.waits
         if waits:
             if not self.peak:
@@ -76,6 +80,6 @@ class Queue:
         return self.kernel.wait_on(self.waits, timeout_ns)
 
     def close(self, value: Any = TIMEOUT) -> None:
-        """The queue goes away: every task that waits gets `value`."""
+        """Close the queue: every waiting task gets `value`."""
         self.items.clear()
         self.kernel.wake_all(self.waits, value)

@@ -1,8 +1,8 @@
-"""The wall clock, for code outside of a run: a stopwatch, and pacing virtual time to real time.
+"""The wall clock, for code outside of a run: a stopwatch, and pacing of virtual time to real time.
 
-Pacing is a wrapper around running the kernel, not a mode of it: it sleeps until the next event is due, then lets the
-kernel run. So a paced run has the trace of a free one. Code that brings input from outside gives the pacer another
-function to sleep with, which returns when input arrives. This is one of the few modules that may read the wall clock.
+Pacing wraps the kernel; it is not a mode of the kernel. It sleeps until the next event is due, then runs the kernel. So
+a paced run has the same trace as a free run. Code that brings input from outside gives the pacer its own sleep
+function, which returns when input arrives. This is one of the few modules that may read the wall clock.
 """
 
 from __future__ import annotations
@@ -13,19 +13,19 @@ from collections.abc import Callable
 from cfepy.rtos.kernel import Kernel
 from cfepy.units import NS_PER_S
 
-STEP_NS = 1_000_000  # wall time: what is due within a millisecond runs in one go
-ANSWER_NS = 100_000  # virtual time by which a run may be ahead, so that what a call costs does not cut an answer in two
+STEP_NS = 1_000_000  # wall time: events that are due within a millisecond run together
+ANSWER_NS = 100_000  # virtual time by which a run may be ahead, so that the cost of a call does not split an answer
 PATIENCE_NS = 50_000_000  # wall time: longest sleep
 
 
 class Stopwatch:
-    """Wall-clock time since it was made."""
+    """Wall-clock time since the object was created."""
 
     def __init__(self) -> None:
         self._start = time.perf_counter_ns()
 
     def elapsed_ns(self) -> int:
-        """Nanoseconds since the start."""
+        """Return the nanoseconds since the start."""
         return time.perf_counter_ns() - self._start
 
 
@@ -35,11 +35,11 @@ class Pacer:
     A run that cannot keep up falls behind, and catches up as soon as it can.
 
     Args:
-        kernel: the kernel to pace, at the moment that pacing starts.
-        run_until: runs it until a virtual time in ns: `Kernel.run`, or what wraps it.
-        factor: virtual seconds for a real one, more than 0.
-        wait: sleeps for so many real seconds, more than 0, or less when there is input for the run.
-        elapsed_ns: the clock on the wall, in ns since some instant; another one for tests.
+        kernel: the kernel to pace, as it is when pacing starts.
+        run_until: runs the kernel until a virtual time in ns: `Kernel.run`, or a wrapper of it.
+        factor: virtual seconds per real second, more than 0.
+        wait: sleeps for the given number of real seconds, more than 0, or less if input for the run arrives.
+        elapsed_ns: the wall clock, in ns since an arbitrary time; tests pass another clock.
     """
 
     def __init__(
@@ -60,10 +60,13 @@ class Pacer:
         self._elapsed_ns = elapsed_ns or Stopwatch().elapsed_ns
 
     def step(self, until_ns: int) -> None:
-        """Wait for the next event to be due and run it, at most until a virtual time in ns.
+        """Wait until the next event is due and run it.
 
-        It comes back after some 50 ms of wall time at the latest, so that the caller can look after other things, and
-        calls again until the clock is where it wants it.
+        It returns after about 50 ms of wall time at the latest, so that the caller can do other work. The caller
+        repeats it until the clock has the wanted time.
+
+        Args:
+            until_ns: virtual time that it does not go beyond, in ns.
         """
         elapsed = self._elapsed_ns()
         latest = self._due(elapsed + PATIENCE_NS)
@@ -78,11 +81,11 @@ class Pacer:
         ahead = self._wall_of(target) - self._elapsed_ns()
         if ahead > 0:
             self._wait(ahead / NS_PER_S)
-            target = min(target, self._due(self._elapsed_ns()))  # earlier when input ended the wait
+            target = min(target, self._due(self._elapsed_ns()))  # earlier if input ended the wait
         self._run_until(max(target, self._kernel.now))
 
     def _due(self, wall_ns: int) -> int:
-        """The virtual time that belongs to a wall time."""
+        """Return the virtual time that corresponds to a wall time."""
         return self._virtual_start + int(wall_ns * self._factor)
 
     def _wall_of(self, virtual_ns: int) -> int:

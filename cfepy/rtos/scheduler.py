@@ -1,12 +1,13 @@
-"""The scheduler: which task runs, which wait, and until when; virtual time, strict priorities, direct hand-over.
+"""The scheduler: the running task, the waiting tasks and their deadlines, virtual time, strict priorities, direct
+hand-over.
 
-A task gives up the CPU only inside a kernel call: when it waits, when it makes a more urgent task ready, or when the
-virtual CPU time it used lets another one in. When no task is ready, the clock jumps to the next deadline, so idle time
-costs nothing. The task that yields decides which one runs next, and hands the CPU over to it directly.
+A task gives up the CPU only inside a kernel call: if it waits, if it makes a more urgent task ready, or if the virtual
+CPU time that it used lets another task run. If no task is ready, the clock jumps to the next deadline, so idle time
+costs nothing. The task that yields chooses the next task and hands the CPU directly to it.
 
-The parts of this module share the ready heap, the timer heap and the clock, and its hot paths are written out where a
-call would cost more than the work. It takes no lock and never logs. It stands for the scheduler below OSAL (a POSIX
-kernel with SCHED_FIFO, FreeRTOS) and knows nothing of OSAL or cFE.
+All parts of this module share the ready heap, the timer heap and the clock. Its hot paths are inlined where a call
+would cost more than the work. It takes no lock and never logs. It models the scheduler below OSAL (a POSIX kernel with
+SCHED_FIFO, FreeRTOS) and does not depend on OSAL or cFE.
 """
 
 from __future__ import annotations
@@ -23,15 +24,15 @@ from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit
 from cfepy.rtos.wait_list import WaitList
 
 HOST_PRIORITY = 256
-SLICE_NS = 20_000  # equals take turns when this much virtual CPU time was used
-MAX_REFUSALS = 100  # kernel calls that a dying task may try before it is left where it stands
+SLICE_NS = 20_000  # tasks of equal priority take turns after this much virtual CPU time
+MAX_REFUSALS = 100  # number of kernel calls that a dying task may try before the kernel abandons it
 
 
 def whole(time_ns: Any) -> int:
-    """A time as an int: a clock that became a float once would never be exact again.
+    """Return a time as an int, because a clock that became a float would never be exact again.
 
     Raises:
-        TypeError: it is no whole number.
+        TypeError: if it is not a whole number.
     """
     try:
         return int(index(time_ns))
@@ -41,7 +42,7 @@ def whole(time_ns: Any) -> int:
 
 @mypyc_attr(allow_interpreted_subclasses=True)
 class Scheduler:
-    """The base of `Kernel`; see there for the arguments."""
+    """The base class of `Kernel`, which documents the arguments."""
 
     def __init__(self, trace: tr.Trace | None, tick_ns: int, switch_cost_ns: int) -> None:
         self.now = 0
@@ -49,15 +50,15 @@ class Scheduler:
         self.switch_cost_ns = switch_cost_ns
         self.trace = trace
         self.record: Callable[[bytes], None] | None = trace.append if trace is not None else None
-        self.policy: Policy | None = None  # without one it is first come, first served
+        self.policy: Policy | None = None  # None means first come, first served
         self.tasks: list[Task] = []
         self.ready: list[tuple[int, int, Task]] = []
         self.timers: list[tuple[int, int, Task]] = []
         self.sequence = 0
-        self.stuck: list[Task] = []  # tasks that would not die
+        self.stuck: list[Task] = []  # tasks that did not end when they were killed
         self.host = self.current = Task("host", 0, None, HOST_PRIORITY)
-        self.host.dying = True  # the host must never wait: `_refuse` catches it where dying tasks are caught
-        self.host.mark = self.host.exit_mark = b""  # a pause of the run leaves no mark: slices of a run are one run
+        self.host.dying = True  # the host must never wait: `_refuse` catches it together with dying tasks
+        self.host.mark = self.host.exit_mark = b""  # a pause leaves no mark: a run in parts has the same trace
         self._front = 0
         self._until = 0
         self._slice_task: Task | None = None
@@ -82,44 +83,44 @@ class Scheduler:
         self.block()
 
     def may_start_early(self, name: str) -> None:
-        """The delay with which the task of this name will begin is none that its application can count on."""
+        """Announce that the start delay of the task with this name is not a delay that its application can rely on."""
 
     def has_started(self) -> None:
-        """That delay of the current task is over."""
+        """Announce that the start delay of the current task is over."""
 
     def tell(self, subject: object, call: str, args: tuple[object, ...] = ()) -> None:
-        """The current task does something that may matter to others, and is no call of a service or of a lock.
+        """Report an action of the current task that may affect other tasks and is not a call of a service or a lock.
 
         Args:
-            subject: what it is done with.
-            call: what is done.
-            args: with what else.
+            subject: the object of the action.
+            call: name of the action.
+            args: further objects of the action.
         """
 
     def connection_delay(self, publisher: str, subscriber: str, topic: str, usual_ns: int) -> int:
-        """How long it takes until two nodes are connected.
+        """Return the delay until two nodes are connected, in virtual ns.
 
         Args:
-            publisher: name of the node.
-            subscriber: name of the node.
+            publisher: name of the publishing node.
+            subscriber: name of the subscribing node.
             topic: its resolved name.
-            usual_ns: as the mission has it, in virtual ns.
+            usual_ns: the mission's delay, in virtual ns.
         """
         return usual_ns
 
     def answer(self, question: Question) -> int:
-        """Which of the answers of a question that is open to the schedule it has; without a policy the first, 0."""
+        """Return the index of the schedule's answer to an open question; without a policy 0, the first answer."""
         return 0
 
     def wait_on(self, waits: WaitList, timeout_ns: SupportsIndex = FOREVER) -> Any:
         """Wait in a list until `wake_first` or `wake_all`.
 
         Args:
-            waits: where to wait.
+            waits: the list to wait in.
             timeout_ns: the longest time, at least 1; FOREVER (-1) for no limit.
 
         Returns:
-            The value that was given to the waker's call, or TIMEOUT.
+            The value of the waker's call, or TIMEOUT.
         """
         task = self.current
         if task.dying:
@@ -142,14 +143,18 @@ class Scheduler:
         return self.block()
 
     def wake_first(self, waits: WaitList, value: Any = None) -> bool:
-        """Make the most urgent waiter ready; it may run before this returns. False when no task waits."""
+        """Make the most urgent waiter ready; it may run before this call returns.
+
+        Returns:
+            False if no task waits.
+        """
         if not waits:
             return False
         self.make_ready(waits.pop(0), value)
         return True
 
     def wake_all(self, waits: WaitList, value: Any = None) -> int:
-        """Make all waiters ready before any of them runs; how many they were."""
+        """Make all waiters ready before any of them runs; return their number."""
         tasks = waits[:]
         waits.clear()
         for task in tasks:
@@ -168,7 +173,7 @@ class Scheduler:
             self._switch(task, self._take())
 
     def charge(self, duration_ns: int) -> None:
-        """The current task used the CPU for `duration_ns` of virtual time: due timers fire, and others may get in."""
+        """Charge the current task `duration_ns` of virtual CPU time; due timers fire, and other tasks may run."""
         task = self.current
         if task is self.host:
             return
@@ -184,14 +189,14 @@ class Scheduler:
             self._catch_up(task, duration_ns)
 
     def compute(self, duration_ns: SupportsIndex) -> None:
-        """The current task works for so long; what is due meanwhile happens when it is due.
+        """Use virtual CPU time in the current task; events happen at their due times meanwhile.
 
-        More urgent tasks get in at that time, and the work goes on behind them. `charge` is for what is short: there
-        all of the time is over before anything else happens.
+        More urgent tasks run when they are due, and the work continues after them. `charge` is for short times: it lets
+        all of the time pass before any event happens.
 
         Raises:
-            TypeError: it is no whole number.
-            ValueError: it is negative.
+            TypeError: if the duration is not a whole number.
+            ValueError: if it is negative.
         """
         left = whole(duration_ns)
         if left < 0:
@@ -205,7 +210,7 @@ class Scheduler:
             self.charge(step)
 
     def _undisturbed(self) -> int:
-        """How long nothing happens from now on, in ns, if the current task goes on."""
+        """Return the time in ns until the next event, if the current task continues."""
         timers, ready = self.timers, self.ready
         while timers and timers[0][2].timer != timers[0][1]:
             heappop(timers)
@@ -215,7 +220,9 @@ class Scheduler:
         return until - self.now
 
     def _catch_up(self, task: Task, duration_ns: int) -> None:
-        """Time went on under a running task: fire what is due; more urgent tasks, then equals, get their turn."""
+        """Handle time that passed under a running task: fire due timers, then let more urgent tasks and tasks of equal
+        priority run.
+        """
         self._fire_due()
         if task.dying:
             return
@@ -235,7 +242,9 @@ class Scheduler:
             self._switch(task, following)
 
     def _turn_is_over(self, task: Task, duration_ns: int) -> bool:
-        """Whether a task used the CPU for a whole slice while equals were ready; a new slice begins when it did."""
+        """Return whether a task used a whole time slice while tasks of equal priority were ready; if so, a new slice
+        begins.
+        """
         if self._slice_task is not task:
             self._slice_task = task
             self._slice_from = task.cpu_ns - duration_ns
@@ -248,7 +257,7 @@ class Scheduler:
         return True
 
     def arm(self, task: Task, duration_ns: int) -> None:
-        """Set the timer of a task that is about to wait; it replaces an earlier one."""
+        """Set the timer of a task that is about to wait, in place of an earlier one."""
         when = self.now + duration_ns
         if self.tick_ns:
             when = -(-when // self.tick_ns) * self.tick_ns
@@ -256,9 +265,9 @@ class Scheduler:
         heappush(self.timers, (when, sequence, task))
 
     def block(self) -> Any:
-        """Give the CPU away until the current task is made ready; the value it was made ready with.
+        """Give the CPU away until the current task is made ready; return the value it was made ready with.
 
-        The caller made sure that this will happen, and that the task is not dying (`_refuse`).
+        The caller must ensure that this happens, and that the task is not dying (`_refuse`).
         """
         task = self.current
         ready = self.ready
@@ -278,7 +287,9 @@ class Scheduler:
         return task.wake
 
     def make_ready(self, task: Task, value: Any = None) -> None:
-        """End the wait of a task, which must not be in a wait list any more; it runs now if it is more urgent."""
+        """End the wait of a task, which must no longer be in a wait list; it runs now if it is more urgent than the
+        caller.
+        """
         task.wake = value
         task.timer = 0
         task.waits = None
@@ -302,9 +313,10 @@ class Scheduler:
             self._switch(task, following)
 
     def inherit(self, task: Task) -> None:
-        """Recompute a task's priority: its own, or that of the most urgent task that waits for a mutex it holds.
+        """Recompute a task's priority: its own, or the priority of the most urgent task that waits for one of its
+        mutexes.
 
-        When that changes it, so may the priority of the task that it waits for itself, and so on.
+        A change can also change the priority of the owner of the mutex that the task itself waits for, and so on.
         """
         heir: Task | None = task
         while heir is not None:
@@ -318,7 +330,7 @@ class Scheduler:
             heir = heir.mutex.owner if heir.mutex is not None else None
 
     def reprioritize(self, task: Task, priority: int) -> None:
-        """Change a task's present priority, and its place among those that are ready or wait for the same thing."""
+        """Change a task's present priority, and its place among the ready tasks or in its wait list."""
         task.priority = priority
         for at, (_, sequence, waiting) in enumerate(self.ready):
             if waiting is task:
@@ -335,7 +347,7 @@ class Scheduler:
     # -- choosing --------------------------------------------------------------------------------------------------
 
     def enqueue(self, task: Task, value: Any) -> None:
-        """As `make_ready`, but the caller goes on even when the task is more urgent; `preempt` makes up for it."""
+        """Make a task ready like `make_ready`, but do not switch to it; the caller must call `preempt` afterwards."""
         task.wake = value
         task.timer = 0
         task.waits = None
@@ -345,12 +357,12 @@ class Scheduler:
         heappush(self.ready, (task.priority, sequence, task))
 
     def _push_front(self, task: Task) -> None:
-        """A preempted task stays the first of its priority."""
+        """Put a preempted task in front of the others of its priority."""
         self._front = front = self._front - 1
         heappush(self.ready, (task.priority, front, task))
 
     def _push_back(self, task: Task) -> None:
-        """The running task goes on after the others of its priority."""
+        """Put the running task behind the others of its priority."""
         self.sequence = sequence = self.sequence + 1
         heappush(self.ready, (task.priority, sequence, task))
 
@@ -362,7 +374,9 @@ class Scheduler:
         return self._take() if self.ready else self._advance()
 
     def _advance(self) -> Task:
-        """Move the clock to the next deadline, since no task is ready; the host, when the run is over before that."""
+        """Move the clock to the next deadline because no task is ready; return the task to run, or the host if the run
+        ends before.
+        """
         timers = self.timers
         while timers:
             when, sequence, task = timers[0]
@@ -409,7 +423,7 @@ class Scheduler:
             task.waits = None
 
     def _switch(self, task: Task, following: Task) -> None:
-        """Hand the baton from `task`, which is in the ready heap already, to `following`."""
+        """Hand the baton from `task`(already in the ready heap) to `following`."""
         self.current = following
         if self.record is not None:
             self.record(following.mark)
@@ -423,7 +437,7 @@ class Scheduler:
             raise _fate(task)
 
     def _refuse(self, task: Task) -> None:
-        """A dying task, or the host, must not wait."""
+        """Raise the error for a dying task, or the host, that tries to wait."""
         if task is self.host:
             raise RuntimeError("this call waits, so only a task inside the simulation can make it")
         task.refusals += 1
@@ -432,7 +446,7 @@ class Scheduler:
         raise TaskExit
 
     def _leave_behind(self, task: Task, killer: Task) -> None:
-        """It swallows every TaskExit: never run it again, and let the killer go on."""
+        """Abandon a task that swallows every TaskExit: it never runs again, and its killer continues."""
         task.done = True
         self.tasks.remove(task)
         self.stuck.append(task)
@@ -445,7 +459,7 @@ class Scheduler:
 
 
 def _fate(task: Task) -> BaseException:
-    """What comes out of the call that a task waited in: its end, or an interruption that it survives."""
+    """Return the exception for a task in the call that it waited in: its end, or an interruption that it survives."""
     interruption = task.interruption
     if interruption is None:
         return TaskExit()

@@ -1,4 +1,4 @@
-"""A counting semaphore; with a maximum of one, a binary one: the kernel object under OS_CountSem and OS_BinSem."""
+"""A counting semaphore, or with a maximum of one a binary one: the kernel object under OS_CountSem and OS_BinSem."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from cfepy.rtos.wait_list import WaitList
 
 
 class Semaphore:
-    """A count that tasks wait to take from.
+    """A count that tasks take from, waiting if it is 0.
 
     Args:
-        kernel: where the tasks live.
+        kernel: the kernel of the tasks.
         initial: the count at the start.
-        maximum: a give beyond this is lost, as with a binary semaphore; None for no limit.
-        name: for reports.
+        maximum: a give above this count is lost, as with a binary semaphore; None for no limit.
+        name: name for reports.
     """
 
     __slots__ = ("count", "kernel", "maximum", "name", "waits")
@@ -27,20 +27,20 @@ class Semaphore:
         self.waits = WaitList(f"semaphore {name}")
 
     def give(self) -> None:
-        """Let one waiter go on, or raise the count."""
+        """Wake one waiter, or increment the count."""
         if self.waits:
             self.kernel.make_ready(self.waits.pop(0), True)
         elif self.maximum is None or self.count < self.maximum:
             self.count += 1
 
     def take(self, timeout_ns: int = FOREVER) -> bool:
-        """Lower the count, or wait until another task gives.
+        """Decrement the count, or wait until another task gives.
 
         Args:
             timeout_ns: longest time to wait; 0 does not wait, FOREVER (-1) has no limit.
 
         Returns:
-            False when the time was over first.
+            False if the timeout expired.
         """
         if self.count > 0:
             self.count -= 1
@@ -50,5 +50,5 @@ class Semaphore:
         return self.kernel.wait_on(self.waits, timeout_ns) is not TIMEOUT
 
     def flush(self) -> None:
-        """Let all waiters go on without changing the count (OS_BinSemFlush)."""
+        """Wake all waiters without changing the count (OS_BinSemFlush)."""
         self.kernel.wake_all(self.waits, True)

@@ -1,4 +1,4 @@
-"""Signals by which the stall watch gets through to a thread that executes no Python, or to a process that does not."""
+"""Signals with which the stall watch reaches a thread or a process that executes no Python code."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import threading
 
 
 class Waker:
-    """Lets Python's main thread look up from a function in C that waits, such as `time.sleep` or `input`.
+    """Wakes Python's main thread from a C function that waits, such as `time.sleep` or `input`.
 
-    What is to be raised in a thread waits until that executes Python. A signal lets the main thread do so: its handler,
-    in the middle of the wait. SIGURG is one that means nothing to a process that has no handler for it.
+    An exception scheduled in a thread waits until the thread executes Python code. A signal makes the main thread do
+    so: its handler runs in the middle of the wait. SIGURG does nothing in a process without a handler for it.
 
     Attributes:
-        ident: of the main thread, while it can be woken; 0 else.
+        ident: identifier of the main thread while it can be woken, otherwise 0.
     """
 
     def __init__(self) -> None:
         self.ident = 0
 
     def begin(self) -> None:
-        """From now on the calling thread can be woken, if it is the main one and the system has such signals."""
+        """Allow the calling thread to be woken, if it is the main thread and the system has such signals."""
         if not hasattr(signal, "pthread_kill") or threading.current_thread() is not threading.main_thread():
             return
         if signal.getsignal(signal.SIGURG) in (signal.SIG_DFL, _look_up):
@@ -30,26 +30,26 @@ class Waker:
             self.ident = threading.get_ident()
 
     def wake(self) -> None:
-        """Wake it, from another thread."""
+        """Wake the thread, from another thread."""
         signal.pthread_kill(self.ident, signal.SIGURG)
 
     def end(self) -> None:
-        """Leave it alone."""
+        """Stop waking the thread."""
         if self.ident == threading.get_ident() and signal.getsignal(signal.SIGURG) is _look_up:
             signal.signal(signal.SIGURG, signal.SIG_DFL)
         self.ident = 0
 
 
 def _look_up(*_: object) -> None:
-    """At the first step of this, Python raises what it was told to."""
+    """Do nothing; Python raises the scheduled exception at the first step of this function."""
 
 
 class LastResort:
-    """Ends the process when a C function keeps all threads of Python from running, so that none can look on.
+    """Ends the process when a C function keeps all Python threads from running.
 
-    It counts CPU time, and is armed anew at each look: a process that is stopped, or waits, does not come to its end.
-    Python's `faulthandler` writes the stack to standard error, and the process is killed by SIGVTALRM. Only for a
-    process that has nothing else to do.
+    It counts CPU time and is rearmed at each check, so a process that is stopped or waits is not ended. Python's
+    `faulthandler` writes the stack to standard error, and SIGVTALRM kills the process. Use it only in a process that
+    has no other work.
     """
 
     def __init__(self) -> None:
@@ -58,10 +58,10 @@ class LastResort:
             faulthandler.register(signal.SIGVTALRM, file=sys.__stderr__, all_threads=False, chain=True)
 
     def arm(self, seconds: float) -> None:
-        """End the process after so many seconds of CPU time; 0 for never."""
+        """End the process after this many seconds of CPU time; 0 for never."""
         if self._is_there:
             signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
 
     def disarm(self) -> None:
-        """Leave it alone."""
+        """Cancel the end of the process."""
         self.arm(0)

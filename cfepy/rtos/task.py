@@ -1,4 +1,6 @@
-"""A task of the simulated real-time system: plain data, changed by the kernel and by what tasks wait for."""
+"""A task of the simulated real-time system: plain data, changed by the kernel and by the objects that tasks
+wait for.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,7 @@ class TaskExit(BaseException):
 
 
 class Timeout:
-    """The type of `TIMEOUT`, the value a wait gives when its time is over."""
+    """The type of `TIMEOUT`, the result of a wait that timed out."""
 
     def __repr__(self) -> str:
         return "TIMEOUT"
@@ -29,7 +31,7 @@ class Timeout:
 TIMEOUT = Timeout()
 FOREVER = -1
 PLACE = 1000
-"""What a place where others could get in adds to `Task.passed`."""
+"""The amount that a preemption point adds to `Task.passed`."""
 
 
 class Task:
@@ -72,21 +74,21 @@ class Task:
 
     def __init__(self, name: str, ident: int, entry: Callable[[], object] | None, priority: int) -> None:
         self.name = name
-        self.alias = name  # what schedules call it
+        self.alias = name  # its name in schedules
         self.ident = ident
         self.entry = entry
         self.priority = self.base_priority = priority
-        self.number = 0  # OSAL's id of the task, known until the task has ended
-        self.owner: Any = None  # what the task works for: an application of ES
+        self.number = 0  # OSAL's id of the task, until the task has ended
+        self.owner: Any = None  # the task's owner, such as an application of ES
         self.resume: Callable[[], Any] = _not_bound
         self.park: Callable[..., Any] | None = None
-        self.interruption: BaseException | None = None  # comes out of the call that it waits in
-        self.carrier: Any = None  # what the context runs it on: an OS thread or a greenlet
+        self.interruption: BaseException | None = None  # exception to raise in the call that it waits in
+        self.carrier: Any = None  # the OS thread or greenlet that runs it
         self.wake: Any = None  # the value that ended the last wait
-        self.timer = 0  # number of the pending timer, 0 when there is none
+        self.timer = 0  # number of the pending timer, 0 if there is none
         self.waits: WaitList | None = None
-        self.awaits: WaitList | None = None  # what it waits for again and again, with a limit to each wait
-        self.since = 0  # virtual ns at which its last wait without a limit in time began
+        self.awaits: WaitList | None = None  # the list in which it waits repeatedly, each time with a time limit
+        self.since = 0  # virtual ns at which its last wait without a time limit began
         self.mutex: Mutex | None = None  # the mutex it waits for
         self.held: list[Mutex] = []
         self.started = self.done = self.dying = False
@@ -94,9 +96,9 @@ class Task:
         self.error: BaseException | None = None
         self.refusals = 0
         self.cpu_ns = 0
-        self.children = 0  # tasks that it has made
-        self.passed = 0  # PLACE for each place where others could get in, 1 for each wait and task woken since
-        self.path = ""  # which child of which task it is, such as "3.1": the same whoever runs when
+        self.children = 0  # number of tasks that it has created
+        self.passed = 0  # PLACE for each preemption point passed, 1 for each wait and for each task woken since
+        self.path = ""  # its position in the tree of tasks, such as "3.1"; it does not depend on the schedule
         self.mark = trace.mark(trace.DISPATCH, ident)
         self.wake_mark = trace.mark(trace.WAKE, ident)
         self.exit_mark = trace.mark(trace.EXIT, ident)

@@ -1,4 +1,6 @@
-"""Tasks that start others, which some policies let go on first: those they start can only meet once all are there."""
+"""Tasks that start other tasks. Some policies run them first, because the started tasks can only meet once all
+exist.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +10,14 @@ from cfepy.rtos.task import Task
 
 
 class StartersFirst:
-    """Keeps those that a task has started from going on before it, until it waits, or polls."""
+    """Keeps the tasks that a task has started from running before it, until it waits or polls."""
 
     def __init__(self) -> None:
-        self._children: dict[Task, int] = {}  # how many a task had when its last time slice was over
+        self._children: dict[Task, int] = {}  # number of children at the end of its last time slice
         self._polling: dict[Task, None] = {}
 
     def polls(self, task: Task) -> bool:
-        """Whether a task that used up its time slice has started nobody in it. It comes first no more then."""
+        """Return whether a task used up its time slice without starting another task; it then loses its precedence."""
         before = self._children.get(task, 0)
         self._children[task] = task.children
         if task.children > before:
@@ -24,7 +26,7 @@ class StartersFirst:
         return True
 
     def free(self, tasks: Sequence[Task]) -> Sequence[Task]:
-        """Those whose starters do not come before them. A starter waits until a new thread has begun.
+        """Return the candidates that no starter precedes. A starter waits until a new thread has begun.
 
         Args:
             tasks: the candidates.

@@ -1,8 +1,8 @@
-"""The wait-for graph: which tasks wait for which, and which waits can never end; a report of all that wait.
+"""The wait-for graph: which tasks wait for which, which waits can never end, and a report of all waiting tasks.
 
-A task that waits has either holders, all of whom must let go first (the owner of a mutex, the readers of a lock), or
-it is woken by any one of those who know what it waits for. A wait ends never when one of its holders has ended or
-waits for ever itself, or when nobody is left who could wake it. A task whose wait has a limit in time goes on.
+A waiting task has either holders, all of which must let go first (the owner of a mutex, the readers of a lock), or
+wakers, any one of which can wake it. A wait never ends if one of its holders has ended or waits forever itself, or if
+no task is left that could wake it. A task whose wait has a time limit continues.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ from cfepy.rtos.task import Task
 from cfepy.rtos.wait_list import WaitList
 
 Wakers = Callable[[Task, Collection[Task]], bool]
-"""Whether any of the tasks that may go on, or the world outside, could end the wait of a task without holders.
+"""Returns whether a task that may continue, or the outside world, could end the wait of a task without holders.
 
-It gets the one that waits, and those of which it is not known that they can go on.
+It gets the waiting task, and the tasks that are not known to be able to continue.
 """
 
 
 class Wait(NamedTuple):
-    """A task that waits, without a limit in time, for something that another one holds.
+    """A task that waits, without a time limit, for an object that another task holds.
 
     Attributes:
-        task: the one that waits.
-        what: for what, such as "mutex BUS".
-        holder: the task that has it, or None where nobody has it and nobody is left to give it.
+        task: the waiting task.
+        what: the object, such as "mutex BUS".
+        holder: the task that holds it, or None if no task holds it and no task is left to give it.
     """
 
     task: Task
@@ -45,16 +45,16 @@ def _by_holders_only(task: Task, lost: Collection[Task]) -> bool:
 
 
 def endless(tasks: Sequence[Task], could_end: Wakers = _by_holders_only) -> list[Wait]:
-    """The waits that can never end, in the order of the tasks.
+    """Return the waits that can never end, in the order of the tasks.
 
     Args:
-        tasks: all that have not ended.
-        could_end: asked for each task that waits for something without holders.
+        tasks: all tasks that have not ended.
+        could_end: called for each task that waits for an object without holders.
     """
     holders = {task: waits.holders() for task in tasks if (waits := awaited(task)) is not None}
     lost = dict.fromkeys(holders)
     free: Task | None = None
-    while True:  # what is taken for lost shrinks until each is lost for the sake of others that are
+    while True:  # the set shrinks until each task in it waits for another one in it
         for free in lost:
             if not _blocking(holders[free], lost) and (holders[free] or could_end(free, lost)):
                 break
@@ -64,12 +64,12 @@ def endless(tasks: Sequence[Task], could_end: Wakers = _by_holders_only) -> list
 
 
 def _blocking(holders: Sequence[Task], lost: Collection[Task]) -> list[Task]:
-    """Those of the holders that will never let go."""
+    """Return the holders that will never let go."""
     return [holder for holder in holders if holder.done or holder in lost]
 
 
 def awaited(task: Task) -> WaitList | None:
-    """What a task waits for without a limit in time, if it does."""
+    """Return the list in which a task waits without a time limit, or None."""
     return task.awaits if task.awaits is not None else (None if task.timer else task.waits)
 
 
@@ -80,12 +80,12 @@ def _wait(task: Task, holders: list[Task]) -> Wait:
 
 
 def circles(waits: Sequence[Wait]) -> list[tuple[Wait, ...]]:
-    """The circles of tasks that wait for each other, and the tasks that wait for one that has ended.
+    """Return the cycles of tasks that wait for each other, and the tasks that wait for an ended task.
 
-    Each comes once, the oldest task of a circle in front.
+    Each cycle appears once, with its oldest task first.
 
     Args:
-        waits: that never end.
+        waits: the waits that never end.
     """
     by_task = {wait.task: wait for wait in waits if wait.holder is not None}
     found: list[tuple[Wait, ...]] = []
@@ -106,7 +106,9 @@ def circles(waits: Sequence[Wait]) -> list[tuple[Wait, ...]]:
 
 
 def waiting_report(tasks: Iterable[Task], timers: Iterable[tuple[int, int, Task]]) -> str:
-    """One line a task: name, priority, what it waits for, until when, and the task that could end the wait."""
+    """Return one line for each task: name, priority, the object it waits for, the deadline, and the task that could end
+    the wait.
+    """
     deadlines = {task: when for when, sequence, task in timers if task.timer == sequence}
     return "\n".join(_line(task, deadlines.get(task)) for task in tasks)
 

@@ -1,4 +1,4 @@
-"""`WaitList`: the tasks that wait for one thing; plain data, changed by the kernel."""
+"""`WaitList`: the tasks that wait for one object; plain data, changed by the kernel."""
 
 from __future__ import annotations
 
@@ -10,14 +10,15 @@ if TYPE_CHECKING:
 
 
 class WaitList(list["Task"]):
-    """Tasks that wait for one thing, most urgent first, first come first within a priority.
+    """The tasks that wait for one object, the most urgent first, first come first served within a priority.
 
     Args:
-        what: the thing, for the deadlock report: "queue HK_PIPE".
+        what: name of the object for the deadlock report, such as "queue HK_PIPE".
 
     Attributes:
-        holders: the tasks that all have to let go of it before a wait can end; none where any task may end it.
-        subject: the object by which a wait is ended, such as a lock of Python's; None where that is not known.
+        holders: returns the tasks that must all let go of the object before a wait can end; empty if any task can end
+            it.
+        subject: the object itself, such as a Python lock; None if unknown.
     """
 
     __slots__ = ("holders", "subject", "what")

@@ -1,12 +1,12 @@
 """The stall watch: a thread of the host that ends a run in which a task does not give up the CPU.
 
-The simulation cannot do that itself: while one task computes, nothing else runs, and virtual time stands still. So a
-thread looks on, in wall-clock time. It changes nothing in a run that goes on, and a run that it ends has failed.
+The simulation cannot do that itself: while a task computes, nothing else runs, and virtual time stands still. So a
+thread watches in wall-clock time. It changes nothing in a run that continues. A run that it ends has failed.
 
-A stall is a virtual clock that stands still for so many seconds, while this process uses the CPU: because one task
-computes, or because tasks make calls that cost nothing, a thousand in a second and more. Who computes for longer
-raises the limit. A task that waits for something outside of the simulation, such as `input()` or a debugger, uses no
-CPU and is only told; and the time in which the process is stopped, or the computer asleep, does not count.
+A stall is a virtual clock that stands still for a given number of seconds while this process uses the CPU. Either one
+task computes, or tasks make calls that cost nothing, a thousand or more a second. For longer computations, raise the
+limit. A task that waits for something outside of the simulation, such as `input()` or a debugger, uses no CPU and is
+only reported. Time in which the process is stopped or the computer sleeps does not count.
 """
 
 from __future__ import annotations
@@ -31,34 +31,34 @@ from cfepy.units import NS_PER_S
 from cfepy.writing.escapes import visible
 
 STALL_S = 10.0
-LOOK_S, SOON_S = 0.25, 0.05  # wall time between two looks; when the run is being ended
-GRACE_S = 0.6  # CPU time from the wish of the host's user until the run is broken off; wall time of who uses no CPU
-SPUN_S = 0.3  # of it without a call: that is what the user is told then
-END_S = 0.8  # wall time in which all tasks of a run that was broken off have to end
-PRESS_S = 0.15  # of it that each of them may take
-BUSY = 0.1  # share of a CPU that this process uses, or could use, at least while a task computes
-TURNS_PER_S = 1000  # so many calls that let another task run, while the clock stands still, are a stall as well
-LOOKS, LOOK_AGAIN_S = 12, 0.01  # at what spins, so that the loop is found that it does not leave
+LOOK_S, SOON_S = 0.25, 0.05  # wall time between two checks; the second while the run is being ended
+GRACE_S = 0.6  # CPU time between the user's request and the end of the run; wall time for a task that uses no CPU
+SPUN_S = 0.3  # part of it without a call, after which the user gets a report
+END_S = 0.8  # wall time for all tasks of a broken-off run to end
+PRESS_S = 0.15  # part of it for each task
+BUSY = 0.1  # minimum share of a CPU that this process uses, or could use, while a task computes
+TURNS_PER_S = 1000  # this many calls that let another task run, while the clock stands still, are also a stall
+LOOKS, LOOK_AGAIN_S = 12, 0.01  # samples of a spinning task, to find its loop; time between them
 POLL_S = 0.002
 LINES = 5
-SPARE_S = 2.0  # CPU time beyond the limit until the last resort
+SPARE_S = 2.0  # CPU time above the limit before the last resort
 COLLECTOR = "a finalizer"
 THREADS = "/proc/self/task"
 
 
 def to_stderr(text: str) -> None:
-    """Where a report goes by default."""
+    """Write a report to standard error, the default."""
     sys.stderr.write(visible(text) + "\n")
     sys.stderr.flush()
 
 
 class Spent(NamedTuple):
-    """What a process has had of the computer's time so far, in seconds.
+    """The time that a process has used so far, in seconds.
 
     Attributes:
-        wall_s: of the wall clock.
-        used_s: of CPU, by its threads but for the calling one.
-        ready_s: in which these were ready for a CPU that other programs had.
+        wall_s: wall-clock time.
+        used_s: CPU time of its threads, without the calling one.
+        ready_s: time in which these threads were ready but other programs had the CPU.
     """
 
     wall_s: float
@@ -67,10 +67,10 @@ class Spent(NamedTuple):
 
 
 class Expenses:
-    """Tells, whenever it is called, what this process has had so far.
+    """Measures the time that this process has used so far, each time it is called.
 
-    Only Linux tells for how long threads were ready. Without it a computing task looks like a waiting one where many
-    programs compute. What a thread was counted for stays when it ends, or cannot be asked.
+    Only Linux reports how long threads were ready. Without it, a computing task looks like a waiting one if many
+    programs compute. The time counted for a thread is kept when the thread ends or cannot be read.
     """
 
     def __init__(self) -> None:
@@ -78,7 +78,7 @@ class Expenses:
         self._of_threads: dict[str, int] = {}
 
     def __call__(self) -> Spent:
-        """What it is now. Its caller is left out: it looks on."""
+        """Return the present values, without the calling thread, which only watches."""
         with contextlib.suppress(OSError):
             threads = {*os.listdir(THREADS)} - {str(threading.get_native_id())}
             for gone in self._of_threads.keys() - threads:
@@ -94,7 +94,7 @@ class Expenses:
 
     def _count(self, thread: str, ready_ns: int) -> None:
         before = self._of_threads.get(thread, 0)
-        self._ready_ns += ready_ns - (before if ready_ns >= before else 0)  # with less, another one has its number now
+        self._ready_ns += ready_ns - (before if ready_ns >= before else 0)  # less: another thread has the number
         self._of_threads[thread] = ready_ns
 
 
@@ -103,17 +103,17 @@ class StallWatch:
 
     Args:
         kernel: the kernel to watch.
-        limit_s: wall-clock seconds for which the virtual clock may stand still; 0 for any time.
-        is_own: whether a source file is the user's own, not the simulator's or a library's.
-        tell: gets the text about a task that waits for something outside of the simulation.
+        limit_s: wall-clock seconds for which the virtual clock may stand still; 0 for no limit.
+        is_own: whether a source file belongs to the user, not to the simulator or a library.
+        tell: gets the report about a task that waits for something outside of the simulation.
 
     Attributes:
-        limit_s: as given; may be set before the first `begin`.
-        wanted: whether the host's user wants the run to end: then it is broken off when it does not end by itself soon.
-        on_lost: called, in the thread of the watch, when a task cannot be ended that runs on the host's own thread, or
-            a finalizer: only the end of the process ends it.
-        last_resort: ends the process when this thread does not get to run any more; None leaves it.
-        spent: tells what this process has had of the computer's time.
+        limit_s: the limit; it may be changed before the first `begin`.
+        wanted: returns whether the user wants the run to end; a run that does not end soon is then broken off.
+        on_lost: called in the watch's thread if only the end of the process can end a finalizer or a task on the host's
+            own thread.
+        last_resort: ends the process if this thread can no longer run; None for never.
+        spent: measures the time that this process has used.
     """
 
     def __init__(
@@ -133,7 +133,7 @@ class StallWatch:
         self._tell = tell
         self._over = threading.Event()
         self._thread: threading.Thread | None = None
-        self._process = 0  # in which the thread looks
+        self._process = 0  # the process of the watching thread
         self._host_ident = 0
         self._waker = Waker()
         self._is_paused = self._has_lost = self._was_wanted = False
@@ -142,9 +142,11 @@ class StallWatch:
         self._wanted_s = self._ending_s = 0.0
 
     def begin(self) -> None:
-        """The calling thread is about to run the kernel. Cheap after the first time: a run may come in many pieces.
+        """Start watching; the calling thread is about to run the kernel. Cheap after the first call, for runs in many
+        parts.
 
-        A forked process has none of its parent's threads: it begins anew. What was seen in the piece before is over.
+        A forked process has none of its parent's threads, so watching starts anew. Observations from the previous part
+        are dropped.
         """
         self._host_ident = threading.get_ident()
         self._stand = None
@@ -158,11 +160,11 @@ class StallWatch:
 
     @property
     def is_on(self) -> bool:
-        """Whether its thread looks."""
+        """Whether the watching thread is alive."""
         return self._thread is not None and self._thread.is_alive()
 
     def end(self) -> None:
-        """Look no more."""
+        """Stop watching."""
         self._over.set()
         self._process = 0
         if self._thread is not None:
@@ -173,7 +175,7 @@ class StallWatch:
 
     @contextlib.contextmanager
     def paused(self) -> Iterator[None]:
-        """A debugger holds a task, for as long as its user wants; or cfepy itself waits for a compiler."""
+        """Suspend the watch while a debugger holds a task, or while cfepy itself waits for a compiler."""
         self._is_paused = True
         try:
             yield
@@ -189,10 +191,10 @@ class StallWatch:
             self._look_again(interval)
 
     def _look_again(self, interval: float) -> None:
-        """Look, some seconds after the last look.
+        """Check the run, some seconds after the last check.
 
-        To ask what the process has had of the computer takes time for each of its threads, of which many missions, or
-        one with many nodes, have thousands. So a run whose clock goes on is not asked, nor one that stands by.
+        Measuring the time of the process takes time for each of its threads, of which many missions, or one with many
+        nodes, have thousands. So it is not measured for a run whose clock advances or that is paused.
         """
         before = self._before
         if not self._may_stall():
@@ -210,7 +212,7 @@ class StallWatch:
             self._before = self.spent()
 
     def _may_stall(self) -> bool:
-        """Whether the clock of a run has stood still since the last look, or the run is to end."""
+        """Return whether the clock of a run has stood still since the last check, or the run should end."""
         kernel, stand = self._kernel, self._stand
         if kernel.broken is not None or self.wanted():
             return True
@@ -222,20 +224,21 @@ class StallWatch:
         return min(LOOK_S, self.limit_s / 4) if self.limit_s else LOOK_S
 
     def _look(self, wall_s: float, is_busy: bool, used_s: float) -> None:
-        """Look once.
+        """Check the run once.
 
         Args:
-            wall_s: since the look before.
-            is_busy: the process used the CPU, or was ready for it.
-            used_s: CPU time since then. A run that is wanted to end is given some of that, so that it comes to the end
-                of its piece however busy the computer is; who waits for something uses none, and is given wall time.
+            wall_s: wall time since the check before.
+            is_busy: whether the process used the CPU or was ready for it.
+            used_s: CPU time since then. A run that should end gets a grace period in CPU time, so that it reaches the
+                end of its part however busy the computer is. A waiting task uses no CPU, so its grace period is in wall
+                time.
         """
         kernel = self._kernel
         self._arm()
         if self._is_paused or self._has_lost:
             self._stand = None
             return
-        # What was spent before the wish does not count: of the look that sees it first, nothing does.
+        # Time before the request does not count, so the first check that sees the request counts nothing.
         given_s = (used_s if is_busy else wall_s) if self._was_wanted else 0.0
         self._was_wanted = self.wanted()
         self._wanted_s = self._wanted_s + given_s if self._was_wanted else 0.0
@@ -256,7 +259,7 @@ class StallWatch:
             self.last_resort.arm(self.limit_s + SPARE_S if self.limit_s and not self._is_paused else 0)
 
     def _standing(self, wall_s: float, is_busy: bool) -> _Stand:
-        """How long the clock has been standing still by now."""
+        """Return the record of how long the clock has been standing still."""
         kernel, stand = self._kernel, self._stand
         now_ns, sequence, front = kernel.progress()
         task, calls = kernel.current, sequence - front
@@ -273,7 +276,7 @@ class StallWatch:
         return stand
 
     def _looks(self, stand: _Stand) -> list[tuple[_Place, ...]]:
-        """Where the task is, several times. Only now: who looks at frames keeps their variables alive."""
+        """Sample the place of the task several times, only now, because reading frames keeps their variables alive."""
         ident = self._thread_of(self._task_of(stand))
         looks = [_places(frame_of_thread(ident))]
         while len(looks) < LOOKS and not stand.is_idle:
@@ -293,7 +296,9 @@ class StallWatch:
                 self._tell(f"cfepy: {error}")
 
     def _still_stands(self, stand: _Stand) -> bool:
-        """Whether nothing has gone on since it was looked at: to tell where it stands takes longer than many a run."""
+        """Return whether nothing has changed since the samples, because locating the stall takes longer than
+        many runs.
+        """
         kernel = self._kernel
         now_ns, sequence, front = kernel.progress()
         if self._stand is not stand or not kernel.is_running or now_ns != stand.now_ns:
@@ -301,10 +306,10 @@ class StallWatch:
         return stand.is_turning or (sequence - front == stand.calls and kernel.current.ident == stand.seen)
 
     def _error(self, stand: _Stand, end: str) -> StallError:
-        """What is told of it."""
+        """Return the error about a stall."""
         task = self._task_of(stand)
         is_host = task is self._kernel.host
-        lines = lines_of(self._looks(stand), self._is_own)  # and who has the CPU meanwhile
+        lines = lines_of(self._looks(stand), self._is_own)  # this also records which tasks have the CPU meanwhile
         app = "" if is_host or task.owner is None else str(task.owner.name)
         return StallError(
             f"{self._subject(stand, app)} since {stand.now_ns / NS_PER_S:.6f} s of virtual time, "
@@ -338,21 +343,21 @@ class StallWatch:
     # -- ending ------------------------------------------------------------------------------------------------------
 
     def _break_off(self, why: BaseException, stand: _Stand | None = None) -> None:
-        """The run cannot go on; have the running task give the CPU back.
+        """Break off the run, and make the running task return the CPU.
 
         Args:
-            why: what the run raises.
-            stand: what it is ended for; None where the run is ended whatever it does.
+            why: the error that the run raises.
+            stand: the stall that ends the run; None if the run ends in any case.
         """
         kernel = self._kernel
         with kernel.guard:
             if not kernel.is_running or (stand is not None and not self._still_stands(stand)):
-                return  # it has come to its end just now, or goes on
+                return  # it has just ended, or it continues
             kernel.break_off(why)
         self._press()
 
     def _hurry(self, wall_s: float) -> None:
-        """The run was broken off, and its tasks are ended one after the other: none of them may take long."""
+        """Press the tasks of a run that was broken off to end, one after the other, each within a short time."""
         kernel, stand = self._kernel, self._stand
         self._ending_s += wall_s
         if stand is None:
@@ -364,7 +369,7 @@ class StallWatch:
             self._stand = None
 
     def _press(self) -> None:
-        """Have the running task, or a finalizer, end."""
+        """Make the running task, or a finalizer, end."""
         task = self._kernel.current
         with _quiet():
             is_back = self._is_back(task, POLL_S) or self._insist(task, lambda: None)
@@ -394,7 +399,7 @@ class StallWatch:
     def _has_cpu(self, task: Task) -> bool:
         kernel = self._kernel
         if not kernel.is_running or kernel.current is not task or task.done:
-            return False  # of a task that has ended the kernel takes leave, and a blow would hit the kernel
+            return False  # the kernel handles an ended task, and a strike would hit the kernel
         return task is not kernel.host or kernel.is_collecting
 
     def _is_back(self, task: Task, seconds: float) -> bool:
@@ -406,7 +411,7 @@ class StallWatch:
         return True
 
     def _lose(self, task: Task) -> None:
-        """Nothing ends it. A host with a thread of its own goes on without it."""
+        """Give up a task that cannot be ended. If the host has its own thread, it continues without the task."""
         kernel = self._kernel
         if self._thread_of(task) != self._host_ident:
             kernel.is_lost = True
@@ -424,15 +429,15 @@ class _Stand:
     """A clock that stands still.
 
     Attributes:
-        now_ns: where it stands.
-        first_calls, calls: number of calls that may let another task go on: at first, and now.
-        seen: number of the task that has the CPU. The task itself is not held: one that has ended would hold its whole
-            processor until the next look.
-        standing_s: for how long it stands; wall time in which the CPU was used.
-        still_s: for how long this task has made no such call, and used the CPU.
-        idle_s: for how long it has made none, and used no CPU.
-        is_told: that has been told.
-        names: of the tasks that were seen.
+        now_ns: the virtual time at which it stands, in ns.
+        first_calls, calls: number of calls that may let another task run: at first, and now.
+        seen: number of the task that has the CPU. The task object itself is not kept, because an ended task would keep
+            its whole processor alive until the next check.
+        standing_s: wall time of the stall in which the CPU was used.
+        still_s: time in which this task made no such call and used the CPU.
+        idle_s: time in which it made no such call and used no CPU.
+        is_told: whether the wait was reported.
+        names: names of the tasks seen.
     """
 
     now_ns: int
@@ -452,13 +457,13 @@ class _Stand:
 
     @property
     def is_turning(self) -> bool:
-        """Whether tasks let each other go on without an end."""
+        """Whether tasks pass the CPU to each other without end."""
         return self.calls - self.first_calls >= TURNS_PER_S * max(self.standing_s, SPUN_S)
 
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """What strikes a finalizer cannot leave it, and Python would tell so; there is a better report."""
+    """Suppress Python's report of a strike that a finalizer cannot pass on; the stall report is better."""
     usual = sys.unraisablehook
 
     def hook(unraisable: sys.UnraisableHookArgs) -> None:
@@ -476,7 +481,7 @@ def _quiet() -> Iterator[None]:
 
 
 class _Place(NamedTuple):
-    """Where a frame is."""
+    """The position of a frame."""
 
     frame: FrameType
     code: CodeType
@@ -486,7 +491,7 @@ class _Place(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class StallLine:
-    """A line of source that is to be shown."""
+    """A line of source code to show."""
 
     file: str
     number: int
@@ -494,7 +499,7 @@ class StallLine:
 
     @property
     def place(self) -> str:
-        """Where it is: "spin.py:4"."""
+        """The file and line, such as "spin.py:4"."""
         return f"{os.path.basename(self.file)}:{self.number}"
 
     def __str__(self) -> str:
@@ -504,21 +509,21 @@ class StallLine:
 
 
 def _places(frame: FrameType | None) -> tuple[_Place, ...]:
-    """Where a thread is, outermost frame first."""
+    """Return the frames of a thread, the outermost first."""
     found: list[_Place] = []
     while frame is not None:
-        line = frame.f_lineno or frame.f_code.co_firstlineno  # a step that belongs to no line has none
+        line = frame.f_lineno or frame.f_code.co_firstlineno  # an instruction without a line has none
         found.append(_Place(frame, frame.f_code, frame.f_lasti, line))
         frame = frame.f_back
     return tuple(reversed(found))
 
 
 def lines_of(looks: Sequence[tuple[_Place, ...]], is_own: Callable[[str], bool]) -> list[StallLine]:
-    """The lines to show for something that was looked at several times: the loop that it does not leave, its callers.
+    """Return the lines to show for a stall: the loop that it does not leave, then its callers.
 
     Args:
-        looks: where it was, once or several times.
-        is_own: whether a source file is the user's own.
+        looks: one or several samples of its frames.
+        is_own: whether a source file belongs to the user.
     """
     depth = 0
     least = min(map(len, looks), default=0)
@@ -526,7 +531,7 @@ def lines_of(looks: Sequence[tuple[_Place, ...]], is_own: Callable[[str], bool])
         depth += 1
     while depth and not is_own(looks[0][depth - 1].code.co_filename):
         depth -= 1
-    if not depth:  # no code of the user's is at work
+    if not depth:  # no code of the user is running
         return [] if not least else [_line(looks[-1][-1])]
     outer = [_line(each) for each in reversed(looks[-1][: depth - 1]) if is_own(each.code.co_filename)]
     loop = _loop_line(looks[0][depth - 1].code, [each[depth - 1] for each in looks])
@@ -538,8 +543,10 @@ def _line(place: _Place) -> StallLine:
 
 
 def _loop_line(code: CodeType, places: Sequence[_Place]) -> int:
-    """The line with which the innermost loop begins that all places are in; without one, the first of their lines."""
-    import dis  # it is needed here alone, and takes time
+    """Return the first line of the innermost loop that contains all places; without one, the smallest of their
+    lines.
+    """
+    import dis  # needed only here, and slow to import
 
     steps = list(dis.get_instructions(code))
     jumps = frozenset((*dis.hasjrel, *dis.hasjabs))

@@ -1,7 +1,7 @@
-"""Classes of kernel with calls that are wrapped, for what looks on at a run or disturbs it.
+"""Kernel classes with wrapped calls, for attachments that observe or disturb a run.
 
-A kernel is made of the class that all who look on at its run have derived, one from another; a run that nobody looks on
-at has the plain class, and pays nothing.
+A kernel's class is derived from the classes of all attachments, one from another. A run without attachments has the
+plain class and pays nothing.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from typing import Any
 from cfepy.rtos.kernel import Kernel
 
 Call = Callable[..., Any]
-"""A method of a kernel, which it gets as the first argument."""
+"""A method of a kernel; its first argument is the kernel."""
 
 
 def wrapping(base: type[Kernel], wraps: Mapping[str, Callable[[Call], Call]]) -> type[Kernel]:
-    """A class of kernel with calls that are wrapped.
+    """Return a kernel class with wrapped calls.
 
     Args:
-        base: the class to start from.
-        wraps: by the name of a call, what makes the new one; it gets that of `base`.
+        base: the class to derive from.
+        wraps: for each call name, a function that gets the method of `base` and returns the new one.
     """
     return type("WrappingKernel", (base,), {name: wrap(getattr(base, name)) for name, wrap in wraps.items()})

@@ -1,9 +1,9 @@
 """Software Bus: messages between applications by MsgId (cFE SB).
 
-What belongs here moves packets: pipes, subscriptions, routes, buffers, and the application CFE_SB. What a packet means
-belongs to `cfepy.msg`. Code that watches or disturbs the bus is in packages above, as a class derived from
-`SoftwareBus`. The five services do not import each other; what SB needs of the others it finds in its `Ports`. The
-central file is `cfepy/sb/bus.py`.
+Code that moves packets belongs here: pipes, subscriptions, routes, buffers, and the application CFE_SB. The meaning of
+a packet belongs to `cfepy.msg`. Code that observes or disturbs the bus is in packages above, as a class derived from
+`SoftwareBus`. The five services are independent of one another; SB reaches the others through its `Ports`. The central
+file is `cfepy/sb/bus.py`.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ __all__ = [
     "listened",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

@@ -1,7 +1,7 @@
 """The message pool of the Software Bus, and buffers that applications fill in place (cfe_sb_buf.c, zero copy).
 
-Subscriptions and zero-copy buffers take blocks of a memory pool of ES. Messages on their way are immutable bytes of
-Python: what they would take is counted, a message in several pipes once, and added to what the pool holds.
+Subscriptions and zero-copy buffers take blocks of a memory pool of ES. Messages in transit are immutable Python bytes.
+The memory they would take is counted, once for a message in several pipes, and added to the use of the pool.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from cfepy.sb.message_buffer import MessageBuffer
 from cfepy.sb.routing import Destination, Route
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_BUF_ALOC_ERR, CFE_SB_BUFFER_INVALID, CFE_SB_MSG_TOO_BIG, CfeError
 
-BUFFER_BYTES = 64  # of the descriptor in front of each message (CFE_SB_BufferD_t)
+BUFFER_BYTES = 64  # size of the descriptor in front of each message (CFE_SB_BufferD_t)
 DESTINATION_BYTES = 32  # CFE_SB_DestinationD_t
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
 class BufferServices(BusCore):
-    """The pool, and the functions of zero-copy messages. Arguments as `BusCore`."""
+    """The pool, and the functions for zero-copy messages; see `BusCore` for the arguments."""
 
     def __init__(
         self,
@@ -38,15 +38,15 @@ class BufferServices(BusCore):
         self.pool_handle = 0
         self._zero_copy: dict[int, MessageBuffer] = {}
         self._last_number = 0
-        self._held_bytes = 0  # of subscriptions and zero-copy buffers
-        self._queued_bytes = 0  # of waiting messages, once per pipe: at least what they take
-        self._known_bytes = -1  # queued bytes up to which the pool is known to suffice and the peaks to hold
+        self._held_bytes = 0  # by subscriptions and zero-copy buffers
+        self._queued_bytes = 0  # by waiting messages, once per pipe: at least the memory they take
+        self._known_bytes = -1  # queued bytes up to which the pool is known to suffice and the peaks to be valid
 
     def early_init(self) -> None:
-        """Make the message pool, before any task exists (CFE_SB_EarlyInit, CFE_SB_InitBuffers).
+        """Create the message pool, before any task exists (CFE_SB_EarlyInit, CFE_SB_InitBuffers).
 
         Raises:
-            CfeError: ES has no pool or no memory left.
+            CfeError: if ES has no pool or no memory left.
         """
         self.routing.init()
         size = self.config.sb_buf_memory_bytes
@@ -61,13 +61,13 @@ class BufferServices(BusCore):
     # -- zero copy -------------------------------------------------------------------------------------------------
 
     def allocate_message_buffer(self, size: int) -> MessageBuffer:
-        """A buffer of zeros for a message that is sent with `transmit_buffer` (CFE_SB_AllocateMessageBuffer).
+        """Return a zeroed buffer for a message to send with `transmit_buffer` (CFE_SB_AllocateMessageBuffer).
 
-        It belongs to the calling application until it is sent or released; when the application ends before, the bus
-        takes it back.
+        The buffer belongs to the calling application until it is sent or released. If the application ends before, the
+        bus releases it.
 
         Args:
-            size: bytes, headers included.
+            size: bytes, including the headers.
 
         Raises:
             CfeError: CFE_SB_MSG_TOO_BIG, CFE_SB_BUF_ALOC_ERR (the pool has no room); NASA's function returns NULL.
@@ -88,24 +88,25 @@ class BufferServices(BusCore):
         return buffer
 
     def release_message_buffer(self, buffer: MessageBuffer) -> None:
-        """Give a buffer back without sending it (CFE_SB_ReleaseMessageBuffer).
+        """Release a buffer without sending it (CFE_SB_ReleaseMessageBuffer).
 
         Raises:
-            CfeError: CFE_SB_BUFFER_INVALID: it is none of `allocate_message_buffer`, or was sent or released already.
+            CfeError: CFE_SB_BUFFER_INVALID if it is not from `allocate_message_buffer`, or was already sent or
+                released.
         """
         self._check_buffer(buffer)
         self._forget_buffer(buffer)
 
     def transmit_buffer(self, buffer: MessageBuffer, is_origination: bool = True) -> None:
-        """Send a buffer, as many bytes of it as its header says; it does not belong to the caller any more
-        (CFE_SB_TransmitBuffer).
+        """Send a buffer, in the size of its header (CFE_SB_TransmitBuffer); it no longer belongs to the caller
+        afterwards.
 
         Args:
-            buffer: one of `allocate_message_buffer`, with MsgId and size filled in.
-            is_origination: as in `transmit_msg`.
+            buffer: a buffer from `allocate_message_buffer`, with MsgId and size filled in.
+            is_origination: see `transmit_msg`.
 
         Raises:
-            CfeError: CFE_SB_BUFFER_INVALID; or as `transmit_msg`, and then the buffer stays the caller's.
+            CfeError: CFE_SB_BUFFER_INVALID; or see `transmit_msg`, and then the caller keeps the buffer.
         """
         size = get_size(buffer) if len(buffer) > PRIMARY_HEADER_SIZE else 0
         self.check_header(buffer, size)
@@ -120,18 +121,18 @@ class BufferServices(BusCore):
         """Set the time of a telemetry packet to the spacecraft time (CFE_SB_TimeStampMsg).
 
         Raises:
-            CfeError: CFE_MSG_WRONG_MSG_TYPE: it has no time.
+            CfeError: CFE_MSG_WRONG_MSG_TYPE if the packet has no time.
         """
         set_msg_time(packet, self.ports.time.now())
 
     def release_buffers_of(self, app_id: int) -> None:
-        """Take back what an application that ends had allocated (CFE_SB_ZeroCopyReleaseAppId)."""
+        """Release the buffers of an application that ends (CFE_SB_ZeroCopyReleaseAppId)."""
         for buffer in list(self._zero_copy.values()):
             if buffer.app_id == app_id:
                 self._forget_buffer(buffer)
 
     def is_held(self, buffer: MessageBuffer) -> bool:
-        """Whether an application holds a buffer: it was neither sent nor released."""
+        """Return whether an application holds a buffer that was neither sent nor released."""
         return self._zero_copy.get(getattr(buffer, "number", 0)) is buffer
 
     def _check_buffer(self, buffer: MessageBuffer) -> None:
@@ -151,17 +152,17 @@ class BufferServices(BusCore):
         self.give_block(destination.block, DESTINATION_BYTES)
 
     def hand_on(self, packet: bytes, destination: Destination) -> None:
-        """A packet that was put into an outlet has left it."""
+        """Count a packet that has left its outlet."""
         self._queued_bytes -= len(packet) + BUFFER_BYTES
         destination.gets += 1
 
     # -- the pool --------------------------------------------------------------------------------------------------
 
     def take_block(self, size: int) -> Block | None:
-        """Memory of the pool for a subscription or a buffer; no block before the pool exists.
+        """Take memory from the pool for a subscription or a buffer; return None before the pool exists.
 
         Raises:
-            CfeError: CFE_SB_BUF_ALOC_ERR: there is no room.
+            CfeError: CFE_SB_BUF_ALOC_ERR if there is no room.
         """
         room = self.config.sb_buf_memory_bytes - size
         if self._most_bytes() > room and self.pool_use()[0] > room:
@@ -180,21 +181,21 @@ class BufferServices(BusCore):
             raise CfeError(CFE_SB_BUF_ALOC_ERR, str(error)) from error
 
     def give_block(self, block: Block | None, size: int) -> None:
-        """Give memory back that `take_block` gave."""
+        """Return memory from `take_block` to the pool."""
         self._held_bytes -= size
         self._known_bytes += size
         if block is not None:
             self.ports.es.put_pool_buf(self.pool_handle, block)
 
     def _most_bytes(self) -> int:
-        """At least as many bytes as are in use, counted quickly."""
+        """Return an upper bound of the bytes in use, computed quickly."""
         return self._queued_bytes + self._held_bytes
 
     def pool_use(self, more: Packet | None = None) -> tuple[int, int]:
-        """(bytes, buffers) in use: of waiting messages, zero-copy buffers and subscriptions.
+        """Return the (bytes, buffers) in use by waiting messages, zero-copy buffers and subscriptions.
 
         Args:
-            more: a message that is about to wait.
+            more: a message that is about to be queued.
         """
         sizes = {id(item[0]): len(item[0]) for pipe in self.pipes for item in pipe.items}
         if more is not None:
@@ -203,26 +204,26 @@ class BufferServices(BusCore):
         return waiting + self._held_bytes, len(sizes) + len(self._zero_copy)
 
     def note_peaks(self, more: Packet | None = None) -> tuple[int, int]:
-        """As `pool_use`, and remember the largest values."""
+        """Return `pool_use`, and record the peaks."""
         used, buffers = self.pool_use(more)
         self.peaks.memory = max(self.peaks.memory, used)
         self.peaks.buffers = max(self.peaks.buffers, buffers)
         return used, buffers
 
     def note_growth(self) -> None:
-        """More memory was taken: remember the largest values, unless they cannot have changed."""
+        """Record the peaks after an allocation, unless they cannot have changed."""
         if self._most_bytes() > self.peaks.memory:
             self.note_peaks()
 
     def has_room(self, packet: Packet) -> bool:
-        """Whether the pool takes a message now; `transmit_msg` of one that it does not take is CFE_SB_BUF_ALOC_ERR."""
+        """Return whether the pool has room for a message now; otherwise `transmit_msg` raises CFE_SB_BUF_ALOC_ERR."""
         return self._queued_bytes + len(packet) <= self._known_bytes or not self.pool_is_full(packet)
 
     def pool_is_full(self, packet: Packet) -> bool:
-        """Whether there is no room for a message, counted exactly: more bytes may wait than ever before.
+        """Return whether the pool has no room for a message, by an exact count; record new peaks.
 
-        The count that `transmit_msg` keeps takes a message once for each pipe, and those of deleted pipes; it is
-        corrected here.
+        The count of `transmit_msg` includes a message once for each pipe, and the messages of deleted pipes. This call
+        corrects it.
         """
         size, room = len(packet), self.config.sb_buf_memory_bytes
         if self.pool_use(packet)[0] > room:

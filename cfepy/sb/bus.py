@@ -1,11 +1,11 @@
 """The Software Bus: subscribing, transmitting and receiving (cfe_sb_api.c).
 
-A message is one immutable bytes object, shared by all pipes that it goes to; it cannot change on the way, so what C
-needs reference-counted buffers for is done by the interpreter. Transmitting never waits. This is the hot path of every
-mission: it makes no object but the packet and its queue entry, and the usual case comes first.
+A message is one immutable bytes object, shared by all its pipes. It cannot change in transit, so the interpreter does
+the work of C's reference-counted buffers. Transmitting never waits. This is the hot path of every mission: it creates
+no object except the packet and its queue entry, and handles the usual case first.
 
-Subscriptions that are not local to this processor are told to other processors when reports are on: one as it is made
-(`tell_one`), or all there are (`tell_all`).
+While reports are on, other processors get each subscription that is not local, as it is made (`tell_one`), or all of
+them at once (`tell_all`).
 """
 
 from __future__ import annotations
@@ -43,19 +43,19 @@ DEFAULT_QOS = 0
 POLL = 0
 SECONDARY_BIT = SECONDARY >> 8
 UNSENT_PACKET = UNSENT + b"\0"
-FIRST_SEGMENT = 0x40  # of the sequence flags in byte 2: a message begins, whole or in segments
+FIRST_SEGMENT = 0x40  # bits of the sequence flags in byte 2: the first packet of a message
 unpack_primary = struct.Struct(">HH").unpack_from
 pack_telemetry = struct.Struct(">HHH6s").pack
 
 
 def tell_one(bus: BusCore, msg_id: int, pipe_id: int, qos: int) -> None:
-    """Report a subscription, when reports are on (CFE_SB_SendSubscriptionReport).
+    """Report a subscription, if reports are on (CFE_SB_SendSubscriptionReport).
 
     Args:
         bus: the bus.
-        msg_id: what was subscribed to.
-        pipe_id: by which pipe.
-        qos: as `SubscriptionServices.subscribe_ex` takes it.
+        msg_id: the MsgId.
+        pipe_id: the pipe.
+        qos: see `SubscriptionServices.subscribe_ex`.
     """
     if not bus.reporting:
         return
@@ -66,9 +66,9 @@ def tell_one(bus: BusCore, msg_id: int, pipe_id: int, qos: int) -> None:
 
 
 def tell_all(bus: BusCore) -> None:
-    """Send every MsgId that is wanted from other processors, 20 to a packet (CFE_SB_SendPrevSubsCmd).
+    """Report all MsgIds wanted from other processors, 20 per packet (CFE_SB_SendPrevSubsCmd).
 
-    As NASA's, the entries tell no pipe and no quality, and TotalSegments stays 0.
+    As in NASA's code, the entries have no pipe and no quality, and TotalSegments stays 0.
     """
     wanted = [each.msg_id for each in bus.routes.values() if any(one.scope == GLOBAL for one in each.destinations)]
     most = pk.SUB_ENTRIES_PER_PKT
@@ -81,7 +81,7 @@ def tell_all(bus: BusCore) -> None:
 
 
 def _send(bus: BusCore, packet: bytes) -> int:
-    """Transmit; the status as an unsigned number."""
+    """Transmit a packet; return the status as an unsigned number."""
     try:
         bus.ports.sb.transmit_msg(packet)
     except CfeError as error:
@@ -94,17 +94,17 @@ class SubscriptionServices(PipeServices):
     """The CFE_SB_Subscribe* and CFE_SB_Unsubscribe* functions."""
 
     def subscribe(self, msg_id: int, pipe_id: int) -> None:
-        """Let a MsgId into a pipe, with the default message limit of 4 (CFE_SB_Subscribe)."""
+        """Subscribe a pipe to a MsgId, with the default message limit of 4 (CFE_SB_Subscribe)."""
         self._subscribe(msg_id, pipe_id, self.config.sb_default_msg_limit, GLOBAL)
 
     def subscribe_ex(self, msg_id: int, pipe_id: int, qos: int = DEFAULT_QOS, msg_limit: int = 4) -> None:
-        """Let a MsgId into a pipe (CFE_SB_SubscribeEx).
+        """Subscribe a pipe to a MsgId (CFE_SB_SubscribeEx).
 
         Args:
-            msg_id: the message.
+            msg_id: the MsgId.
             pipe_id: a pipe of the calling application.
-            qos: priority, and reliability times 256 (CFE_SB_Qos_t); told to other processors, not used on this one.
-            msg_limit: messages of this MsgId that may wait in the pipe.
+            qos: priority, and reliability times 256 (CFE_SB_Qos_t); reported to other processors, not used on this one.
+            msg_limit: maximum number of messages of this MsgId in the pipe.
 
         Raises:
             CfeError: CFE_SB_BAD_ARGUMENT, CFE_SB_MAX_MSGS_MET (MsgIds), CFE_SB_MAX_DESTS_MET (pipes of the MsgId),
@@ -113,19 +113,22 @@ class SubscriptionServices(PipeServices):
         self._subscribe(msg_id, pipe_id, msg_limit, GLOBAL, qos)
 
     def subscribe_local(self, msg_id: int, pipe_id: int, msg_limit: int) -> None:
-        """As `subscribe_ex`, not told to other processors (CFE_SB_SubscribeLocal)."""
+        """Subscribe a pipe to a MsgId without a report to other processors; see `subscribe_ex`
+        (CFE_SB_SubscribeLocal).
+        """
         self._subscribe(msg_id, pipe_id, msg_limit, LOCAL)
 
     def unsubscribe(self, msg_id: int, pipe_id: int) -> None:
-        """Take a MsgId out of a pipe (CFE_SB_Unsubscribe); the messages that wait there stay.
+        """Unsubscribe a pipe from a MsgId (CFE_SB_Unsubscribe); waiting messages stay.
 
         Raises:
-            CfeError: CFE_SB_BAD_ARGUMENT for a bad MsgId or pipe. Not being subscribed is an event, not an error.
+            CfeError: CFE_SB_BAD_ARGUMENT for an invalid MsgId or pipe. A missing subscription is an event, not an
+                error.
         """
         self._unsubscribe(msg_id, pipe_id, GLOBAL)
 
     def unsubscribe_local(self, msg_id: int, pipe_id: int) -> None:
-        """As `unsubscribe` (CFE_SB_UnsubscribeLocal)."""
+        """Unsubscribe a pipe from a MsgId; see `unsubscribe` (CFE_SB_UnsubscribeLocal)."""
         self._unsubscribe(msg_id, pipe_id, LOCAL)
 
     def _unsubscribe(self, msg_id: int, pipe_id: int, scope: int) -> None:
@@ -162,14 +165,14 @@ class SubscriptionServices(PipeServices):
             text = f"Duplicate Subscription,MsgId 0x{msg_id:x} on {pipe.name} pipe,app {app}"
             self.report(ev.DUP_SUBSCRIP_EID, ev.INFORMATION, text)
         else:
-            self._add(route, pipe, limit & 0xFFFF, scope)  # C takes 16 bits
+            self._add(route, pipe, limit & 0xFFFF, scope)  # C has 16 bits
             text = f"Subscription Rcvd:MsgId 0x{msg_id:x} on PipeId {pipe_id},app {app}"
             self.report(ev.SUBSCRIPTION_RCVD_EID, ev.DEBUG, text)
         if scope == GLOBAL:
             tell_one(self, msg_id, pipe_id, qos)
 
     def _route_for(self, msg_id: int, pipe: Pipe, app: str) -> Route:
-        """The route of a MsgId, made when there is none."""
+        """Return the route of a MsgId, and create it if it is missing."""
         if msg_id not in self.routes and not self.routing.add_route(msg_id):
             limit_text = f"Max Msgs({self.config.sb_max_msg_ids})In Use"
             text = f"Subscribe Err:{limit_text},MsgId 0x{msg_id:x},pipe {pipe.name},app {app}"
@@ -197,7 +200,7 @@ class SubscriptionServices(PipeServices):
         app = self.caller_name()
         pipe = self.find_pipe(pipe_id)
         if pipe is None:
-            self.report_nameless(pipe_id)  # NASA's code asks for the name before it sends any event
+            self.report_nameless(pipe_id)  # NASA's code looks up the name before it sends any event
             text = f"Subscribe Err:Invalid Pipe Id,Msg=0x{msg_id:x},PipeId={pipe_id},App {app}"
             raise self._subscribe_error(ev.SUB_INV_PIPE_EID, CFE_SB_BAD_ARGUMENT, text)
         if self.is_foreign(pipe):
@@ -220,10 +223,10 @@ class SubscriptionServices(PipeServices):
 
 @mypyc_attr(allow_interpreted_subclasses=True)
 class SoftwareBus(SubscriptionServices):
-    """One processor's Software Bus; the arguments are those of `BusCore`.
+    """The Software Bus of one processor; see `BusCore` for the arguments.
 
-    A message that no pipe gets is in the trace as well, see `unsent`. On a bus that is watched, `on_unsent` is called
-    with each message that a ROS publisher keeps back because it has no subscriber: sender, bytes.
+    A message that no pipe gets is in the trace too, see `unsent`. On an observed bus, `on_unsent` is called with each
+    message that a ROS publisher does not send for lack of subscribers: sender, bytes.
     """
 
     on_unsent: ClassVar[Callable[[Any, bytes], object] | None] = None
@@ -246,7 +249,7 @@ class SoftwareBus(SubscriptionServices):
         self._flush = kernel.trace.flush if kernel.trace is not None else _nothing
 
     def listen(self, listener: Callable[[bytes], object]) -> None:
-        """Call `listener` with each packet that is sent from now on, before any pipe gets it."""
+        """Call `listener` with each packet from now on, before any pipe gets it."""
         record = self._record
 
         def both(item: bytes) -> None:
@@ -259,16 +262,16 @@ class SoftwareBus(SubscriptionServices):
     # -- transmitting ----------------------------------------------------------------------------------------------
 
     def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
-        """Send a packet to every pipe that subscribed to its MsgId (CFE_SB_TransmitMsg).
+        """Send a packet to every pipe subscribed to its MsgId (CFE_SB_TransmitMsg).
 
         Args:
             packet: a whole CCSDS packet with cFE's headers.
-            is_origination: fill in the sequence count, and the time of telemetry or the checksum of a command;
-                False sends the packet as it is (from a ground link or another processor).
+            is_origination: fill in the sequence count, and the time of telemetry or the checksum of a command; False
+                sends the packet unchanged (from a ground link or another processor).
 
         Raises:
-            CfeError: CFE_SB_BAD_ARGUMENT (no packet, bad MsgId or length), CFE_SB_MSG_TOO_BIG, CFE_SB_BUF_ALOC_ERR.
-                A full pipe and a reached message limit are events, not errors: the others still get the message.
+            CfeError: CFE_SB_BAD_ARGUMENT (no packet, invalid MsgId or length), CFE_SB_MSG_TOO_BIG, CFE_SB_BUF_ALOC_ERR.
+                A full pipe and a reached message limit are events, not errors; other pipes still get the message.
         """
         size = len(packet)
         if not 6 < size <= self._max_size:
@@ -342,16 +345,16 @@ class SoftwareBus(SubscriptionServices):
             self._report_failures(msg_id, failures)
 
     def _stamp(self, now: int) -> None:
-        """Keep the spacecraft time of this instant, as the header wants it."""
+        """Cache the spacecraft time of this instant in the format of the header."""
         self._time = self.ports.time.stamp().to_bytes(6, "big")
         self._stamped_at = now
 
     def forget_time(self) -> None:
-        """The spacecraft time was set: the stamp of this instant is no longer true."""
+        """Invalidate the cached time, because the spacecraft time was set."""
         self._stamped_at = -1
 
     def _originated(self, packet: bytes | bytearray, bits: int) -> bytes:
-        """A command, or a packet without secondary header, with what origination fills in."""
+        """Return a command, or a packet without a secondary header, completed at its origin."""
         header = packet[:2] + (bits << 16 | len(packet) - 7).to_bytes(4, "big")
         if packet[0] & SECONDARY_BIT and len(packet) >= CMD_HEADER_SIZE:
             command = bytearray(header + packet[6:])
@@ -361,7 +364,7 @@ class SoftwareBus(SubscriptionServices):
         return bytes(header + packet[6:])
 
     def _relayed(self, route: Route, packet: bytes | bytearray) -> bytes:
-        """A packet from elsewhere, as it is."""
+        """Return a packet from elsewhere unchanged."""
         if (packet[4] << 8 | packet[5]) + 7 != len(packet):
             self.unsent(UNSENT_PACKET + packet)
             text = f"Send Err:Bad input argument,Arg 0x0,App {self.caller_name()}"
@@ -370,7 +373,7 @@ class SoftwareBus(SubscriptionServices):
         return bytes(packet)
 
     def _drop_oldest(self, pipe: Pipe) -> int:
-        """Take the oldest message with all of its segments out of a pipe; how many packets still wait there."""
+        """Remove the oldest message with all its segments from a pipe; return the number of packets left."""
         items = pipe.items
         begins = False
         while items and not begins:
@@ -387,17 +390,17 @@ class SoftwareBus(SubscriptionServices):
     # -- receiving -------------------------------------------------------------------------------------------------
 
     def receive_buffer(self, pipe_id: int, timeout_ms: int = PEND_FOREVER) -> bytes | None:
-        """Take the oldest message out of a pipe (CFE_SB_ReceiveBuffer).
+        """Take the oldest message from a pipe (CFE_SB_ReceiveBuffer).
 
         Args:
-            pipe_id: any pipe; that it is one's own is not checked, as in NASA's code.
-            timeout_ms: longest time to wait; POLL (0) and PEND_FOREVER (-1) as named.
+            pipe_id: any pipe; its owner is not checked, as in NASA's code.
+            timeout_ms: longest time to wait in ms, POLL (0) or PEND_FOREVER (-1).
 
         Returns:
-            The packet, or None when there is none in time.
+            The packet, or None after the timeout.
 
         Raises:
-            CfeError: CFE_SB_BAD_ARGUMENT (pipe, timeout), CFE_SB_PIPE_RD_ERR (the pipe was deleted meanwhile).
+            CfeError: CFE_SB_BAD_ARGUMENT (pipe, timeout), CFE_SB_PIPE_RD_ERR (the pipe was deleted during the wait).
         """
         pipe = self._pipe_of.get(pipe_id)
         if pipe is None or timeout_ms < PEND_FOREVER:
@@ -431,13 +434,13 @@ class SoftwareBus(SubscriptionServices):
                 self._flush()
         return packet
 
-    # -- what can go wrong -----------------------------------------------------------------------------------------
+    # -- errors --------------------------------------------------------------------------------------------------------
 
     def unsent(self, record: bytes) -> None:
-        """Record a message that the bus does not carry: what a program has published is in the digest of its run.
+        """Record a message that the bus does not carry, so that the digest of a run covers everything published.
 
         Args:
-            record: of the kind UNSENT.
+            record: a record of the kind UNSENT.
         """
         if self.kernel.record is None:
             return
@@ -506,16 +509,16 @@ Failures = list[tuple[int, Destination]]
 
 
 def _limited(failures: Failures | None, destination: Destination) -> Failures:
-    """A message limit kept a message out of a pipe: that, too, is to be reported."""
+    """Count a message refused because of a message limit; return the failures to report, including this one."""
     destination.limit_drops += 1
     return [*(failures or ()), (ev.MSGID_LIM_ERR_EID, destination)]
 
 
 def _overflowed(failures: Failures | None, destination: Destination) -> Failures:
-    """As `_limited`, of a message that did not fit in."""
+    """Count a message refused because of a full pipe; return the failures to report, including this one."""
     destination.overflow_drops += 1
     return [*(failures or ()), (ev.Q_FULL_ERR_EID, destination)]
 
 
 def _nothing() -> None:
-    """The flush of a run without a trace."""
+    """Do nothing: the flush of a run without a trace."""

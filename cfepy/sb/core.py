@@ -1,7 +1,7 @@
-"""What all parts of the Software Bus share: its tables, counters, and the way it reports through events.
+"""The common base of all parts of the Software Bus: its tables and counters, and its reports by events.
 
-An event travels on the bus itself, so reporting a failed transmission can fail in the same way again. As in NASA's
-code (CFE_SB_RequestToSendEvent) a task that is about to send an event does not send the same one from within.
+An event travels on the bus itself, so reporting a failed transmission can fail in the same way. As in NASA's code
+(CFE_SB_RequestToSendEvent), a task does not send an event while it is already sending the same one.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class BusCounters:
     msg_limit_error: int = 0
 
     def reset(self) -> None:
-        """Set all to 0 but two that NASA's code leaves (CFE_SB_ResetCounters)."""
+        """Set all counters to 0 except two that NASA's code keeps (CFE_SB_ResetCounters)."""
         kept = {"pipe_opts_error", "get_pipe_id_by_name_error"}
         for each in fields(self):
             if each.name not in kept:
@@ -61,28 +61,28 @@ class Peaks:
 
 @dataclass(slots=True)
 class Unrouted:
-    """Messages whose MsgId never had a subscriber, per MsgId."""
+    """Messages whose MsgId has never had a subscriber, by MsgId."""
 
     sent: dict[int, int] = field(default_factory=dict)
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
 class BusCore:
-    """Tables and helpers; the base of `SoftwareBus`.
+    """Tables and helpers; the base class of `SoftwareBus`.
 
     Args:
-        kernel: the processor.
+        kernel: the kernel of the processor.
         ports: the other services.
         config: limits.
-        costs: virtual CPU time of calls; None for nothing.
-        sizes: RAM of pipes; None for nothing.
+        costs: virtual CPU time of calls; None for no time.
+        sizes: RAM of pipes; None for no RAM.
 
     Attributes:
         routing: the routing table; `routes` is its dictionary.
-        subscriptions: pairs of MsgId and pipe.
-        outlets: how many there ever were (`cfepy.sb.direct_subscriber`).
-        reporting: whether each subscription is told to other processors.
-        put_hook: stands before each put into a pipe; None on a bus that nobody watches or disturbs.
+        subscriptions: number of pairs of MsgId and pipe.
+        outlets: number of outlets created so far (`cfepy.sb.direct_subscriber`).
+        reporting: whether each subscription is reported to other processors.
+        put_hook: called before each put into a pipe; None on a bus without observers and faults.
     """
 
     def __init__(
@@ -108,11 +108,11 @@ class BusCore:
         self.reporting = False
         self.put_hook: PutHook | None = None
         self.unrouted = Unrouted()
-        self.app_id = 0  # of the SB application itself, in whose name events are sent
+        self.app_id = 0  # AppId of the SB application, the sender of its events
         self._sending: set[tuple[int, int]] = set()
 
     def caller_name(self) -> str:
-        """Name of the calling task as SB's events give it: "APP", "APP.TASK" for a child task, or "Unknown"."""
+        """Return the name of the calling task as in SB's events: "APP", "APP.TASK" for a child task, or "Unknown"."""
         task = self.kernel.current
         if task.owner is not None and application_of(task.owner) is None:
             return "Unknown"
@@ -122,12 +122,12 @@ class BusCore:
         return f"{app}.{task.name}"
 
     def report(self, event_id: int, event_type: int, text: str) -> None:
-        """Send an event of SB; one from before its task runs is lost, since events need an application."""
+        """Send an event of SB. Before its task runs the event is lost, because events need an application."""
         with suppress(CfeError):
             self.ports.evs.send_event_with_app_id(event_id, event_type, self.app_id, text)
 
     def report_once(self, event_id: int, event_type: int, text: str) -> None:
-        """Send an event of SB, unless the calling task is in the middle of sending the same one."""
+        """Send an event of SB, unless the calling task is already sending the same one."""
         key = (self.kernel.current.ident, event_id)
         if key in self._sending:
             return
@@ -138,7 +138,7 @@ class BusCore:
             self._sending.discard(key)
 
     def send_error(self, event_id: int, status: int, text: str) -> CfeError:
-        """Report that a message cannot be sent; the error to raise."""
+        """Report that a message cannot be sent; return the error to raise."""
         self.counters.msg_send_error += 1
         self.report_once(event_id, ev.ERROR, text)
         return CfeError(status, text)
@@ -166,19 +166,19 @@ class BusCore:
             raise self.send_error(ev.MSG_TOO_BIG_EID, CFE_SB_MSG_TOO_BIG, text)
 
     def find_pipe(self, pipe_id: int) -> Pipe | None:
-        """The pipe of an id, or None."""
+        """Return the pipe of an id, or None."""
         return self.pipes.find(pipe_id)
 
     def report_nameless(self, pipe_id: int) -> str:
-        """Send the event of CFE_SB_GetPipeName for an id that no pipe has; its text."""
+        """Send the event of CFE_SB_GetPipeName for an unknown pipe id; return its text."""
         text = f"Pipe Id Error:Bad Argument,Id={pipe_id},Requestor {self.caller_name()}"
         self.report(ev.GETPIPENAME_ID_ERR_EID, ev.ERROR, text)
         return text
 
     def is_foreign(self, pipe: Pipe) -> bool:
-        """Whether the calling application is not the owner of a pipe."""
+        """Return whether the calling application is not the owner of a pipe."""
         return pipe.owner is not self.kernel.current.owner
 
     def is_valid_msg_id(self, msg_id: int) -> bool:
-        """Whether a MsgId is in 1..CFE_PLATFORM_SB_HIGHEST_VALID_MSGID (CFE_SB_IsValidMsgId)."""
+        """Return whether a MsgId is in 1..CFE_PLATFORM_SB_HIGHEST_VALID_MSGID (CFE_SB_IsValidMsgId)."""
         return 0 < msg_id <= self.config.sb_highest_valid_msg_id

@@ -1,8 +1,8 @@
-"""`Outlet`: a subscriber that is no task. Each packet is handed on at once, so none waits and none is lost.
+"""`Outlet`: a subscriber that is not a task. It passes each packet on at once, so none waits and none is lost.
 
-It is for what stands for a receiver outside of the simulated computer. What takes the packets may keep them or pass
-them to the host; it must not wait, nor use the bus. An outlet is in no table of pipes: it has no depth that the board
-could be short of, and no id that an application could name.
+It represents a receiver outside of the simulated computer. The function that takes the packets may keep them or pass
+them to the host. It must not wait or use the bus. An outlet is in no table of pipes, so it uses no queue of the board
+and has no id for applications.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ NO_LIMIT = 0xFFFF
 
 
 class Outlet(Pipe):
-    """Hands on the packets of one MsgId, until it is closed.
+    """Passes on the packets of one MsgId until it is closed.
 
     Args:
         bus: the bus.
-        msg_id: the packets.
-        name: for reports.
-        take: gets each packet.
+        msg_id: the MsgId.
+        name: name for reports.
+        take: called with each packet.
 
     Raises:
-        CfeError: CFE_SB_MAX_MSGS_MET: the bus has no room for another MsgId.
+        CfeError: CFE_SB_MAX_MSGS_MET if the bus has no room for another MsgId.
     """
 
     __slots__ = ("_route",)
@@ -45,7 +45,7 @@ class Outlet(Pipe):
         self._route.add(Destination(self, NO_LIMIT, LOCAL, None))
 
     def close(self, value: object = None) -> None:
-        """No more packets."""
+        """Stop passing on packets."""
         destination = self._route.find(self)
         if destination is not None:
             self._route.remove(destination)
@@ -61,7 +61,7 @@ class _Passage(deque[Any]):
         self._take = take
 
     def append(self, item: Any) -> None:
-        """A packet comes in, and goes out."""
+        """Pass on an incoming packet."""
         packet, destination = item
         self._bus.hand_on(packet, destination)
         self._take(packet)

@@ -1,7 +1,7 @@
-"""Event ids of the Software Bus (cfe_sb_eventids.h) and the types its events have.
+"""Event ids of the Software Bus (cfe_sb_eventids.h) and the types of its events.
 
-Some never arise here: a hash collision (23) without a hash, null pointers (59, 63, 66), a lack of OSAL queues (70), and
-packets that the mission's own checks refuse (71, 72), of which there are none, as in NASA's default.
+Some events never occur here: a hash collision (23) without a hash, null pointers (59, 63, 66), a lack of OSAL queues
+(70), and packets refused by a mission's own checks (71, 72), of which there are none, as in NASA's default.
 """
 
 from __future__ import annotations

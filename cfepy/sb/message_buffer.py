@@ -8,8 +8,8 @@ from cfepy.ports import Block
 class MessageBuffer(bytearray):
     """A message that is filled in place and then sent or released (CFE_SB_Buffer_t).
 
-    `app_id` is the application that it goes back from when that ends, `block` its memory in the pool, `allocated` how
-    many bytes that has, `number` what tells it from others of the same content.
+    `app_id` is the application that loses it when it ends. `block` is its memory in the pool, and `allocated` the size
+    of it. `number` distinguishes it from others with the same content.
     """
 
     __slots__ = ("allocated", "app_id", "block", "number")

@@ -1,18 +1,17 @@
-"""The life of packet objects, told to a listener: made, put into pipes, taken out or dropped, gone with a pipe.
+"""The lifecycle of packet objects for a listener: made, put into pipes, taken out or dropped, deleted with a pipe.
 
-`listened` makes a class of Software Bus that tells a `PacketListener`. It is for code that keeps something for each
-packet on its way, such as an image of it in the memory of compiled applications, and must know when no application can
-use it any more. A bus without listener is not changed, and pays nothing.
+`listened` makes a Software Bus class that notifies a `PacketListener`. It is for code that keeps data for each packet
+in transit, such as an image in the memory of compiled applications. Such code must know when no application can use the
+packet any more. A bus without a listener is unchanged and pays nothing.
 
-A packet is `made` once, by a transmission, before it is handed to its first receiver. For each pipe that it should go
-to it is then either `put` or `dropped`; `sent` says that there are no more of these. A packet that was put into a pipe
-leaves it by exactly one of three: it is `taken` by a receiver, `dropped` when the pipe makes room for a newer one, or
-among those of which `pipe_gone` tells. Tasks change in between: a receiver that is more urgent than the sender has
-`taken` the packet before the next pipe gets it.
+A packet is `made` once, by a transmission, before its first receiver gets it. Then it is either `put` or `dropped` for
+each of its pipes, and `sent` marks the end of this. A packet in a pipe leaves it in exactly one of three ways: it is
+`taken` by a receiver, `dropped` for a newer packet, or in the list of `pipe_gone`. Tasks can switch in between: a
+receiver more urgent than the sender has `taken` the packet before the next pipe gets it.
 
-Two cases are out of the ordinary. A task that is ended when it was woken with a packet and has not run yet takes the
-packet along; `pipe_gone` tells of the pipe later, so count by pipe. And a packet that a fault plan changes where it is
-taken out is another object than the one that was put; for that object `made` was not called.
+There are two special cases. A task that is ended after it was woken with a packet, and before it ran, takes the packet
+along. `pipe_gone` reports the pipe later, so count by pipe. And if a fault plan changes a packet when it is taken out,
+the result is a different object, for which `made` was not called.
 """
 
 from __future__ import annotations
@@ -28,38 +27,38 @@ from cfepy.sb.routing import Destination, PutHook
 
 
 class PacketListener(Protocol):
-    """What is told of packets, in the task that sends, receives or deletes."""
+    """The notifications about packets, called in the task that sends, receives or deletes."""
 
     def made(self, packet: bytes) -> None:
-        """The bus made this object for a transmission of the running task; all receivers get this very object."""
+        """Handle a new packet object of the running task's transmission; all receivers get this object."""
 
     def put(self, packet: bytes, pipe: Pipe) -> None:
-        """It is about to be put into a pipe, or to be handed to a task that waits there."""
+        """Handle a packet that is about to be put into a pipe, or passed to a task that waits there."""
 
     def dropped(self, packet: bytes, pipe: Pipe) -> None:
-        """It did not get into a pipe (message limit, full, deleted meanwhile), or had to leave it for a newer one."""
+        """Handle a packet that did not get into a pipe (message limit, full, deleted), or left it for a newer one."""
 
     def sent(self, packet: bytes) -> None:
-        """The transmission is over: it will be put into no more pipes."""
+        """Handle the end of a transmission: the packet will be put into no more pipes."""
 
     def taken(self, packet: bytes, pipe: Pipe) -> None:
-        """The running task took it out of a pipe."""
+        """Handle a packet that the running task took from a pipe."""
 
     def pipe_gone(self, pipe: Pipe, packets: list[bytes]) -> None:
-        """A pipe was deleted, with these packets still in it, oldest first."""
+        """Handle a deleted pipe, with the packets still in it, the oldest first."""
 
 
 LONGEST_MARK = 6
-"""Bytes: a record of the trace with more is a packet."""
+"""A longer record of the trace is a packet, in bytes."""
 
 
 def listened(base: type[SoftwareBus], listener: PacketListener) -> type[SoftwareBus]:
-    """A class of Software Bus that tells a listener of packets.
+    """Return a Software Bus class that notifies a listener of packets.
 
     Args:
-        base: the class to start from. Classes with faults or observers are derived from the one that this makes, so
-            that the listener sees the packets that go into pipes.
-        listener: is told. It must not use the bus, nor wait.
+        base: the class to derive from. Classes with faults or observers must be derived from the result, so that the
+            listener sees the packets that really go into pipes.
+        listener: the listener. It must not use the bus or wait.
     """
 
     class ListenedBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
@@ -70,13 +69,13 @@ def listened(base: type[SoftwareBus], listener: PacketListener) -> type[Software
 
         def __init__(self, *args: Any) -> None:
             super().__init__(*args)
-            self._transmissions: dict[Task, list[bytes | None]] = {}  # of each task; the innermost is the last
+            self._transmissions: dict[Task, list[bytes | None]] = {}  # by task; the innermost is the last
             self._record_before = self._record
             self._record = self._recorded
             self.put_hook = _Telling(self._put, self.put_hook)
 
         def _recorded(self, record: bytes) -> None:
-            """Get what goes into the trace, which is a packet at the moment before the first receiver gets it."""
+            """Get each record of the trace; a packet is recorded before its first receiver gets it."""
             if self._record_before is not None:
                 self._record_before(record)
             if len(record) > LONGEST_MARK:
@@ -84,13 +83,13 @@ def listened(base: type[SoftwareBus], listener: PacketListener) -> type[Software
                 listener.made(record)
 
         def _put(self, pipe: Pipe) -> None:
-            """A packet is about to go into a pipe."""
+            """Handle a packet that is about to go into a pipe."""
             packet = self._packet_of_caller()
             if packet is not None:
                 listener.put(packet, pipe)
 
         def _packet_of_caller(self) -> bytes | None:
-            """The packet of the innermost transmission that the running task is in."""
+            """Return the packet of the innermost transmission of the running task."""
             under_way = self._transmissions.get(self.kernel.current)
             return under_way[-1] if under_way else None
 
@@ -141,7 +140,7 @@ def listened(base: type[SoftwareBus], listener: PacketListener) -> type[Software
 
 
 class _Telling(PutHook):
-    """Tells a bus of each packet that is about to go into a pipe."""
+    """Notifies a bus of each packet that is about to go into a pipe."""
 
     def __init__(self, told: Callable[[Pipe], None], inner: PutHook | None) -> None:
         super().__init__(inner)

@@ -24,7 +24,7 @@ ENABLE_SUB_REPORTING_CC = 9
 DISABLE_SUB_REPORTING_CC = 10
 SEND_PREV_SUBS_CC = 11
 
-SUBSCRIPTION, UNSUBSCRIPTION = 0, 1  # SubType of a subscription report; the bus never sends the second
+SUBSCRIPTION, UNSUBSCRIPTION = 0, 1  # SubType of a subscription report; the bus never sends the second one
 SUB_ENTRIES_PER_PKT = 20
 PIPES_IN_STATS = 32
 

@@ -7,24 +7,24 @@ from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.rtos import TIMEOUT, Kernel, Queue
 
 NOBODY_HEARD = object()
-"""In `Pipe.unheard`: a fault keeps the pipe full."""
+"""Marks in `Pipe.unheard` that a fault keeps the pipe full."""
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
 class Pipe(Queue):
-    """The queue and its owner.
+    """The queue of a pipe, with its owner.
 
-    `send_errors` counts what a message limit kept out, as NASA's SendErrors does; `overflows` what did not fit in. One
-    that `keeps_newest` makes room for a message by dropping the oldest one, as the queue of a ROS subscriber does.
-    Messages of the applications in `unheard` do not come in: its own, by an option of the pipe, and those of ROS nodes
-    that are not connected with it yet; with NOBODY_HEARD among them, none of anybody. One that `is_called` has its
-    reader come back without a message.
+    `send_errors` counts messages refused by a message limit, like NASA's SendErrors, and `overflows` those that did not
+    fit. A pipe that `keeps_newest` drops its oldest message to make room, as the queue of a ROS subscriber does.
+    Messages of the applications in `unheard` are refused: of its own application by a pipe option, and of ROS nodes not
+    connected yet. If NOBODY_HEARD is in it, all messages are refused. If `is_called`, the reader returns without a
+    message.
 
     Args:
-        kernel: where its readers wait.
-        depth: messages that fit in.
+        kernel: the kernel of its readers.
+        depth: maximum number of messages.
         name: unique on the bus.
-        owner: the application, as found in `Task.owner`; None outside any.
+        owner: the application, as in `Task.owner`; None outside any.
     """
 
     __slots__ = (
@@ -57,37 +57,37 @@ class Pipe(Queue):
         self.identify(0)
 
     def call_reader(self) -> None:
-        """Have the task that waits for a message, or is about to, come back without one."""
+        """Make the task that waits for a message, or is about to, return without one."""
         if self.waits:
             self.kernel.wake_all(self.waits, TIMEOUT)
         else:
             self.is_called = True
 
     def ignore(self, sender: object) -> None:
-        """Messages of this application do not come in from now on."""
+        """Refuse messages of an application from now on."""
         if sender not in self.unheard:
             self.unheard = (*self.unheard, sender)
 
     def heed(self, sender: object) -> None:
-        """They come in again."""
+        """Accept messages of an application again."""
         self.unheard = tuple(each for each in self.unheard if each is not sender)
 
     @property
     def is_filled(self) -> bool:
-        """Whether it takes no message, not even for a reader that waits, and is nevertheless there."""
+        """Whether the pipe exists but accepts no message, not even for a waiting reader."""
         return NOBODY_HEARD in self.unheard
 
     def identify(self, pipe_id: int) -> None:
-        """Give the pipe the id under which its table keeps it."""
+        """Give the pipe the id of its table."""
         self.pipe_id = pipe_id
         self.receive_mark = trace.mark(trace.RECEIVE, pipe_id)
         self.drop_mark = trace.mark(trace.DROP, pipe_id)
 
     @property
     def dropped(self) -> int:
-        """Messages that did not come in."""
+        """The number of messages that were refused."""
         return self.send_errors + self.overflows
 
     def is_closed(self) -> bool:
-        """Whether the pipe was deleted: nothing fits in any more."""
+        """Return whether the pipe was deleted and has no room any more."""
         return self.depth == 0 and not self.is_filled

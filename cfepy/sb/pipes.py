@@ -1,4 +1,4 @@
-"""Pipes of the Software Bus: making, deleting, naming them, and their options (cfe_sb_api.c, first half)."""
+"""Pipes of the Software Bus: create, delete and name them, and their options (cfe_sb_api.c, first half)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cfepy.status import (
 )
 
 PIPEOPTS_IGNOREMINE = 1
-POINTER_BYTES = 4  # what is in a queue is the address of a buffer; boards whose RAM is counted have 32 bits
+POINTER_BYTES = 4  # a queue holds addresses of buffers; boards with limited RAM have 32 bits
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
@@ -26,14 +26,14 @@ class PipeServices(BufferServices):
     """The CFE_SB_*Pipe* functions."""
 
     def create_pipe(self, depth: int, name: str | None, pointer: int | None = None) -> int:
-        """Make a pipe that belongs to the calling application (CFE_SB_CreatePipe).
+        """Create a pipe of the calling application (CFE_SB_CreatePipe).
 
-        The id is reserved before the name is looked at: a refused name uses up an id.
+        The id is reserved before the name is checked, so a refused name uses up an id.
 
         Args:
-            depth: messages that fit in, 1 to OS_QUEUE_MAX_DEPTH.
+            depth: maximum number of messages, 1 to OS_QUEUE_MAX_DEPTH.
             name: unique, at most 19 characters; None is C's NULL.
-            pointer: where C wants the id, for what is told of an error; None outside of C.
+            pointer: address of C's output variable, for the error text; None outside of C.
 
         Returns:
             The pipe id.
@@ -81,7 +81,7 @@ class PipeServices(BufferServices):
         """Delete a pipe of the calling application, its subscriptions and its messages (CFE_SB_DeletePipe).
 
         Raises:
-            CfeError: CFE_SB_BAD_ARGUMENT: no such pipe, or it belongs to another application.
+            CfeError: CFE_SB_BAD_ARGUMENT if the pipe does not exist or belongs to another application.
         """
         pipe = self.find_pipe(pipe_id)
         if pipe is None:
@@ -94,7 +94,7 @@ class PipeServices(BufferServices):
         self._report_deleted(pipe, pipe.app_name)
 
     def remove_pipe(self, pipe: Pipe) -> None:
-        """Delete a pipe without asking whose it is: also at clean-up of an application."""
+        """Delete a pipe without checking its owner, also for the cleanup of an application."""
         for route in self.routes.values():
             destination = route.find(pipe)
             if destination is not None:
@@ -102,7 +102,7 @@ class PipeServices(BufferServices):
         self.pipes.delete(pipe.pipe_id)
         self.ports.memory.release(pipe.claim)
         pipe.heed(NOBODY_HEARD)
-        pipe.depth = 0  # so that a transmission that is under way finds it full, and no longer there
+        pipe.depth = 0  # a transmission in progress then finds it full, and deleted
         pipe.close(None)
 
     def _report_deleted(self, pipe: Pipe, owner: str) -> None:
@@ -113,7 +113,7 @@ class PipeServices(BufferServices):
 
         Args:
             pipe_id: the pipe.
-            opts: 0 or PIPEOPTS_IGNOREMINE: messages of the owning application do not come in.
+            opts: 0 or PIPEOPTS_IGNOREMINE: messages of the owning application are refused.
         """
         pipe = self.find_pipe(pipe_id)
         if pipe is None:
@@ -122,7 +122,7 @@ class PipeServices(BufferServices):
         if self.is_foreign(pipe):
             text = f"Pipe Opts Set Error: Caller({self.caller_name()}) is not the owner of pipe {pipe_id}"
             raise self._opts_error(ev.SETPIPEOPTS_OWNER_ERR_EID, text)
-        pipe.opts = opts & 0xFF  # C takes 8 bits
+        pipe.opts = opts & 0xFF  # C has 8 bits
         if pipe.opts & PIPEOPTS_IGNOREMINE:
             pipe.ignore(pipe.owner)
         else:
@@ -131,7 +131,7 @@ class PipeServices(BufferServices):
         self.report(ev.SETPIPEOPTS_EID, ev.DEBUG, text)
 
     def get_pipe_opts(self, pipe_id: int) -> int:
-        """The options of a pipe (CFE_SB_GetPipeOpts)."""
+        """Return the options of a pipe (CFE_SB_GetPipeOpts)."""
         pipe = self.find_pipe(pipe_id)
         if pipe is None:
             text = f"Pipe Opts Error:Bad Argument,PipeId {pipe_id},Requestor {self.caller_name()}"
@@ -140,14 +140,14 @@ class PipeServices(BufferServices):
         return pipe.opts
 
     def get_pipe_name(self, pipe_id: int) -> str:
-        """The name of a pipe (CFE_SB_GetPipeName)."""
+        """Return the name of a pipe (CFE_SB_GetPipeName)."""
         pipe = self.find_pipe(pipe_id)
         if pipe is None:
             raise CfeError(CFE_SB_BAD_ARGUMENT, self.report_nameless(pipe_id))
         return pipe.name
 
     def get_pipe_id_by_name(self, name: str) -> int:
-        """The id of a named pipe (CFE_SB_GetPipeIdByName)."""
+        """Return the id of a named pipe (CFE_SB_GetPipeIdByName)."""
         for pipe in self.pipes:
             if pipe.name == name:
                 self.report(ev.GETPIPEIDBYNAME_EID, ev.DEBUG, f"PipeIdByName name={name} id={pipe.pipe_id}")
@@ -158,19 +158,19 @@ class PipeServices(BufferServices):
         raise CfeError(CFE_SB_BAD_ARGUMENT, text)
 
     def pipe_id_to_index(self, pipe_id: int) -> int:
-        """Slot number of a pipe, 0 to the number of pipes less one (CFE_SB_PipeId_ToIndex).
+        """Return the slot number of a pipe, from 0 (CFE_SB_PipeId_ToIndex).
 
         Raises:
-            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID: it is no pipe's id. That the pipe exists is not checked.
+            CfeError: CFE_ES_ERR_RESOURCEID_NOT_VALID if it is not a pipe id; the pipe need not exist.
         """
         return to_index(pipe_id, SB_PIPEID_BASE, self.config.sb_max_pipes)
 
     def cleanup_app(self, app_id: int) -> None:
-        """Delete every pipe of an application that ends, and take back its buffers (CFE_SB_CleanUpApp)."""
+        """Delete every pipe of an application that ends, and release its buffers (CFE_SB_CleanUpApp)."""
         for pipe in list(self.pipes):
             if pipe.app_id == app_id:
                 self.remove_pipe(pipe)
-                self._report_deleted(pipe, "")  # its record is reserved by now, so NASA's finds no name
+                self._report_deleted(pipe, "")  # its record is reserved by now, so NASA's code finds no name
         self.release_buffers_of(app_id)
 
     def _opts_error(self, event_id: int, text: str) -> CfeError:

@@ -1,7 +1,7 @@
 """The Software Bus application (cfe_sb_task.c, cfe_sb_dispatch.c): command pipe, telemetry, and files about the bus.
 
-The files tell routes, pipes and the map of MsgIds. The background task of Executive Services writes them, record by
-record, with the bus as it is at that moment. One file can be on its way at a time.
+The files list routes, pipes and the map of MsgIds. The background task of Executive Services writes them record by
+record, with the state of the bus at that moment. Only one file can be written at a time.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ Getter = Callable[[int], tuple[bytes, bool]]
 
 
 class SbTask:
-    """The core application CFE_SB on a bus."""
+    """The core application CFE_SB."""
 
     def __init__(self, bus: SoftwareBus) -> None:
         self.bus = bus
@@ -61,10 +61,10 @@ class SbTask:
             (pk.DISABLE_SUB_REPORTING, self._disable_reports),
             (pk.SEND_PREV_SUBS, self._send_previous),
         )
-        self.commands.handle(pk.SEND_HK, self._send_housekeeping, any_length=True)  # NASA's does not look
+        self.commands.handle(pk.SEND_HK, self._send_housekeeping, any_length=True)  # NASA's code does not check it
 
     def task_main(self) -> None:
-        """The main task of CFE_SB (CFE_SB_TaskMain)."""
+        """Run the main task of CFE_SB (CFE_SB_TaskMain)."""
         ports = self.ports
         ports.es.perf_log_entry(MAIN_PERF_ID)
         self.bus.app_id = ports.es.get_app_id()
@@ -80,7 +80,7 @@ class SbTask:
         serve(ports, self.bus.config, pipe, MAIN_PERF_ID, self.process)
 
     def process(self, packet: bytes) -> None:
-        """Handle one packet of the command pipe (CFE_SB_ProcessCmdPipePkt)."""
+        """Handle a packet of the command pipe (CFE_SB_ProcessCmdPipePkt)."""
         done = self.commands.dispatch(packet)
         if done.outcome == DONE:
             return
@@ -155,7 +155,7 @@ class SbTask:
     # -- telemetry -------------------------------------------------------------------------------------------------
 
     def housekeeping(self) -> dict[str, int]:
-        """The fields of the housekeeping packet; 8-bit counters wrap as NASA's do."""
+        """Return the fields of the housekeeping packet; 8-bit counters wrap, as in NASA's code."""
         counters = self.bus.counters
         used, _ = self.bus.note_peaks()
         names = {
@@ -181,7 +181,7 @@ class SbTask:
         return {name: value & 0xFF for name, value in names.items()} | wide
 
     def statistics(self) -> dict[str, object]:
-        """The fields of the statistics packet."""
+        """Return the fields of the statistics packet."""
         bus, config = self.bus, self.bus.config
         used, buffers = bus.note_peaks()
         return {
@@ -213,7 +213,7 @@ class SbTask:
 
 
 class _Kind(NamedTuple):
-    """One of the three: text and subtype of its header, name when the command gives none, where records come from."""
+    """One of the three files: text and subtype of its header, its default name, and the source of its records."""
 
     description: str
     subtype: int
@@ -222,10 +222,10 @@ class _Kind(NamedTuple):
 
 
 class BusFiles:
-    """Handlers of the three commands.
+    """Handles the three commands that write files.
 
     Args:
-        bus: what is written.
+        bus: the bus to write about.
     """
 
     def __init__(self, bus: SoftwareBus) -> None:
@@ -273,10 +273,10 @@ class BusFiles:
         self._bus.ports.fs.background_file_dump_request(meta)
         self._last = meta
 
-    # -- records: the bytes, and whether they are the last ---------------------------------------------------------
+    # -- records: the bytes, and whether it is the last record ---------------------------------------------------------
 
     def routing_record(self, number: int) -> tuple[bytes, bool]:
-        """All destinations of a route, newest first (CFE_SB_WriteRouteInfoDataGetter)."""
+        """Return all destinations of a route, the newest first (CFE_SB_WriteRouteInfoDataGetter)."""
         routing = self._bus.routing
         entries: list[bytes] = []
         throttle = Throttle(number)
@@ -297,7 +297,7 @@ class BusFiles:
         ]
 
     def pipe_record(self, number: int) -> tuple[bytes, bool]:
-        """The pipe in a slot of the pipe table, nothing for a free slot (CFE_SB_WritePipeInfoDataGetter)."""
+        """Return the pipe in a slot of the pipe table, or no bytes for a free slot (CFE_SB_WritePipeInfoDataGetter)."""
         pipe = self._bus.pipes.at(number)
         is_last = number >= self._bus.pipes.capacity - 1
         if pipe is None:
@@ -316,7 +316,7 @@ class BusFiles:
         return entry, is_last
 
     def map_record(self, number: int) -> tuple[bytes, bool]:
-        """The MsgId of a route and its index in the routing table (CFE_SB_WriteMsgMapInfoDataGetter)."""
+        """Return the MsgId of a route and its index in the routing table (CFE_SB_WriteMsgMapInfoDataGetter)."""
         routing = self._bus.routing
         entries: list[bytes] = []
         throttle = Throttle(number)
@@ -328,10 +328,10 @@ class BusFiles:
         )
         return b"".join(entries), throttle.following == 0
 
-    # -- how it ended ----------------------------------------------------------------------------------------------
+    # -- the result ----------------------------------------------------------------------------------------------------
 
     def _ended(self, path: str, event: FileWriteEvent, status: int, record: int, size: int, position: int) -> None:
-        """Say so, in the name of SB: this runs in the background task (CFE_SB_BackgroundFileEventHandler)."""
+        """Report the result in the name of SB; this runs in the background task (CFE_SB_BackgroundFileEventHandler)."""
         if event == FileWriteEvent.COMPLETE:
             self._bus.report(ev.SND_RTG_EID, ev.DEBUG, f"{path} written:Size={position},Entries={record}")
         elif event == FileWriteEvent.CREATE_ERROR:

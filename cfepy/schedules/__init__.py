@@ -1,7 +1,7 @@
-"""Which task goes first: schedules by name, and the kernels and policies that follow them.
+"""The choice of the next task: schedules by name, and the kernels and policies that follow them.
 
-What belongs here decides between tasks that could run, or finds out what a decision depends on. A search through many
-schedules does not: that is `cfepy.extra.exploration`. The central file is `cfepy/schedules/schedule.py`.
+Code that decides between ready tasks, or finds out what a decision depends on, belongs here. The search through many
+schedules is in `cfepy.extra.exploration`. The central file is `cfepy/schedules/schedule.py`.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ __all__ = [
     "plain_name",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

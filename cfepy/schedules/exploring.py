@@ -1,8 +1,8 @@
 """A kernel that asks a policy at every scheduling point which task runs, to find failures that fifo never shows.
 
 Scheduling points are: each call of an app or a node into the API (`point`), each charge of virtual CPU time, each call
-that makes another task ready or changes a priority, and each wait. Taking candidate 0 every time gives exactly the run
-of `Kernel`, which pays nothing for this module.
+that makes another task ready or changes a priority, and each wait. Always taking candidate 0 gives exactly the run of
+`Kernel`, which pays nothing for this module.
 """
 
 from __future__ import annotations
@@ -16,30 +16,31 @@ from cfepy.rtos import SLICE_NS, Decision, Kernel, Policy, Question, Task
 from cfepy.schedules.moves import stable_name
 from cfepy.units import time_word
 
-CONNECTION_DELAYS = 8  # of a connection that are tried, at even distances up to the longest, besides the usual one
+CONNECTION_DELAYS = 8  # delays of a connection to try, evenly spaced up to the longest, in addition to the usual one
 
 
 class CallObserver(Protocol):
-    """Is told of the calls that are scheduling points, in the task that makes them; it must not wait, nor call back."""
+    """Called for the calls that are scheduling points, in the task that makes them; it must not wait or call back."""
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
-        """Others have had their chance, and the call begins now.
+        """Handle the start of a call, after other tasks had their chance to run.
 
         Args:
-            subject: whose method it is: a service of cFE, or a lock of a node; `__init__` says that this was made.
+            subject: the object of the method: a service of cFE, or a lock of a node; `__init__` means that it was
+                created.
             call: the method's name.
-            args: what it gets.
+            args: its arguments.
         """
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
-        """It has come to its end, with this result."""
+        """Handle the end of a call with its result."""
 
     def failed(self, subject: Any, call: str) -> None:
-        """It has raised something instead."""
+        """Handle an exception from a call."""
 
 
 class _All:
-    """Several observers, one after the other."""
+    """Several observers, called in order."""
 
     def __init__(self, observers: Sequence[CallObserver]) -> None:
         self._observers = observers
@@ -58,15 +59,15 @@ class _All:
 
 
 class ExploringKernel(Kernel):
-    """A kernel whose choices are a policy's.
+    """A kernel that lets a policy choose.
 
     Args:
         context: see `Kernel`, as for the arguments not named here.
         policy: decides which task runs next.
 
     Attributes:
-        observer: is told of calls; None for nobody. `watch` adds one.
-        on_wake: is told of a task that the running one lets go on; None for nobody.
+        observer: called for calls; None for none. `watch` adds one.
+        on_wake: called with a task that the running one wakes; None for none.
     """
 
     def __init__(
@@ -87,20 +88,21 @@ class ExploringKernel(Kernel):
         self._any = policy.any_priority
         self._hold_ns = policy.hold_ns
         self._decisions = 0
-        self._going_on: Task | None = None  # the task that was put in front just now: it could go on
-        self._left: Task | None = None  # the task that gave up its turn, or ought to, just now
-        self._hushed: dict[Task, None] = {}  # tasks that make others ready and go on, and those that owe a point
+        self._going_on: Task | None = None  # the task that was just put in front: it could continue
+        self._left: Task | None = None  # the task that just gave up its turn, or should have
+        # tasks that wake others and continue, and those with a postponed scheduling point
+        self._hushed: dict[Task, None] = {}
         self._owing: dict[Task, None] = {}
-        self._early: dict[str, None] = {}  # names of tasks that may start before their time
-        self._busy: Task | None = None  # the task that used the CPU last, and how much it may use in one go
+        self._early: dict[str, None] = {}  # names of tasks that may start early
+        self._busy: Task | None = None  # the task that used the CPU last, and how long it may use it at once
         self._busy_until = 0
 
     def watch(self, observer: CallObserver) -> None:
-        """Have an observer told of calls, besides those that are."""
+        """Add an observer of calls."""
         self._look((*self._watching, observer))
 
     def unwatch(self, observer: CallObserver) -> None:
-        """Tell an observer of no more calls."""
+        """Remove an observer of calls."""
         self._look(tuple(each for each in self._watching if each is not observer))
 
     def _look(self, watching: tuple[CallObserver, ...]) -> None:
@@ -108,14 +110,14 @@ class ExploringKernel(Kernel):
         self.observer = None if not watching else watching[0] if len(watching) == 1 else _All(watching)
 
     def tell(self, subject: object, call: str, args: tuple[object, ...] = ()) -> None:
-        """Observers are told of it as of a call that begins."""
+        """Report an action to the observers as the start of a call."""
         if self.observer is not None:
             self.observer.called(subject, call, args)
 
     # -- scheduling points -----------------------------------------------------------------------------------------
 
     def point(self) -> None:
-        """The current task calls something: others may get in before that."""
+        """Let other tasks run before a call of the current task."""
         task = self.current
         if self._hushed and self._is_quiet(task):
             self._owing[task] = None
@@ -123,7 +125,7 @@ class ExploringKernel(Kernel):
         if self._hold_ns or self._early:
             if task is self.host or task.dying or not self._has_choice(task):
                 return
-        else:  # most calls find no task that could get in: they end here
+        else:  # for most calls no other task can run: they end here
             ready = self.ready
             if not ready or not (self._any or ready[0][0] <= task.priority) or task.dying or task is self.host:
                 return
@@ -133,16 +135,16 @@ class ExploringKernel(Kernel):
             self._switch(task, following)
 
     def preempt(self) -> None:
-        """Others may run now, more urgent ones as always."""
+        """Let other tasks run now; more urgent ones always do."""
         self.point()
 
     def hush(self, call: Callable[..., Any], *args: Any, **options: Any) -> Any:
-        """Make a call that others get in after, by `settle`, and not within, unless they are more urgent.
+        """Make a call during which only more urgent tasks may run; the others may run after it, at `settle`.
 
         Args:
-            call: makes tasks ready, and does not wait.
-            args: of the call.
-            options: of the call.
+            call: the call; it makes tasks ready and does not wait.
+            args: arguments of the call.
+            options: keyword arguments of the call.
         """
         task = self.current
         self._hushed[task] = None
@@ -153,21 +155,25 @@ class ExploringKernel(Kernel):
 
     @property
     def is_hushed(self) -> bool:
-        """Whether nobody gets in at a point of the current task."""
+        """Whether other tasks cannot run at a scheduling point of the current task."""
         return bool(self._hushed) and self._is_quiet(self.current)
 
     def _is_quiet(self, task: Task) -> bool:
-        """Whether nobody is to get in now: the running task is in a hushed call, and nobody more urgent is ready."""
+        """Return whether no other task may run now: the running task is in a hushed call, and no more urgent task is
+        ready.
+        """
         return task in self._hushed and not (self.ready and self.ready[0][0] < task.priority)
 
     def settle(self) -> None:
-        """The current task has made others ready in hushed calls: they get their chance now."""
+        """Let the tasks run that the current task woke in hushed calls."""
         if self.current in self._owing:
             del self._owing[self.current]
             self.point()
 
     def forgive(self) -> None:
-        """The current task is going to wait, or to end: others get their chance by that."""
+        """Drop the postponed scheduling point of a task that is about to wait or end, because others run then
+        anyway.
+        """
         self._owing.pop(self.current, None)
 
     def enqueue(self, task: Task, value: Any) -> None:
@@ -205,7 +211,9 @@ class ExploringKernel(Kernel):
             self._catch_up(task, duration_ns)
 
     def _catch_up(self, task: Task, duration_ns: int) -> None:
-        """As the base class, but equals get their chance each time, not only when the time slice is used up."""
+        """Handle time like the base class, but let tasks of equal priority run each time, not only after a
+        time slice.
+        """
         self._fire_due()
         paused = self.now > self._until
         if task.dying or not (paused or self._has_choice(task)):
@@ -233,7 +241,7 @@ class ExploringKernel(Kernel):
         )
 
     def _has_choice(self, task: Task) -> bool:
-        """Whether another task than the running one might go on from here."""
+        """Return whether another task could run from here."""
         ready = self.ready
         return (
             bool(ready and (self._any or ready[0][0] <= task.priority))
@@ -256,14 +264,14 @@ class ExploringKernel(Kernel):
         self._early.pop(self.current.name, None)
 
     def _starters(self, task: Task) -> list[Task]:
-        """The tasks of the same application that could start now instead of later."""
+        """Return the tasks of the same application that could start now instead of later."""
         owner = task.owner
         return [each for each in self.tasks if each.timer and each.owner is owner and each.name in self._early]
 
     # -- questions -----------------------------------------------------------------------------------------------------
 
     def connection_delay(self, publisher: str, subscriber: str, topic: str, usual_ns: int) -> int:
-        """The policy chooses, if connections are open to it."""
+        """Return the delay of a connection, which the policy chooses if connections are open to it."""
         assert self.policy is not None
         longest_ns = self.policy.connect_ns
         if not longest_ns:
@@ -292,11 +300,11 @@ class ExploringKernel(Kernel):
         self._left = task
 
     def _take(self) -> Task:
-        """Ask the policy if there is a choice; a pause of the run does not make it a second decision."""
+        """Ask the policy if there is a choice; a pause of the run does not count as another decision."""
         ready = self.ready
         while True:
             if len(ready) > 1:
-                ready.sort()  # a sorted list is a heap, and stays one without any of its items
+                ready.sort()  # a sorted list is a heap, and stays one if items are removed
             first = ready[0][2]
             if first is self.host:
                 return heappop(ready)[2]
@@ -319,7 +327,7 @@ class ExploringKernel(Kernel):
                 return self.host
 
     def _width(self) -> int:
-        """How many of the ready tasks, which are in order, are candidates."""
+        """Return the number of candidates among the ready tasks, which are sorted."""
         ready = self.ready
         if self._any:
             return len(ready)
@@ -330,7 +338,9 @@ class ExploringKernel(Kernel):
         return width
 
     def _ask(self, width: int, starters: list[Task], timer: int | None) -> int:
-        """Which of the first `width` ready tasks or the starters runs; one more answer is none before the timer."""
+        """Return which of the first `width` ready tasks or the starters runs; one more answer means none before the
+        timer.
+        """
         tasks = [*(entry[2] for entry in self.ready[:width]), *starters]
         number = self._decisions
         self._decisions = number + 1
@@ -339,7 +349,7 @@ class ExploringKernel(Kernel):
         return self.policy.choose(Decision(number, self.now, tasks, running, timer is not None, self._left))
 
     def _next_timer(self) -> int | None:
-        """When the next timer is due, if that is soon enough for a task to be held up until then."""
+        """Return the time of the next timer, if a task may be held up until then."""
         timers = self.timers
         while timers and timers[0][2].timer != timers[0][1]:
             heappop(timers)
@@ -347,11 +357,12 @@ class ExploringKernel(Kernel):
 
 
 class CallPointKernel(ExploringKernel):
-    """One that knows which tasks have called it lately, for points behind such calls; the arguments are those above.
+    """A kernel that records which tasks have called it, for scheduling points after such calls; see above for the
+    arguments.
 
     Attributes:
-        entered: tasks that have called, until somebody takes them out.
-        passed: how many calls there were.
+        entered: tasks that have called; the user removes them.
+        passed: number of calls.
     """
 
     def __init__(self, *arguments: Any) -> None:

@@ -1,6 +1,6 @@
-"""Which kernel a run gets: the plain one for first come, first served, one that asks for any other schedule.
+"""The kernel of a run: the plain one for first come, first served, and an exploring one for any other schedule.
 
-The plain kernel is nearly always the one, so the other is loaded when a policy is given.
+The plain kernel is nearly always used, so the other one is loaded only if a policy is given.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ def make_kernel(
     seed: int = 0,
     derived: Callable[[type[Kernel]], type[Kernel]] = lambda base: base,
 ) -> Kernel:
-    """The kernel for a run: the plain one without a policy.
+    """Return the kernel for a run: the plain one without a policy.
 
     Args:
         context: see `Kernel`, as for the arguments not named here.
         policy: decides which task runs next; None for first come, first served.
-        derived: gives the class of the kernel, made of the one that it would have been.
+        derived: derives the class of the kernel from the default one.
     """
     if policy is None:
         return derived(Kernel)(context, trace, tick_ns, switch_cost_ns, seed)

@@ -1,23 +1,23 @@
-"""Moves: what a schedule does otherwise than fifo, each told by what it is about and not by the number of a decision.
+"""Moves: deviations of a schedule from fifo. A move names the task and the call, not the number of a decision.
 
     ODOMETER.left_tic@650/add.publish=ODOMETER.right_ti
 
-says: from 650 ms of virtual time on, when ODOMETER.left_tic calls `publish` in its function `add` for the first time
-while ODOMETER.right_ti could run, ODOMETER.right_ti runs instead. All numbers of decisions change when a node calls one
-function more, or another task is there; this keeps its meaning. In full it is
+This move means: from 650 ms of virtual time on, the first time that ODOMETER.left_tic calls `publish` in its function
+`add` while ODOMETER.right_ti could run, ODOMETER.right_ti runs instead. Decision numbers change if a node calls one
+more function or there is another task. A move keeps its meaning. The full form is
 
     TASK[@MS[/PLACE][/N]]=OTHER
 
-TASK        the task that fifo would run: its name without the number that tasks of nodes have, `-2` behind it for the
-            second such task that lives; or the name of a question, such as `connection+of+/base+to+/arm+on+/enable`.
-MS          virtual time from which on occasions count, in ms; from the start where it is left out.
-PLACE       FUNCTION.CALL: the function of the mission in which it is, and what that calls; `-.CALL` in code that is not
-            the mission's; `next` where it is not running but the next to run. Left out, it does not matter.
-N           which of the occasions: those in which OTHER could run. Left out, it is the first.
+TASK        the task that fifo would run: its name without the number of node tasks, with `-2` for the second living
+            task of that name; or the name of a question, such as `connection+of+/base+to+/arm+on+/enable`.
+MS          virtual time in ms from which occasions count; from the start if missing.
+PLACE       FUNCTION.CALL: the current function of the mission, and the call it makes; `-.CALL` in code that is not the
+            mission's; `next` if the task is not running but would run next. Any place if missing.
+N           the number of the occasion among those where OTHER could run. The first if missing.
 OTHER       the task that runs instead, `hold` for none until the next timer, or the answer to the question.
 
-A space is written `+`, and what is not a letter, a digit or one of `_ . / -` is written as in an URL: `%23`. So no
-shell needs quotes around it.
+A space is written `+`. Characters other than letters, digits and `_ . / -` are written as in a URL: `%23`. So no shell
+needs quotes around a move.
 """
 
 from __future__ import annotations
@@ -44,14 +44,14 @@ _NO_FUNCTION = "-"
 
 
 class Move(NamedTuple):
-    """Not what fifo would do; see the module.
+    """A deviation from fifo; see the module.
 
     Attributes:
         subject: the task that fifo would run, or a question.
         chosen: the task that runs, HOLD, or the answer.
-        from_ms: virtual time from which on occasions count.
-        place: where the task is then; empty for anywhere.
-        number: which occasion, from 1.
+        from_ms: virtual time in ms from which occasions count.
+        place: place of the task then; empty for any.
+        number: number of the occasion, from 1.
     """
 
     subject: str
@@ -61,7 +61,7 @@ class Move(NamedTuple):
     number: int = 1
 
     def text(self) -> str:
-        """As it stands in a schedule; `Move.parse` gives it again."""
+        """Return the text of the move in a schedule, which `Move.parse` reads."""
         place = [] if not self.place else [NEXT if self.place == NEXT else _escaped(self.place)]
         number = [str(self.number)] if self.number > 1 else []
         is_anytime = not (self.from_ms or place or number)
@@ -70,10 +70,10 @@ class Move(NamedTuple):
 
     @classmethod
     def parse(cls, text: str) -> Move:
-        """The move that a text means.
+        """Return the move for a text.
 
         Raises:
-            ValueError: it means none.
+            ValueError: if the text is not a move.
         """
         match = _MOVE.fullmatch(text)
         if match is None:
@@ -105,21 +105,21 @@ def _unescaped(text: str) -> str:
 
 
 def plain_name(name: str) -> str:
-    """A task's name without the number that tasks of ROS nodes get in the order of their making."""
+    """Return a task's name without the creation number of tasks of ROS nodes."""
     return _NUMBER.sub("", name)
 
 
 def stable_name(task: Task, others: Iterable[Task]) -> str:
-    """What a task is called in moves, which hangs as little as can be on what else there is in the mission.
+    """Return the name of a task in moves, which depends as little as possible on the rest of the mission.
 
     Args:
-        task: which has just been made; its owner is known.
-        others: all that live.
+        task: a newly created task with its owner set.
+        others: all living tasks.
     """
     name = task.name
     if _NUMBER.search(name) is not None and task.owner is not None:
         head, dot, rest = plain_name(name).partition(".")
-        owner = str(getattr(task.owner, "name", head))  # of which a long name has only a part
+        owner = str(getattr(task.owner, "name", head))  # a task's name has only a part of a long owner name
         name = f"{owner if dot and owner.startswith(head) else head}{dot}{rest}"
     name = _ORDINAL.sub(lambda found: f".{found[0][1:]}", name)
     taken = {each.alias for each in others}
@@ -131,10 +131,10 @@ def stable_name(task: Task, others: Iterable[Task]) -> str:
 
 
 def place_of(frame: FrameType | None) -> str:
-    """Where the running task is: the innermost function of the mission's own, and what that calls.
+    """Return the place of the running task: the innermost function of the mission's own code, and the call it makes.
 
     Args:
-        frame: of whoever asks, in the task.
+        frame: a frame of the task, from the caller.
     """
     while frame is not None and frame.f_globals.get("__name__") != _ASKS:
         frame = frame.f_back
@@ -153,13 +153,13 @@ def place_of(frame: FrameType | None) -> str:
 
 
 class MoveNumbers:
-    """Names all that could be done otherwise in a run, as moves."""
+    """Names all possible deviations of a run as moves."""
 
     def __init__(self) -> None:
         self._counted: dict[tuple[str, str], tuple[int, Counter[str]]] = {}
 
     def moves(self, decision: Decision) -> tuple[Move, ...]:
-        """A move for each answer but fifo's; decisions are told in their order."""
+        """Return a move for each answer other than fifo's; call it for decisions in order."""
         subject, others = decision.alias, decision.alias_answers[1:]
         place = _place(decision, sys._getframe(1))
         now_ms = 0 if decision.question is not None else decision.now // NS_PER_MS
@@ -171,7 +171,7 @@ class MoveNumbers:
 
 
 class _Pending:
-    """A move that has not been made."""
+    """A move still to be made."""
 
     def __init__(self, move: Move) -> None:
         self.move = move
@@ -180,10 +180,10 @@ class _Pending:
 
 
 class MovesToMake:
-    """Moves, each until it is made.
+    """Moves, each kept until it is made.
 
     Args:
-        moves: which ones.
+        moves: the moves.
     """
 
     def __init__(self, moves: Iterable[Move]) -> None:
@@ -197,22 +197,22 @@ class MovesToMake:
 
     @property
     def left(self) -> list[Move]:
-        """Those that have not been made."""
+        """The moves that have not been made."""
         return [each.move for pending in self._pending.values() for each in pending]
 
     def concerns(self, subject: str, now_ns: int) -> bool:
-        """Whether there may be a move for a decision, which `answer` must then be asked."""
+        """Return whether there may be a move for a decision, so that `answer` must be called."""
         pending = self._pending.get(subject)
         return pending is not None and pending != [] and pending[0].from_ns <= now_ns
 
     def answer(self, subject: str, now_ns: int, others: Sequence[str], place: Callable[[], str]) -> int:
-        """What a decision comes to: 0 for what fifo does, else the number of another answer, from 1.
+        """Return the answer to a decision: 0 for fifo, otherwise the number of another answer, from 1.
 
         Args:
-            subject: what it is about, as moves call it.
-            now_ns: virtual time.
-            others: the answers that are not fifo's.
-            place: where the task is; asked when it matters.
+            subject: the subject of the decision, as in moves.
+            now_ns: virtual time in ns.
+            others: the answers other than fifo's.
+            place: returns the place of the task; called only if needed.
         """
         found: _Pending | None = None
         where = ""
@@ -232,10 +232,10 @@ class MovesToMake:
 
 
 class MovePolicy(Policy):
-    """Fifo but for some moves; one that is not possible is left out.
+    """Fifo except for some moves; impossible moves are skipped.
 
     Args:
-        moves: which ones.
+        moves: the moves.
         settings: the arguments of `Policy`.
     """
 

@@ -1,9 +1,9 @@
-"""`Points`: where code of a mission lets others run, besides the calls that it makes into cfepy.
+"""`Points`: places where mission code can be preempted, in addition to its calls into cfepy.
 
 lines                before each statement of a function
-attributes           before each access to what several tasks may share
-calls                after each call that came back from outside of the mission's code, too
-attributes,arm,util  the same, in the modules arm and util alone
+attributes           before each access to data that several tasks may share
+calls                after each call that returns from code outside the mission too
+attributes,arm,util  the same, only in the modules arm and util
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ _MODULE = re.compile(r"[\w.-]+")
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """Where others may run.
+    """The places where other tasks may run.
 
     Args:
-        kind: LINES, ATTRIBUTES or CALLS; empty for calls into cfepy alone, as ever.
-        modules: names of the files that it is about, without their suffix; none for all.
+        kind: LINES, ATTRIBUTES or CALLS; empty for calls into cfepy only.
+        modules: names of the files concerned, without their suffix; empty for all.
     """
 
     kind: str = ""
@@ -32,14 +32,14 @@ class Points:
 
     @classmethod
     def parse(cls, text: str, field: str = "--points") -> Points:
-        """The points that a text means; `:` may stand for the first comma.
+        """Return the points for a text; `:` may replace the first comma.
 
         Args:
-            text: see the module's; empty for none.
-            field: what is to be named as wrong.
+            text: see the module; empty for none.
+            field: the field to name in errors.
 
         Raises:
-            UsageError: it means none.
+            UsageError: if the text is invalid.
         """
         if not text:
             return cls()
@@ -52,11 +52,11 @@ class Points:
         return cls(kind, tuple(dict.fromkeys(each.removesuffix(".py") for each in modules)))
 
     def text(self) -> str:
-        """The text that `parse` gives these points for; empty for none."""
+        """Return the text from which `parse` makes these points; empty for none."""
         return ",".join((self.kind, *self.modules))
 
     def cover(self, file: str) -> bool:
-        """Whether they are in a source file."""
+        """Return whether a source file has points."""
         if not self.kind or not self.modules:
             return bool(self.kind)
         path = PurePath(file)

@@ -1,4 +1,4 @@
-"""`Schedule`: which policy a run has, as a text that a person can write, read and send to a colleague.
+"""`Schedule`: the policy of a run, as a text that you can write, read and send to a colleague.
 
     fifo                    first come, first served
     random:7                any of the candidates, by seed 7
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 ORDER = "order"
 SEEDED = ("random", "pct", "abreast")
-DEPTH = 3  # of PCT, where the text gives none
+DEPTH = 3  # default depth of PCT
 STEPS = 1000
 _TIME = re.compile(r"(\d+)(ns|us|ms|s)")
 _FORMS = (
@@ -47,23 +47,23 @@ _FORMS = (
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """Who runs next, where there is a choice.
+    """The rule for the choice of the next task.
 
     Args:
         kind: "fifo", "random", "pct", "abreast", "at", "moves" or "order".
-        seed: of random, pct and abreast.
-        depth: of the bugs pct looks for, at least 1.
-        steps: how many decisions pct expects of the run, at least 1.
-        deviations: pairs of decision and choice of at, in order.
-        moves: those of moves.
-        runs: pairs of a task's path and a number of order, which a search of orders makes, and no text means: see
-            `InOrder`. A run under it is one under an `at` as well.
+        seed: seed of random, pct and abreast.
+        depth: depth of the bugs that pct looks for, at least 1.
+        steps: number of decisions that pct expects in the run, at least 1.
+        deviations: for at: pairs of decision and choice, in order.
+        moves: for moves: the moves.
+        runs: for order: pairs of a task's path and a number, made by a search of orders, without a text form; see
+            `InOrder`. Such a run can also be expressed as an `at`.
         any_priority: see `Policy`.
         hold_ns: see `Policy`.
         connect_ns: see `Policy`.
         points: see `Policy`.
-        from_ns: virtual ns up to which it is fifo.
-        fair: decisions in which a task may be passed over (`Fair`); 0 for any number.
+        from_ns: virtual ns until which it is fifo.
+        fair: number of decisions in which a task may be passed over (`Fair`); 0 for no limit.
     """
 
     kind: str = "fifo"
@@ -82,14 +82,14 @@ class Schedule:
 
     @classmethod
     def parse(cls, text: str, seed: int = 0) -> Schedule:
-        """The schedule that a text means.
+        """Return the schedule for a text.
 
         Args:
-            text: see the module's.
+            text: see the module.
             seed: for `random`, `pct` and `abreast` without one.
 
         Raises:
-            UsageError: it means none.
+            UsageError: if the text is not a schedule.
         """
         if _LONG_NUMBER.search(text):
             raise UsageError("has a number of more than 30 digits; write a smaller one", field="--schedule")
@@ -109,7 +109,7 @@ class Schedule:
         raise _wrong(text)
 
     def text(self) -> str:
-        """The shortest text that `parse` gives this schedule for."""
+        """Return the shortest text from which `parse` makes this schedule."""
         words = [self.kind]
         if self.kind in SEEDED:
             words.append(str(self.seed))
@@ -134,7 +134,7 @@ class Schedule:
         return self.text()
 
     def policy(self) -> Policy | None:
-        """A policy for one run; None for fifo."""
+        """Return a policy for one run; None for fifo."""
         if self.kind == "fifo":
             return None
         from cfepy.rtos import Fair, From
@@ -143,7 +143,7 @@ class Schedule:
         return From(policy, self.from_ns) if self.from_ns else policy
 
     def _policy(self) -> Policy:
-        """That of the kind; fifo, the usual one, imports none."""
+        """Return the policy of the kind; fifo, the default, loads none."""
         from cfepy.rtos import PCT, Deviations, InOrder, SeededRandom
 
         if self.kind == "random":
@@ -164,39 +164,39 @@ class Schedule:
 
     @property
     def is_told(self) -> bool:
-        """Whether it says itself what it does otherwise than fifo, as a shrunk schedule does."""
+        """Whether it lists its deviations from fifo, as a shrunk schedule does."""
         return bool(self.deviations or self.moves)
 
     @property
     def settings(self) -> Settings:
-        """Those of its policy."""
+        """The settings of its policy."""
         return self.any_priority, self.hold_ns, self.connect_ns, self.points
 
     def at(self, deviations: Mapping[int, int]) -> Schedule:
-        """The schedule that takes some decisions otherwise than fifo, with this one's options.
+        """Return a schedule that deviates from fifo in some decisions, with this one's options.
 
         Args:
-            deviations: choice by number of the decision, as `NotingPolicy.deviations` has them.
+            deviations: choices by decision number, as in `NotingPolicy.deviations`.
         """
         return replace(self._bare("at"), deviations=tuple(sorted(deviations.items())))
 
     def by_moves(self, moves: Iterable[Move]) -> Schedule:
-        """The schedule that makes some moves and is fifo's otherwise, with this one's options."""
+        """Return a schedule that makes some moves and is fifo otherwise, with this one's options."""
         return replace(self._bare("moves"), moves=tuple(moves))
 
     def in_order(self, runs: Iterable[tuple[str, int]]) -> Schedule:
-        """The schedule in which tasks run in an order, with this one's options."""
+        """Return a schedule that runs tasks in an order, with this one's options."""
         return replace(self._bare(ORDER), runs=tuple(runs))
 
     def _bare(self, kind: str) -> Schedule:
         return replace(self, kind=kind, seed=0, depth=DEPTH, steps=STEPS, deviations=(), moves=(), runs=())
 
     def with_points(self, points: str) -> Schedule:
-        """The same with other points, as `Points.text` has them; fifo without a change of order, if it is fifo."""
+        """Return the same schedule with other points (see `Points.text`); fifo keeps its order of tasks."""
         return replace(self.at({}) if points and self.kind == "fifo" else self, points=points)
 
     def with_seed(self, seed: int) -> Schedule:
-        """The same with another seed."""
+        """Return the same schedule with another seed."""
         return replace(self, seed=seed)
 
 
@@ -205,7 +205,7 @@ _HIGHEST = {"depth": 10_000, "steps": 10**12}
 
 
 def _option(field: str) -> dict[str, Any] | None:
-    """What a field at the end of the text sets, if it is an option."""
+    """Return the values that an option at the end of the text sets, or None if it is not an option."""
     if field == "any":
         return {"any_priority": True}
     name, _, time = field.partition("=")

@@ -1,8 +1,7 @@
-"""A policy under which tasks go on side by side, all of them or a few: what equals do at the same time collides.
+"""A policy that runs tasks side by side, all or a few of them, so that simultaneous actions of similar tasks collide.
 
-Random choices let each of many tasks come somewhere else, and PCT lets one run until a change; that six tasks have each
-done one thing, and none of them two, or that of twenty tasks the first and the last overlap and no others, is rare
-under both.
+Random choices bring many tasks to many different places, and PCT runs one task until a change. Under both it is rare
+that six tasks have each done exactly one step, or that only the first and the last of twenty tasks overlap.
 """
 
 from __future__ import annotations
@@ -16,24 +15,24 @@ from types import CodeType, FrameType
 from cfepy.interpreter.own_code import is_own_code
 from cfepy.rtos import HOLD_ODDS, STARTERS_ODDS, Decision, Policy, Seldom, StartersFirst, Task
 
-GROUPS = (2, 2, 3, 0, 0, 0)  # how many tasks take part; 0 for all
-STRAY_ODDS = 2 / 3  # of groups whose tasks take their turns at random, not one after the other
-MIX_ODDS = 1 / 2  # of schedules in whose groups tasks that do the same come after one that does something else
-LOOKS = 3  # turns in which a task may come to code of the mission's own: what it does is known by that
-SPREADS = (0, 0, 2, 6)  # turns by which a task may come later than the others
+GROUPS = (2, 2, 3, 0, 0, 0)  # number of tasks that take part; 0 for all
+STRAY_ODDS = 2 / 3  # share of groups whose tasks take turns at random, not in order
+MIX_ODDS = 1 / 2  # share of schedules whose groups put tasks with the same code after a task with different code
+LOOKS = 3  # turns within which a task may reach the mission's own code, which identifies its work
+SPREADS = (0, 0, 2, 6)  # turns by which a task may be later than the others
 
 
 class Abreast(Policy):
-    """Lets tasks take turns, the one that has had the fewest first; of several the seed chooses.
+    """Lets tasks take turns; the one with the fewest turns comes first, and the seed decides between equals.
 
-    The seed also draws whether a task that starts others goes on before they do, until it waits; whether all candidates
-    take part or only the first two or three of an order, in which the others come when these wait, and whether those
-    few take turns or go at random, and whether they are to do different things, as a reader and one of many writers;
-    by how many turns tasks come later than their equals. A task that uses the CPU for
-    a whole time slice and starts nobody in it, as one that polls does, goes to the end of the order.
+    The seed draws further properties. A task that starts others may continue before them until it waits. All candidates
+    take part, or only the first two or three of an order; the others run while these wait. These few take turns or run
+    at random, and may have to run different code, such as a reader and one of many writers. Tasks may be later than
+    similar ones by some turns. A task that uses the CPU for a whole time slice without starting another task, as a
+    polling task does, goes to the end of the order.
 
     Args:
-        seed: of all that is drawn.
+        seed: seed of all that is drawn.
         any_priority: see `Policy`.
         hold_ns: see `Policy`.
         connect_ns: see `Policy`.
@@ -51,7 +50,7 @@ class Abreast(Policy):
         self._strays = bool(self._group) and random.random() < STRAY_ODDS
         self._is_mixed = bool(self._group) and random.random() < MIX_ODDS
         self._spread = random.choice(SPREADS)
-        self._code: dict[Task, CodeType | None] = {}  # the function of the mission's own that a task is in
+        self._code: dict[Task, CodeType | None] = {}  # the function of the mission's own code that a task executes
         self._looks: dict[Task, int] = {}
         self._turns: dict[Task, int] = {}
         self._ranks: dict[Task, float] = {}
@@ -81,11 +80,11 @@ class Abreast(Policy):
             least = min(self._turns[task] for task in tasks)
             tasks = [task for task in tasks if self._turns[task] == least]
         chosen = tasks[int(random() * len(tasks))]
-        self._turns[chosen] += chosen.started  # to begin is no turn
+        self._turns[chosen] += chosen.started  # starting does not count as a turn
         return decision.tasks.index(chosen)
 
     def _meet(self, tasks: Sequence[Task]) -> None:
-        """Who is new, or has waited, has had as many turns as the others at least."""
+        """Give a task that is new or has waited at least as many turns as the others."""
         turns = self._turns
         known = [turns[task] for task in tasks if task in self._before] or [
             turns[task] for task in tasks if task in turns
@@ -100,7 +99,7 @@ class Abreast(Policy):
         self._before = tasks
 
     def _look(self, task: Task, frame: FrameType | None) -> None:
-        """Find out what the running task does, unless that is known or was looked for often enough."""
+        """Determine the code of the running task, unless it is known or was looked for often enough."""
         looks = self._looks.get(task, 0)
         if looks < LOOKS:
             self._code[task] = code = _outermost_code(frame)
@@ -122,7 +121,7 @@ class Abreast(Policy):
 
 
 def _outermost_code(frame: FrameType | None) -> CodeType | None:
-    """The function of the mission's own from which all else is called in a task; None where there is none."""
+    """Return the outermost function of the mission's own code in a task; None if there is none."""
     found = None
     while frame is not None:
         if is_own_code(frame.f_code.co_filename):

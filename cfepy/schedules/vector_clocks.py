@@ -1,7 +1,7 @@
-"""Which of two things that tasks do is ordered, and what a race of them is: vector clocks (Fidge 1988, Mattern 1989).
+"""The happens-before order of actions of tasks, and data races: vector clocks (Fidge 1988, Mattern 1989).
 
-Each task has a clock, which counts what it has handed on, and knows those of others as far as it has taken something
-from them. What one task did is ordered before what another does now if that one knows the clock that it had then.
+Each task has a clock that counts its releases. It also knows the clocks of other tasks, as of its last acquisition from
+them. An action of a task happens before the present action of another task if that task knows the clock of the action.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from cfepy.units import NS_PER_S
 
 
 class RaceSide(NamedTuple):
-    """One side of a race.
+    """One access of a race.
 
     Attributes:
-        place: where in the source it is.
-        is_write: whether it writes.
-        task: its name.
-        calls: those that it was in, outermost first.
-        at_ns: virtual time; None where that is not kept.
+        place: its place in the source.
+        is_write: whether it is a write.
+        task: name of its task.
+        calls: its call stack, the outermost call first.
+        at_ns: virtual time in ns; None if it is not kept.
     """
 
     place: str
@@ -31,18 +31,20 @@ class RaceSide(NamedTuple):
     at_ns: int | None = None
 
     def __str__(self) -> str:
-        """`write in add (case.c:12) of ADDER`."""
+        """Return a text such as `write in add (case.c:12) of ADDER`."""
         return f"{'write' if self.is_write else 'read'} in {self.place} of {self.task}"
 
     @property
     def stack(self) -> str:
-        """`ADDER: child (case.c:40) > add (case.c:12)`."""
+        """The call stack as text, such as `ADDER: child (case.c:40) > add (case.c:12)`."""
         at = "" if self.at_ns is None else f", at {self.at_ns / NS_PER_S:.6f} s"
         return f"{self.task}: {' > '.join((*self.calls, self.place))}{at}"
 
 
 class Race(NamedTuple):
-    """A data race: the variable, the access that found it, the one before, and who was running when, in virtual ns."""
+    """A data race: the variable, the access that found it, the earlier access, the running application and the time in
+    virtual ns.
+    """
 
     what: str
     before: RaceSide
@@ -51,67 +53,67 @@ class Race(NamedTuple):
     at_ns: int
 
     def __str__(self) -> str:
-        """One line; the same whichever of the two came first."""
+        """Return a one-line text, which does not depend on the order of the two accesses."""
         first, second = sorted((str(self.before), str(self.now)))
         return f"{self.what}: {first}, {second}: nothing orders them"
 
     def told(self) -> tuple[int, str, str, str, str]:
-        """Itself as plain values: virtual ns, text, which came first and by which calls, application, task."""
+        """Return plain values: virtual ns, text, the order and the call stacks, application, task."""
         lines = (f"{self.before} came first, then {self.now}", self.before.stack, self.now.stack)
         return self.at_ns, str(self), "\n".join(lines), self.who, self.now.task
 
 
 class VectorClocks:
-    """What each task knows of the others."""
+    """The knowledge of each task about the clocks of the others."""
 
     def __init__(self) -> None:
         self._known: dict[Task, dict[Task, int]] = {}
         self._left: dict[Hashable, dict[Task, int]] = {}
 
     def of(self, task: Task) -> dict[Task, int]:
-        """What a task knows: of itself its own clock, from 1; of others the clocks that it has taken."""
+        """Return the clocks that a task knows: its own, from 1, and those of others as of its last acquisitions."""
         known = self._known.get(task)
         if known is None:
             known = self._known[task] = {task: 1}
         return known
 
     def let_go(self, task: Task, key: Hashable) -> None:
-        """Who takes this key later knows what the task did so far."""
+        """Release a key: a task that takes it later knows all earlier actions of this task."""
         known = self.of(task)
         _join(self._left.setdefault(key, {}), known)
         known[task] += 1
 
     def take(self, task: Task, key: Hashable) -> None:
-        """A task knows what all have done that have let go of this key."""
+        """Acquire a key: the task learns the actions of all tasks that have released it."""
         left = self._left.get(key)
         if left is not None:
             _join(self.of(task), left)
 
     def hand(self, task: Task, other: Task) -> None:
-        """Another task, which does not run, knows what a task did so far."""
+        """Pass the actions of a task on to another task, which is not running."""
         known = self.of(task)
         _join(self.of(other), known)
         known[task] += 1
 
     def send(self, task: Task) -> dict[Task, int]:
-        """What a task knows now, for one that `receive`s it."""
+        """Return the clocks that a task knows now, for `receive` in another task."""
         known = self.of(task)
         sent = dict(known)
         known[task] += 1
         return sent
 
     def receive(self, task: Task, sent: dict[Task, int]) -> None:
-        """A task knows what another has sent."""
+        """Learn the actions that another task has sent."""
         _join(self.of(task), sent)
 
     def take_ended(self, task: Task) -> None:
-        """A task knows what all have done that have ended by now."""
+        """Learn the actions of all tasks that have ended."""
         for other, known in list(self._known.items()):
             if other.done:
                 _join(self.of(task), known)
 
     def forget(self, key: Hashable) -> None:
-        """Nobody will take this key any more."""
+        """Drop a key that will not be acquired any more."""
         self._left.pop(key, None)
 
 

@@ -1,7 +1,7 @@
-"""Mission scripts: commands at certain times and the answers that are expected, a step a line.
+"""Mission scripts: commands at given times and expected answers, one step per line.
 
-What belongs here reads a script, carries it out while a mission flies, and reports the result of each step. What must
-hold of a run at any time is in `cfepy.monitors`. docs/ground_tools.md describes the language. The central file is
+Code that reads a script, executes it while a mission flies, or reports the result of each step belongs here. Rules for
+the whole run are in `cfepy.monitors`. See docs/ground_tools.md for the language. The central file is
 `cfepy/script/script_run.py`.
 """
 

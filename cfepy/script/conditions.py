@@ -1,7 +1,7 @@
-"""What a mission script can expect: an application's state, a file, a line of the console, an event, telemetry.
+"""Conditions in a mission script: an application's state, a file, a line of the console, an event, telemetry.
 
-A condition keeps no state: it judges the mission as it is, or a packet from the Software Bus, and describes what it
-found instead.
+A condition has no state: it checks the current mission, or a packet from the Software Bus, and describes the actual
+state.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     ">": operator.gt,
     ">=": operator.ge,
 }
-NEAR = 3  # things that are told of those that came instead
+NEAR = 3  # maximum number of other findings in a description
 
 
 class Since(NamedTuple):
-    """From where on an expectation looks: the first packet and console line that count."""
+    """Start of an expectation: the first packet and console line that count."""
 
     packets: int
     lines: int
@@ -51,10 +51,10 @@ class Since(NamedTuple):
 
 @dataclass(slots=True)
 class Collected:
-    """The packets that were sent so far, by number from 0.
+    """Packets sent so far, by number from 0.
 
     Attributes:
-        most: how many are kept at least; None for all. Older ones are forgotten.
+        most: minimum number of packets that are kept; None for all. Older ones are dropped.
     """
 
     most: int | None = None
@@ -62,7 +62,7 @@ class Collected:
     _gone: int = 0
 
     def append(self, packet: Seen) -> None:
-        """One more was sent."""
+        """Add a packet."""
         self._kept.append(packet)
         if self.most is not None and len(self._kept) > 2 * self.most:
             self._gone += len(self._kept) - self.most
@@ -72,20 +72,20 @@ class Collected:
         return self._gone + len(self._kept)
 
     def since(self, number: int) -> list[Seen]:
-        """Those from a number on, as far as they are kept."""
+        """Return the packets from a number on, as far as they are kept."""
         return self._kept[max(0, number - self._gone) :]
 
 
 class Scene:
-    """What conditions look at and steps act upon: a mission, its dictionary, and the packets that it sent so far.
+    """Objects that conditions check and steps act on: a mission, its dictionary, and the packets sent so far.
 
     Args:
-        mission: None stands for a computer elsewhere, of which packets alone are known.
+        mission: None for another computer, of which only packets are known.
         dictionary: names the packets.
         packets: collects them.
 
     Attributes:
-        mark_ns, since: when a script last did something, and what counts from there on.
+        mark_ns, since: time of a script's last action, and the position from which packets count after it.
     """
 
     def __init__(self, mission: Mission | None, dictionary: Dictionary, packets: Collected) -> None:
@@ -100,7 +100,7 @@ class Scene:
         """The mission.
 
         Raises:
-            UsageError: there is none at hand.
+            UsageError: if there is no mission.
         """
         if self._mission is None:
             raise UsageError("a computer elsewhere shows its packets alone: expect events and telemetry")
@@ -108,7 +108,7 @@ class Scene:
 
     @property
     def has_mission(self) -> bool:
-        """Whether there is a mission at hand."""
+        """Whether there is a mission."""
         return self._mission is not None
 
     @property
@@ -117,11 +117,11 @@ class Scene:
         return self.mission.kernel.now
 
     def here(self) -> Since:
-        """Where things begin that are still to come."""
+        """Return the start for things that are still to come."""
         return Since(len(self.packets), len(self.mission.console.lines))
 
     def set_mark(self) -> None:
-        """A script does something now."""
+        """Mark that a script acts now."""
         self.mark_ns, self.since = self.now_ns, self.here()
 
     def send(self, packet: bytes, must_arrive: bool) -> str:
@@ -129,10 +129,10 @@ class Scene:
 
         Args:
             packet: its bytes.
-            must_arrive: it is wrong that nobody subscribes to it.
+            must_arrive: whether a packet without subscribers is an error.
 
         Returns:
-            What was wrong; "" when all was well.
+            The error; "" if there was none.
         """
         detail = ""
         if must_arrive and not receivers(self.mission.cfe.sb, get_msg_id(packet)):
@@ -147,36 +147,36 @@ class Scene:
         """Put a packet on the bus as it is.
 
         Raises:
-            CfeError: the bus refuses it.
+            CfeError: if the bus refuses it.
         """
         self.mission.cfe.sb.transmit_msg(packet, is_origination=False)
 
     def learn_topics(self) -> None:
-        """The dictionary gets what the mission knows of its topics by now."""
+        """Update the dictionary with the topics that the mission has now."""
         self.dictionary.learn(topics_of(self.mission))
 
 
 class Condition(Protocol):
-    """Something that can be expected. `lasts` says that it is a state, which is judged at once, and no occurrence."""
+    """An expected condition. `lasts` is whether it is a state, which is checked at once, and not an event."""
 
     lasts: bool
 
     @property
     def msg_ids(self) -> frozenset[int]:
-        """MsgIds of the packets that can meet it; none when the mission as it is meets it."""
+        """MsgIds of the packets that can meet it; empty if it is checked on the current mission."""
 
     def met_by(self, scene: Scene, packet: Seen) -> bool:
-        """Whether this packet meets it."""
+        """Return whether a packet meets it."""
 
     def holds(self, scene: Scene, since: Since) -> bool:
-        """Whether the mission as it is meets it."""
+        """Return whether the current mission meets it."""
 
     def instead(self, scene: Scene, since: Since) -> str:
-        """What there was instead; for something that must not be, what there was."""
+        """Return a description of the actual state; for an unwanted condition, of the finding that met it."""
 
 
 class StateCondition:
-    """A condition on the mission as it is."""
+    """A condition on the current mission."""
 
     lasts = True
     msg_ids: frozenset[int] = frozenset()
@@ -186,13 +186,13 @@ class StateCondition:
 
 
 def seconds(ns: int) -> str:
-    """A virtual time as verdicts show it."""
+    """Return a virtual time as shown in verdicts."""
     return f"{ns / NS_PER_S:.3f}"
 
 
 @dataclass(frozen=True)
 class AppCondition(StateCondition):
-    """An application in a state; GONE stands for one that does not exist, None for any that does."""
+    """An application in a state; GONE for one that does not exist, None for any that does."""
 
     name: str
     state: str | None = None
@@ -214,7 +214,7 @@ class AppCondition(StateCondition):
 
 @dataclass(frozen=True)
 class ResetCondition(StateCondition):
-    """The processor has been reset more than so many times in this run."""
+    """The processor has been reset more often than a given number in this run."""
 
     times: int
 
@@ -227,7 +227,7 @@ class ResetCondition(StateCondition):
 
 @dataclass(frozen=True)
 class FileCondition(StateCondition):
-    """A file of the mission, with a size in bytes if that matters."""
+    """A file of the mission, with a size in bytes if given."""
 
     path: str
     sign: str = ">="
@@ -275,7 +275,7 @@ class ConsoleCondition(StateCondition):
 
 
 class PacketCondition:
-    """A condition that packets meet."""
+    """A condition that packets can meet."""
 
     lasts = False
 
@@ -285,7 +285,7 @@ class PacketCondition:
 
 @dataclass(frozen=True)
 class EventCondition(PacketCondition):
-    """An event; None stands for any."""
+    """An event; None for any."""
 
     app: str | None = None
     event_id: int | None = None
@@ -315,14 +315,14 @@ class EventCondition(PacketCondition):
 
 
 class Comparison(NamedTuple):
-    """`path sign value` of a field; a text is compared as it stands, a number as a number."""
+    """`path sign value` of a field; texts are compared as text, numbers as numbers."""
 
     path: str
     sign: str
     value: str
 
     def holds(self, actual: Any) -> bool:
-        """Whether a field's value is as wanted."""
+        """Return whether a field's value is as wanted."""
         if isinstance(actual, str | bytes):
             return OPERATORS[self.sign](actual if isinstance(actual, str) else actual.hex(), self.value)
         try:
@@ -336,12 +336,12 @@ class Comparison(NamedTuple):
 
 @dataclass(frozen=True)
 class TelemetryCondition(PacketCondition):
-    """A telemetry packet with certain values.
+    """A telemetry packet with given values.
 
     Args:
-        name: as the dictionary has it.
+        name: name in the dictionary.
         msg_id: its MsgId.
-        comparisons: all have to hold.
+        comparisons: all must hold.
     """
 
     name: str
@@ -384,7 +384,7 @@ def _field(owner: str, values: Mapping[str, Any], path: str) -> str:
 
 
 def seen_text(condition: Condition, scene: Scene, packet: Seen | None, since: Since) -> str:
-    """What met a condition that was not to be met."""
+    """Return the finding that met an unwanted condition."""
     if packet is None:
         return condition.instead(scene, since)
     if packet.msg_id in EVENT_IDS:

@@ -1,11 +1,11 @@
-"""Mission scripts carried out: commands at certain times and the answers expected, with a verdict for each step.
+"""Execution of mission scripts: commands at given times and expected answers, with a verdict for each step.
 
     outcome = fly(RunPlan(("capture",), script="checks.txt")).outcome
     assert outcome.ok, outcome.text()
 
-What a script does happens at fixed virtual times between pieces of the run, so the same script has the same outcome
-every time. An expectation stays open until it can be decided. The run goes on over resets of the processor.
-docs/ground_tools.md describes the language.
+A script acts at fixed virtual times between parts of the run, so the same script always has the same outcome. An
+expectation stays open until it can be decided. The run continues after resets of the processor. See
+docs/ground_tools.md for the language.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from cfepy.script.text import Script, Step, read_script
 from cfepy.units import NS_PER_MS, NS_PER_S
 
 OVER = "the run was over before"
-LOOK_NS = 10 * NS_PER_MS  # how often an expectation looks
+LOOK_NS = 10 * NS_PER_MS  # interval between two checks of an expectation
 
 
 @dataclass(frozen=True, slots=True)
 class StepVerdict:
-    """What became of a step: `at_s` is the virtual time in s at which it was decided, `detail` what was wrong."""
+    """Result of a step: `at_s` is the virtual time in s at which it was decided, `detail` the error."""
 
     line: int
     step: str
@@ -38,18 +38,18 @@ class StepVerdict:
 
     @property
     def follows(self) -> bool:
-        """Whether it failed only because the run was over before it was reached."""
+        """Whether it failed only because the run ended before it was reached."""
         return not self.ok and self.detail == OVER
 
     @classmethod
     def of(cls, step: Step, ok: bool, at_ns: int, detail: str = "") -> StepVerdict:
-        """The verdict on a step."""
+        """Return the verdict on a step."""
         return cls(step.line, step.text, ok, at_ns / NS_PER_S, detail)
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """The verdicts of a script, in the order of its lines.
+    """Verdicts of a script, in the order of its lines.
 
     Attributes:
         file: the script.
@@ -63,11 +63,11 @@ class Outcome:
 
     @property
     def ok(self) -> bool:
-        """Whether every step went well."""
+        """Whether every step passed."""
         return all(verdict.ok for verdict in self.verdicts)
 
     def lines(self) -> Iterator[str]:
-        """A line for each step, and the summary."""
+        """Yield a line for each step, and the summary."""
         for each in self.verdicts:
             detail = f": {each.detail}" if each.detail else ""
             word = "ok" if each.ok else "FAILED"
@@ -77,25 +77,25 @@ class Outcome:
         yield f"{count} {'step' if count == 1 else 'steps'}, {f'{failed} failed' if failed else 'all ok'}"
 
     def text(self) -> str:
-        """All lines, for a message."""
+        """Return all lines, for a message."""
         return "\n".join(self.lines())
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain numbers and text."""
+        """Return plain numbers and text."""
         return {"file": self.file, "ok": self.ok, "steps": [asdict(verdict) for verdict in self.verdicts]}
 
 
 class Expectation:
-    """A condition that is to be met, or must not be met.
+    """A condition that must be met, or must not be met.
 
     Args:
-        step: the step that expects it.
+        step: its step.
         condition: the step's condition.
-        since: from where on things count.
+        since: position from which packets and lines count.
         deadline_ns: virtual time at which it is decided; None for the end of the script.
 
     Attributes:
-        event: application and id of the event that has met it; None as long as there is none.
+        event: application and id of the event that has met it; None if there is none.
     """
 
     def __init__(self, step: Step, condition: Condition, since: Since, deadline_ns: int | None) -> None:
@@ -106,7 +106,7 @@ class Expectation:
         self._since = self._looked = since
 
     def wake_ns(self, now_ns: int) -> int | None:
-        """When it wants to look again; None when any time will do, because packets wait."""
+        """Return when it must be checked next; None for any time, because packets are kept."""
         needs_to_look = not self._step.must_not or not self._condition.msg_ids
         if not needs_to_look:
             return self.deadline_ns
@@ -114,11 +114,11 @@ class Expectation:
         return look_ns if self.deadline_ns is None else min(look_ns, self.deadline_ns)
 
     def decide(self, scene: Scene, is_over: bool = False) -> StepVerdict | None:
-        """The verdict; None when it is still open.
+        """Return the verdict; None if it is still open.
 
         Args:
-            scene: what the steps can look at.
-            is_over: the script is over, so it must be decided.
+            scene: mission and packets to check.
+            is_over: whether the script has ended, so it must be decided.
         """
         now_ns = scene.now_ns
         met = self._met(scene, now_ns)
@@ -138,7 +138,7 @@ class Expectation:
     def _decide_against(
         self, scene: Scene, now_ns: int, met: tuple[int, Seen | None] | None, is_due: bool, is_over: bool
     ) -> StepVerdict | None:
-        """What must not be met."""
+        """Decide a condition that must not be met."""
         if met is not None:
             at_ns, packet = met
             return StepVerdict.of(self._step, False, at_ns, seen_text(self._condition, scene, packet, self._since))
@@ -147,7 +147,7 @@ class Expectation:
         return StepVerdict.of(self._step, False, now_ns, OVER) if is_over else None
 
     def _met(self, scene: Scene, now_ns: int) -> tuple[int, Seen | None] | None:
-        """When it was met, and by which packet; looks only at what is new since the last look."""
+        """Return when it was met, and by which packet; checks only new packets and lines."""
         condition, looked = self._condition, self._looked
         self._looked = scene.here()
         if not condition.msg_ids:
@@ -161,17 +161,17 @@ class Expectation:
 
 
 class ScriptRun(PacketWatch):
-    """A script while it runs; the loop that runs the mission which it is attached to asks it what is next.
+    """A script during its execution, driven by the loop that runs its mission.
 
     Args:
-        script: what to do.
-        stop_on_failure: the script ends with the first step that fails.
-        tell: gets each verdict as soon as there is one.
-        stands: what must not come is watched for without an end, also after the last step.
+        script: the script.
+        stop_on_failure: whether it ends with the first step that fails.
+        tell: receives each verdict at once.
+        stands: whether unwanted conditions are watched without limit, also after the last step.
 
     Attributes:
-        finished: there is nothing more to do.
-        stopped: a failure ended it before its last step.
+        finished: whether there is nothing more to do.
+        stopped: whether a failure ended it before its last step.
     """
 
     def __init__(
@@ -198,15 +198,15 @@ class ScriptRun(PacketWatch):
 
     @classmethod
     def read(cls, path: str | Path, spec: MissionSpec, stop_on_failure: bool = False) -> ScriptRun:
-        """The run of a script's file.
+        """Return the run of a script file.
 
         Args:
             path: the file.
-            spec: the mission whose packets and applications it names.
-            stop_on_failure: the script ends with the first step that fails.
+            spec: the mission with the packets and applications that it names.
+            stop_on_failure: whether it ends with the first step that fails.
 
         Raises:
-            UsageError: a mistake in it, with file and line.
+            UsageError: if it has a mistake, with file and line.
         """
         return cls(read_script(path, spec, dictionary_of(spec)), stop_on_failure)
 
@@ -214,12 +214,12 @@ class ScriptRun(PacketWatch):
         self.join(Scene(mission, self.script.dictionary, self._packets))
 
     def join(self, scene: Scene) -> None:
-        """Act in a scene, which others may share: whoever does something sets its mark."""
+        """Act in a scene, which may be shared: each action sets the scene's mark."""
         self._scene = scene
 
     @property
     def is_waiting(self) -> bool:
-        """Whether steps are left to do, or an expectation is to be met."""
+        """Whether steps are left, or an expectation must still be met."""
         return not self.finished and self._next < len(self.script.steps)
 
     @property
@@ -228,7 +228,7 @@ class ScriptRun(PacketWatch):
         return self.stopped or len(self._verdicts) == len(self.script.steps)
 
     def advance(self) -> int:
-        """Do what is due now.
+        """Execute the steps that are due.
 
         Returns:
             The virtual time in ns at which it wants to be asked again; far in the future when it is finished.
@@ -242,7 +242,7 @@ class ScriptRun(PacketWatch):
         return ENDLESS
 
     def end(self) -> Outcome:
-        """The run is over: what is undecided is decided now."""
+        """Decide all open expectations at the end of the run."""
         if self._waiting is not None:
             self._settle(self._next, self._decided(self._waiting, is_over=True))
         for number, guard in self._guards.items():
@@ -257,7 +257,7 @@ class ScriptRun(PacketWatch):
         return self._scene.now_ns
 
     def _go_on(self) -> int | None:
-        """Go one step further; the time to come back when that has to wait."""
+        """Execute the next step; returns the time to continue if it must wait."""
         if self._waiting is not None:
             verdict = self._decided(self._waiting)
             if verdict is None:
@@ -272,14 +272,14 @@ class ScriptRun(PacketWatch):
         return None
 
     def _decided(self, waiting: Expectation, is_over: bool = False) -> StepVerdict | None:
-        """The verdict on what is waited for; None when it is still open."""
+        """Return the verdict on the current expectation; None if it is still open."""
         verdict = waiting.decide(self._scene, is_over)
         if waiting.event is not None:
             self._expected_events.add(waiting.event)
         return verdict
 
     def _begin(self, step: Step) -> int | None:
-        """Begin the next step; the time to come back when it is not time for it yet."""
+        """Start the next step; returns the time to continue if it is too early."""
         if self._start_ns is None:
             self._start_ns = step.at_ns if step.at_ns is not None else self._now + (step.after_ns or 0)
         if self._start_ns > self._now:
@@ -314,7 +314,7 @@ class ScriptRun(PacketWatch):
         return StepVerdict.of(step, not detail, self._now, detail)
 
     def _ask_guards(self) -> None:
-        """Look whether something came that must not come."""
+        """Check for conditions that must not be met."""
         for number, guard in list(self._guards.items()):
             verdict = guard.decide(self._scene)
             if verdict is not None:
@@ -322,7 +322,7 @@ class ScriptRun(PacketWatch):
                 self._settle(number, verdict)
 
     def _wait_for_guards(self) -> int | None:
-        """All steps are done: guards with a time of their own go on until then, the others end with the script."""
+        """End the script: unwanted conditions with their own time limit continue until then, the others end now."""
         times = [guard.deadline_ns for guard in self._guards.values() if guard.deadline_ns is not None]
         if times:
             return min(times)

@@ -1,7 +1,7 @@
-"""A script that is not written yet: lines come one at a time, as a person types them, while the mission goes on.
+"""An interactive script: lines come one at a time while the mission runs.
 
-Each line, and each file that is loaded, is a `ScriptRun` of its own, so it means what it means in a file. They share
-one scene, with it the moment from which expectations look. A line acts at once, whatever others are still waiting for.
+Each line, and each loaded file, is a separate `ScriptRun`, so it means the same as in a file. They share one scene,
+including the time from which expectations count. A line acts at once, even while others are waiting.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from cfepy.status import UsageError
 
 Tell = Callable[[Step, StepVerdict], object]
 TYPED = "console"
-"""What stands for the file of a line that was typed."""
+"""Name used in place of a file for typed lines."""
 
 
 class StandingScript:
-    """Steps as they come.
+    """Steps, one at a time.
 
     Args:
-        scene: what they look at and act upon.
-        spec: the mission whose topics they may name; None for a computer elsewhere.
+        scene: objects that they check and act on.
+        spec: the mission whose topics they may name; None for another computer.
     """
 
     def __init__(self, scene: Scene, spec: MissionSpec | None) -> None:
@@ -36,20 +36,20 @@ class StandingScript:
 
     @property
     def is_waiting(self) -> bool:
-        """Whether a line or a file waits for something that is to come."""
+        """Whether a line or a file is waiting."""
         return any(run.is_waiting for run in self._runs)
 
     def add(self, text: str, file: str | Path, tell: Tell, stop_on_failure: bool = False) -> None:
-        """Begin to do what a text says.
+        """Start the steps of a text.
 
         Args:
             text: a line, or a whole file.
             file: its name, for errors and verdicts.
-            tell: gets each step's verdict.
-            stop_on_failure: a file ends with its first failed step.
+            tell: receives each step's verdict.
+            stop_on_failure: whether a file ends with its first failed step.
 
         Raises:
-            UsageError: a mistake in it; then nothing of it is done.
+            UsageError: if it has a mistake; then nothing of it is executed.
         """
         script = parse_script(text, file, self._spec, self.scene.dictionary)
         if not self.scene.has_mission:
@@ -59,7 +59,7 @@ class StandingScript:
         self._runs.append(run)
 
     def advance(self) -> int:
-        """Do what is due now.
+        """Execute the steps that are due.
 
         Returns:
             The virtual time in ns at which it wants to be asked again; far in the future when nothing is open.
@@ -69,7 +69,7 @@ class StandingScript:
         return wake_ns
 
     def give_up(self) -> int:
-        """Wait no more for what was to come; what must not come is still watched for.
+        """Stop waiting; unwanted conditions are still watched for.
 
         Returns:
             How many lines and files were given up.
@@ -79,7 +79,7 @@ class StandingScript:
         return len(waiting)
 
     def end(self) -> list[Outcome]:
-        """All is over: what is undecided is decided now."""
+        """Decide all open expectations at the end."""
         runs, self._runs = self._runs, []
         return [run.end() for run in runs]
 

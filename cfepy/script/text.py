@@ -1,7 +1,7 @@
-"""The text of a mission script, read into steps; docs/ground_tools.md describes the language.
+"""The text of a mission script, parsed into steps; see docs/ground_tools.md for the language.
 
-One step a line, of words, texts in quotes and numbers of seconds. Everything that can be known before the run is
-checked here: names, fields, values, times. A mistake is a UsageError with file and line.
+One step per line, made of words, quoted texts and numbers of seconds. Everything that can be known before the run is
+checked here: names, fields, values, times. A mistake raises UsageError with file and line.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
 LONGEST_S = 1e9
-LONGEST_SIGN = 2  # one sign is like any other
+LONGEST_SIGN = 2  # characters of the longest operator
 _TOKEN = re.compile(r'\s*((?:[^\s"#]|"[^"]*")+)')
 DEFAULT_WITHIN_NS = 5 * NS_PER_S
 RESET_TYPES = {"processor": 1, "power-on": 2}
@@ -42,23 +42,23 @@ ANY = "*"
 
 
 class Word(NamedTuple):
-    """A word of a line; one that begins with a quote is a text."""
+    """A word of a line; one that starts with a quote is a text."""
 
     text: str
     is_text: bool
 
 
 class Words:
-    """The words of a line that are still to be read.
+    """Words of a line that are still to be read.
 
     Args:
-        line: a `#` outside of quotes begins a comment.
+        line: a `#` outside of quotes starts a comment.
 
     Attributes:
         source: the line without its comment.
 
     Raises:
-        UsageError: a quote is opened and not closed.
+        UsageError: if a quote is not closed.
     """
 
     def __init__(self, line: str) -> None:
@@ -76,38 +76,38 @@ class Words:
         return bool(self._words)
 
     def take(self, what: str) -> str:
-        """The next word.
+        """Return the next word.
 
         Args:
-            what: it stands for, for the error.
+            what: its meaning, for the error.
 
         Raises:
-            UsageError: there is none.
+            UsageError: if there is none.
         """
         if not self._words:
             raise UsageError(f"{what} is missing at the end of the line")
         return self._words.pop(0).text
 
     def peek(self) -> Word:
-        """The next word without taking it; an empty one at the end."""
+        """Return the next word without consuming it; empty at the end."""
         return self._words[0] if self._words else Word("", False)
 
     def take_if(self, *texts: str) -> str:
-        """The next word if it is one of these, else ""."""
+        """Return the next word if it is one of these, else ""."""
         word = self.peek()
         return self._words.pop(0).text if word.text in texts and not word.is_text else ""
 
     def rest(self) -> list[str]:
-        """All that is left."""
+        """Return the rest of the line."""
         words, self._words = self._words, []
         return [word.text for word in words]
 
 
 def seconds_ns(text: str) -> int:
-    """A number of seconds in ns.
+    """Return a number of seconds in ns.
 
     Raises:
-        UsageError: it is none.
+        UsageError: if the text is not such a number.
     """
     try:
         number = float(text)
@@ -119,15 +119,15 @@ def seconds_ns(text: str) -> int:
 
 
 def choice(text: str, choices: Iterable[str], what: str) -> str:
-    """The word itself, when it is one of several.
+    """Return the word itself, if it is one of the choices.
 
     Args:
         text: the word.
-        choices: what it may be.
-        what: the choices are, for the error.
+        choices: allowed words.
+        what: meaning of the choices, for the error.
 
     Raises:
-        UsageError: it is none of them.
+        UsageError: if it is not one of them.
     """
     known = list(choices)
     if text in known:
@@ -144,7 +144,7 @@ class Step:
     sends a packet, or expects something (`condition`), or neither: "end". A packet with `must_arrive` fails when no
     pipe subscribes to it; after one with `is_reset` the script waits for the reset. `within_ns` counts from the last
     packet sent or time waited for, `until_ns` from the start of the run; without both, an expectation of a state is
-    judged at once, and what must not come must not come until the script ends.
+    checked at once, and an unwanted condition must not be met until the script ends.
     """
 
     line: int
@@ -160,11 +160,11 @@ class Step:
     until_ns: int | None = None
 
     def deadline_ns(self, mark_ns: int, now_ns: int) -> int | None:
-        """When an expectation is decided at the latest, in virtual ns; None for the end of the script.
+        """Return the latest time at which an expectation is decided, in virtual ns; None for the end of the script.
 
         Args:
-            mark_ns: when the script last did something.
-            now_ns: when the expectation begins.
+            mark_ns: when the script last acted.
+            now_ns: when the expectation starts.
         """
         if self.is_reset:
             return now_ns + DEFAULT_WITHIN_NS
@@ -179,7 +179,7 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """A script that is free of mistakes, for one mission. `longest_ns` is the virtual time that it takes at most."""
+    """A script without mistakes, for one mission. `longest_ns` is the maximum virtual time that it takes."""
 
     file: str
     steps: tuple[Step, ...]
@@ -192,11 +192,11 @@ def read_script(path: str | Path, spec: MissionSpec, dictionary: Dictionary) -> 
 
     Args:
         path: the file, UTF-8.
-        spec: the mission that it is for.
-        dictionary: of that mission.
+        spec: its mission.
+        dictionary: dictionary of that mission.
 
     Raises:
-        UsageError: it cannot be read, or has a mistake.
+        UsageError: if it cannot be read, or has a mistake.
     """
     try:
         text = text_limited(path, LINE_FILE_BYTES, handed=True)
@@ -208,7 +208,7 @@ def read_script(path: str | Path, spec: MissionSpec, dictionary: Dictionary) -> 
 
 
 def parse_script(text: str, path: str | Path, spec: MissionSpec | None, dictionary: Dictionary) -> Script:
-    """`read_script` for the text of a file; `path` is for messages. Without a mission, it names no new topics."""
+    """`read_script` for a text; `path` is for messages. Without a mission, it cannot name new topics."""
     reader = _Reader(spec, dictionary)
     steps: list[Step] = []
     for number, line in enumerate(text.split("\n"), 1):
@@ -224,7 +224,7 @@ def parse_script(text: str, path: str | Path, spec: MissionSpec | None, dictiona
 
 
 class _Reader:
-    """Reads steps one after the other; keeps track of the time they take at most."""
+    """Reads steps one after the other; keeps track of the maximum time they take."""
 
     def __init__(self, spec: MissionSpec | None, dictionary: Dictionary) -> None:
         self._spec = spec
@@ -240,7 +240,7 @@ class _Reader:
         }
 
     def step(self, line: int, words: Words) -> Step:
-        """The step of one line."""
+        """Return the step of one line."""
         at_ns, after_ns = self._when(words)
         packet: bytes | None = None
         condition: Condition | None = None
@@ -280,7 +280,7 @@ class _Reader:
         return None, None
 
     def _pass_time(self, step: Step) -> None:
-        """What the step adds to the longest time that the script can take."""
+        """Add the step's maximum time to that of the script."""
         if step.at_ns is not None:
             self._now_ns = max(self._now_ns, step.at_ns)
         self._now_ns += step.after_ns or 0

@@ -1,8 +1,8 @@
 """Table Services (CFE_TBL): named blocks of parameters that the ground loads, validates, activates and dumps.
 
-What belongs here registers, loads and keeps tables, and reads and writes table files as bytes. The YAML form of table
-files is in `cfepy.ground.cfe_files`. The five services do not import each other; what TBL needs of the others it finds
-in its `Ports`. The central file is `cfepy/tbl/services.py`.
+Code that registers, loads and keeps tables, and reads and writes table files as bytes, belongs here. The YAML form of
+table files is in `cfepy.ground.cfe_files`. The five services are independent of one another; TBL reaches the others
+through its `Ports`. The central file is `cfepy/tbl/services.py`.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ __all__ = [
     "write_beside",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

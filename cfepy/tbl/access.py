@@ -1,4 +1,4 @@
-"""What every application that has a table's handle may do, owner or not (CFE_TBL_GetAddress and the like)."""
+"""The functions for every application with a handle on a table, owner or not (CFE_TBL_GetAddress and its relatives)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _NO_ACCESS = "App({app}) does not have access to Tbl Handle={handle}"
 
 
 class TableInfo(NamedTuple):
-    """What CFE_TBL_GetInfo tells; times are (seconds, subseconds)."""
+    """The result of CFE_TBL_GetInfo; times are (seconds, subseconds)."""
 
     size: int
     num_users: int
@@ -49,7 +49,7 @@ class TableAccess:
     """The part of Table Services that changes no table.
 
     Args:
-        kernel: tells whose task is running.
+        kernel: provides the running task.
         ports: the other services.
         registry: the tables.
     """
@@ -60,10 +60,11 @@ class TableAccess:
         self.registry = registry
 
     def get_addresses_in_c(self, handles: Iterable[int]) -> tuple[list[memoryview | None], int]:
-        """As CFE_TBL_GetAddresses in C: what comes after a failure is looked at as well, and nothing is released.
+        """Return the addresses of several tables like CFE_TBL_GetAddresses in C: it continues after a failure and
+        releases nothing.
 
         Returns:
-            The images, None where there was a failure; and the first status that is not CFE_SUCCESS.
+            The images, with None for a failure; and the first status that is not CFE_SUCCESS.
         """
         images: list[memoryview | None] = []
         first = CFE_SUCCESS
@@ -82,10 +83,10 @@ class TableAccess:
         return images, first
 
     def get_address(self, handle: int) -> tuple[memoryview, bool]:
-        """The active image, locked until `release_address` (CFE_TBL_GetAddress).
+        """Return the active image, locked until `release_address` (CFE_TBL_GetAddress).
 
         Returns:
-            A view of the bytes, and whether they changed since the last call (CFE_TBL_INFO_UPDATED).
+            A view of the bytes, and whether they have changed since the last call (CFE_TBL_INFO_UPDATED).
 
         Raises:
             CfeError: CFE_TBL_ERR_NEVER_LOADED, CFE_TBL_ERR_UNREGISTERED, or no access.
@@ -106,10 +107,10 @@ class TableAccess:
         return table.image(active), updated
 
     def release_address(self, handle: int) -> int:
-        """Give the address back, so that updates can take place (CFE_TBL_ReleaseAddress).
+        """Release the address, so that the table can be updated (CFE_TBL_ReleaseAddress).
 
         Returns:
-            CFE_SUCCESS, or CFE_TBL_INFO_UPDATED when the table changed meanwhile.
+            CFE_SUCCESS, or CFE_TBL_INFO_UPDATED if the table has changed meanwhile.
         """
         access = self._access("ReleaseAddress", handle)
         access.locked = False
@@ -118,7 +119,9 @@ class TableAccess:
         return CFE_TBL_INFO_UPDATED if access.updated else CFE_SUCCESS
 
     def get_addresses(self, handles: Iterable[int]) -> list[tuple[memoryview, bool]]:
-        """`get_address` of several tables; when one fails, those before it are released (CFE_TBL_GetAddresses)."""
+        """Return the results of `get_address` for several tables; after a failure, release the earlier ones
+        (CFE_TBL_GetAddresses).
+        """
         taken: list[int] = []
         found = []
         try:
@@ -131,13 +134,13 @@ class TableAccess:
         return found
 
     def release_addresses(self, handles: Iterable[int]) -> int:
-        """`release_address` of every one of several tables (CFE_TBL_ReleaseAddresses).
+        """Release the addresses of several tables (CFE_TBL_ReleaseAddresses).
 
         Returns:
             The first status that is not CFE_SUCCESS.
 
         Raises:
-            CfeError: instead, when that is an error; the tables behind are released all the same.
+            CfeError: if that status is an error; the tables after it are released too.
         """
         answers: list[int | CfeError] = []
         for handle in handles:
@@ -151,10 +154,11 @@ class TableAccess:
         return first
 
     def get_status(self, handle: int) -> int:
-        """What a table waits for (CFE_TBL_GetStatus).
+        """Return the pending request of a table (CFE_TBL_GetStatus).
 
         Returns:
-            CFE_SUCCESS, or CFE_TBL_INFO_VALIDATION_PENDING, _UPDATE_PENDING, _DUMP_PENDING; in that order.
+            CFE_SUCCESS, or CFE_TBL_INFO_VALIDATION_PENDING, _UPDATE_PENDING, _DUMP_PENDING, in this order of
+                precedence.
         """
         table = self._access("GetStatus", handle).table
         if table.validations:
@@ -164,7 +168,7 @@ class TableAccess:
         return CFE_TBL_INFO_DUMP_PENDING if table.dump_id != UNDEFINED else CFE_SUCCESS
 
     def get_info(self, full_name: str) -> TableInfo:
-        """All about a table, by its full name (CFE_TBL_GetInfo).
+        """Return the properties of a table, by its full name (CFE_TBL_GetInfo).
 
         Raises:
             CfeError: CFE_TBL_ERR_INVALID_NAME.
@@ -186,23 +190,23 @@ class TableAccess:
         )
 
     def handle_to_id(self, handle: int) -> int:
-        """The resource id of a handle, 0 for CFE_TBL_BAD_TABLE_HANDLE (CFE_TBL_HandleToID)."""
+        """Return the resource id of a handle, 0 for CFE_TBL_BAD_TABLE_HANDLE (CFE_TBL_HandleToID)."""
         return UNDEFINED if handle == BAD_TABLE_HANDLE else int(handle)
 
     def handle_from_id(self, handle_id: int) -> int:
-        """The handle of a resource id, CFE_TBL_BAD_TABLE_HANDLE for 0 (CFE_TBL_HandleFromID)."""
+        """Return the handle of a resource id, CFE_TBL_BAD_TABLE_HANDLE for 0 (CFE_TBL_HandleFromID)."""
         return BAD_TABLE_HANDLE if handle_id == UNDEFINED else handle_id
 
     def handle_id_is_equal(self, first: int, second: int) -> bool:
-        """Whether two handle ids are the same (CFE_TBL_HandleID_IsEqual)."""
+        """Return whether two handle ids are the same (CFE_TBL_HandleID_IsEqual)."""
         return first == second
 
     def handle_id_as_int(self, handle_id: int) -> int:
-        """The number to show a person (CFE_TBL_HandleID_AsInt)."""
+        """Return the handle id as a number for display (CFE_TBL_HandleID_AsInt)."""
         return int(handle_id)
 
     def handle_id_is_defined(self, handle_id: int) -> bool:
-        """Whether it is the id of anything (CFE_TBL_HandleID_IsDefined)."""
+        """Return whether the handle id is not 0 (CFE_TBL_HandleID_IsDefined)."""
         return handle_id != UNDEFINED
 
     def _caller(self) -> tuple[int, str]:
@@ -212,13 +216,13 @@ class TableAccess:
         return caller.app_id, caller.name
 
     def _access(self, function: str, handle: int, owner_only: bool = False, log: str = _NO_ACCESS) -> Access:
-        """The access descriptor of a handle, once the caller is found to have the right to use it.
+        """Return the access descriptor of a handle, after checking that the caller may use it.
 
         Args:
-            function: that was called.
+            function: name of the called function.
             handle: its argument.
-            owner_only: whether the table must be the caller's; else the handle must be.
-            log: what the system log says otherwise; "" for nothing.
+            owner_only: whether the caller must own the table; otherwise it must own the handle.
+            log: line for the system log after a failure; "" for none.
 
         Raises:
             CfeError: CFE_TBL_ERR_INVALID_HANDLE or CFE_TBL_ERR_NO_ACCESS.

@@ -1,8 +1,8 @@
-"""The memory that table images live in: a table's own one or two buffers, and the load buffers that tables share.
+"""The memory of table images: each table's own one or two buffers, and the load buffers that tables share.
 
-Stands for cfe_tbl_loadbuff.c. All come out of one memory pool of Executive Services. Images never move; only which
-buffer is active changes. A buffer in use has an id. The ids matter: cFE frees the id of a single-buffered table's
-buffer with the first load, so that the buffer is no more protected by a lock, and cannot be dumped.
+It replaces cfe_tbl_loadbuff.c. All buffers come from one memory pool of Executive Services. Images never move; only the
+choice of the active buffer changes. A buffer in use has an id. cFE frees the id of a single-buffered table's buffer
+with the first load, so the buffer is no longer protected by a lock and cannot be dumped.
 """
 
 from __future__ import annotations
@@ -18,37 +18,39 @@ _FIRST_ADDRESS = 0x10000
 _ALIGNMENT = 8
 _PER_TABLE = 2
 SHARED = 0
-"""The category of ids of shared buffers; a table's own have its slot in the registry and 1."""
+"""The category of the ids of shared buffers; a table's own buffers have its slot in the registry plus 1."""
 
 Bytes = bytes | bytearray | memoryview
 
 
 class BufferPlaces(Protocol):
-    """Gives images other memory than that of the pool, which still books them."""
+    """Provides images with memory outside the pool, which still accounts for them."""
 
     def take(self, size: int, name: str) -> memoryview:
-        """Zeros for an image of `size` bytes; `name` is the table's full name, empty for a buffer that tables share."""
+        """Return zeroed memory for an image of `size` bytes; `name` is the table's full name, empty for a shared
+        buffer.
+        """
 
     def give(self, data: memoryview) -> None:
-        """The buffer is given back; somebody may still look at its memory."""
+        """Take back the memory of a released buffer; it may still be referenced."""
 
 
 class Buffer:
-    """One image (CFE_TBL_LoadBuff_t).
+    """An image (CFE_TBL_LoadBuff_t).
 
     Attributes:
-        data: all of its memory, of which the content may be less; nothing before an app gave its own.
-        is_external: whether it is memory of an app, which nothing is written to.
-        content_size: bytes that were put into it; a partial load ends with its last byte.
-        address: a number for telemetry; nothing can be read through it.
-        block: what it is in the pool; None for memory of an app.
-        load_id: 0 for a free one.
-        source: where the image came from, for LastFileLoaded.
-        file_time: (seconds, subseconds) of the file it came from.
+        data: all of its memory, which may be larger than the content; empty before an app has provided its own.
+        is_external: whether it is memory of an app, which is not written to.
+        content_size: number of bytes stored in it; a partial load ends with its last byte.
+        address: a number for telemetry, not a real address.
+        block: its block in the pool; None for memory of an app.
+        load_id: its id; 0 if it is free.
+        source: the source of the image, for LastFileLoaded.
+        file_time: (seconds, subseconds) of its file.
         crc: CRC-16 of the content at load time.
-        read: gives the content of memory of compiled code, which may be gone; None for other memory.
-        is_valid: the image passed its validation.
-        activate_requested: the owner may switch to it.
+        read: returns the content of compiled code's memory, which may disappear; None for other memory.
+        is_valid: whether the image has passed its validation.
+        activate_requested: whether the owner may switch to it.
     """
 
     __slots__ = (
@@ -81,7 +83,7 @@ class Buffer:
         self.activate_requested = False
 
     def view(self) -> memoryview:
-        """The content, writable in place."""
+        """Return the content, writable in place."""
         return self.data[: self.content_size] if self.read is None else memoryview(self.read())
 
     def copy(self, image: Bytes) -> None:
@@ -93,32 +95,33 @@ class Buffer:
         self.crc = 0
 
     def refer_to(self, memory: memoryview, address: int, read: Callable[[], bytes] | None = None) -> None:
-        """Become the memory of an app (CFE_TBL_LoadBuffSetExternalBlock)."""
+        """Refer to the memory of an app (CFE_TBL_LoadBuffSetExternalBlock)."""
         self.data, self.address, self.content_size, self.crc = memory, address, len(memory), 0
         self.read = read
 
     def leave(self) -> None:
-        """Keep a copy of the memory, which is about to go."""
+        """Copy the memory, which is about to disappear."""
         self.data = memoryview(bytearray(self.data if self.read is None else self.read()))
         self.read = None
 
     def clear(self) -> None:
-        """Overwrite the memory with zeros; there is no content then (CFE_TBL_LoadBuffClearData)."""
+        """Overwrite the memory with zeros, without any content afterwards (CFE_TBL_LoadBuffClearData)."""
         if not self.is_external:
             self.data[:] = bytes(len(self.data))
         self.content_size = self.crc = 0
 
     def recompute_crc(self) -> None:
-        """Note the CRC of the content as it is now."""
+        """Update the CRC to the present content."""
         self.crc = calculate_crc(self.view())
 
 
 class BufferIds:
-    """Which ids there are: serial numbers go round all shared buffers, then round two for each slot of the registry.
+    """The ids of buffers: serial numbers cycle through all shared buffers, then through two for each slot of the
+    registry.
 
     Args:
-        shared: how many load buffers the tables share.
-        tables: slots of the registry.
+        shared: number of load buffers shared by the tables.
+        tables: number of slots in the registry.
     """
 
     def __init__(self, shared: int, tables: int) -> None:
@@ -126,7 +129,7 @@ class BufferIds:
         self._total = shared + tables * _PER_TABLE
 
     def split(self, buffer_id: int) -> tuple[int, int]:
-        """Category and number of the buffer that an id means (CFE_TBL_LoadBuffSerialDecompose)."""
+        """Return the category and number of the buffer with an id (CFE_TBL_LoadBuffSerialDecompose)."""
         return self._split(get_serial(buffer_id))
 
     def _split(self, serial: int) -> tuple[int, int]:
@@ -137,16 +140,18 @@ class BufferIds:
         return category + 1, number
 
     def after(self, buffer_id: int, category: int) -> int:
-        """The id of a category that follows another id (CFE_TBL_LoadBuffIncrementSerial_Impl)."""
+        """Return the next id of a category after another id (CFE_TBL_LoadBuffIncrementSerial_Impl)."""
         serial = get_serial(buffer_id) + 1
         actual, number = self._split(serial)
         if actual != category:
-            serial += -serial % self._total  # the next round
+            serial += -serial % self._total  # the next cycle
             serial += number if category == SHARED else self._shared + (category - 1) * _PER_TABLE + number
         return make(TBL_LOADBUFFID_BASE, serial % self._total if serial >= SERIAL_MAX else serial)
 
     def place(self, buffer_id: int) -> int:
-        """What a registry dump calls a buffer: -1 for none, a shared one's number, -3 and -2 for a table's own."""
+        """Return the number of a buffer in a registry dump: -1 for none, the number of a shared one, -3 and -2 for a
+        table's own.
+        """
         if buffer_id == UNDEFINED:
             return -1
         category, number = self.split(buffer_id)
@@ -154,19 +159,19 @@ class BufferIds:
 
 
 class BufferMemory:
-    """The table buffer pool, and the shared buffers that are lent out of it.
+    """The table buffer pool, and the shared buffers from it.
 
     Args:
-        ports: has Executive Services, and with them the pool.
+        ports: provides Executive Services, which have the pool.
         size: bytes of the pool (CFE_PLATFORM_TBL_BUF_MEMORY_BYTES).
-        shared: how many load buffers the tables share (CFE_PLATFORM_TBL_MAX_SIMULTANEOUS_LOADS).
+        shared: number of load buffers shared by the tables (CFE_PLATFORM_TBL_MAX_SIMULTANEOUS_LOADS).
         shared_size: bytes of each (CFE_PLATFORM_TBL_MAX_SNGL_TABLE_SIZE).
-        tables: how many tables there may be.
+        tables: maximum number of tables.
 
     Attributes:
         pool_id: the pool's handle.
         ids: the ids of buffers.
-        places: where images are from now on; None for the pool's own memory.
+        places: the provider of memory for new images; None for the pool's own memory.
     """
 
     def __init__(self, ports: Ports, size: int, shared: int, shared_size: int, tables: int) -> None:
@@ -182,43 +187,43 @@ class BufferMemory:
         self.places: BufferPlaces | None = None
 
     def early_init(self) -> None:
-        """Make the pool and take the shared buffers out of it.
+        """Create the pool and allocate the shared buffers from it.
 
         Raises:
-            CfeError: there is no room for them.
+            CfeError: if there is no room for them.
         """
         self.pool_id = self._ports.es.pool_create(self._size, "CFE_TBL")
         self._shared = [self.allocate(self._shared_size) for _ in range(self._count)]
 
     def __iter__(self) -> Iterator[Buffer]:
-        """The shared buffers."""
+        """Iterate over the shared buffers."""
         return iter(self._shared)
 
     @property
     def free_shared(self) -> int:
-        """The number of shared buffers that are free."""
+        """The number of free shared buffers."""
         return sum(buffer.load_id == UNDEFINED for buffer in self._shared)
 
     def shared(self, number: int) -> Buffer:
-        """A shared buffer by its number."""
+        """Return a shared buffer by its number."""
         return self._shared[number]
 
     def allocate(self, size: int, name: str = "") -> Buffer:
-        """A zeroed buffer of `size` bytes, for the table of a full name, or to be shared.
+        """Return a zeroed buffer of `size` bytes, for the table with a full name, or a shared one.
 
         Raises:
-            CfeError: CFE_ES_ERR_MEM_BLOCK_SIZE when the pool has no room for it.
+            CfeError: CFE_ES_ERR_MEM_BLOCK_SIZE if the pool has no room for it.
         """
         block = self._ports.es.get_pool_buf(self.pool_id, size)
         data = block.memory if self.places is None else self.places.take(size, name)
         return Buffer(data, self.address_for(size), block)
 
     def external(self) -> Buffer:
-        """A buffer for memory of an app, which stays the app's (CFE_TBL_OPT_USR_DEF_ADDR); it costs nothing here."""
+        """Return a buffer for memory that stays with an app (CFE_TBL_OPT_USR_DEF_ADDR); it uses no pool memory."""
         return Buffer(memoryview(b""), 0)
 
     def free(self, buffer: Buffer) -> None:
-        """Give a table's own buffer back."""
+        """Release a table's own buffer."""
         buffer.load_id = UNDEFINED
         if buffer.block is not None:
             if self.places is not None:
@@ -226,7 +231,7 @@ class BufferMemory:
             self._ports.es.put_pool_buf(self.pool_id, buffer.block)
 
     def acquire_shared(self) -> Buffer | None:
-        """Borrow the shared buffer that is next; None when all are lent (CFE_TBL_AcquireGlobalLoadBuff)."""
+        """Acquire the next free shared buffer; return None if all are in use (CFE_TBL_AcquireGlobalLoadBuff)."""
         candidate = self._last_id
         for _ in self._shared:
             candidate = self.ids.after(candidate, SHARED)
@@ -237,7 +242,7 @@ class BufferMemory:
         return None
 
     def address_for(self, size: int) -> int:
-        """A number for telemetry that no other buffer has."""
+        """Return a unique number as the address for telemetry."""
         address = self._next_address
         self._next_address += size + -size % _ALIGNMENT
         return address

@@ -1,8 +1,7 @@
-"""Critical tables: those whose image is kept in the Critical Data Store and comes back after a processor reset.
+"""Critical tables: their image is kept in the Critical Data Store and restored after a processor reset.
 
-Each has a CDS block of its own under the table's name. Its other facts, the file it came from and the time of loading,
-are in the critical table registry, which is a CDS block too ("CFE_TBL.CritReg"). Stands for the critical part of
-cfe_tbl_internal.c.
+Each has its own CDS block under the table's name. The critical table registry has the file and time of the load. It is
+a CDS block too ("CFE_TBL.CritReg"). The module replaces the critical part of cfe_tbl_internal.c.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from cfepy.tbl.registry import TableRecord, TableRegistry
 REGISTRY_NAME = "CFE_TBL.CritReg"
 
 
-_REMEMBERED = 128  # the registry is written whole whenever one of its records changes
+_REMEMBERED = 128  # the whole registry is written whenever one of its records changes
 
 
 @lru_cache(_REMEMBERED)
@@ -61,17 +60,17 @@ class CriticalRecord:
     loaded_once: bool = False
 
     def begin(self, handle: int, name: str) -> None:
-        """Become the record of a new table; as in cFE `loaded_once` stays what it was."""
+        """Become the record of a new table; as in cFE, `loaded_once` stays unchanged."""
         self.handle, self.name = handle, name
         self.file_time = self.last_update = (0, 0)
         self.last_file = ""
 
     def pack(self) -> bytes:
-        """Its bytes in the CDS."""
+        """Return its bytes in the CDS."""
         return _packed(self.handle, self.name, self.file_time, self.last_update, self.last_file, self.loaded_once)
 
     def unpack(self, data: bytes, at: int) -> None:
-        """Take over what bytes of the CDS say."""
+        """Read the record from bytes of the CDS."""
         values = CRITICAL_RECORD.unpack(data, at)
         self.handle, self.name = values["CDSHandle"], values["Name"]
         self.file_time = values["FileTime"]["Seconds"], values["FileTime"]["Subseconds"]
@@ -83,9 +82,9 @@ class CriticalTables:
     """The critical table registry of a mission.
 
     Args:
-        ports: has the CDS and the system log.
-        config: how many critical tables there may be, and the release.
-        registry: has the tables' buffers.
+        ports: provides the CDS and the system log.
+        config: the maximum number of critical tables, and the release.
+        registry: provides the tables' buffers.
     """
 
     def __init__(self, ports: Ports, config: PlatformConfig, registry: TableRegistry) -> None:
@@ -96,7 +95,7 @@ class CriticalTables:
         self._handle = 0
 
     def early_init(self) -> None:
-        """Find the registry in the CDS, or make it; without a CDS there are no critical tables."""
+        """Find the registry in the CDS, or create it; without a CDS there are no critical tables."""
         size = len(self._records) * CRITICAL_RECORD.size
         try:
             self._handle, status = self._ports.es.register_cds_ex(size, REGISTRY_NAME, critical_table=True)
@@ -115,13 +114,13 @@ class CriticalTables:
             record.unpack(data, number * CRITICAL_RECORD.size)
 
     def register(self, table: TableRecord) -> int:
-        """Make a new table critical, with the image it had before a reset if there is a good one.
+        """Make a new table critical, and restore its valid image from before a reset, if there is one.
 
         Returns:
             CFE_SUCCESS, or CFE_TBL_INFO_RECOVERED_TBL.
 
         Raises:
-            CfeError: the CDS has no room for it, or there is no CDS; the table is an ordinary one then.
+            CfeError: if the CDS has no room for it, or there is no CDS; the table then stays an ordinary one.
         """
         handle, status = self._ports.es.register_cds_ex(table.size, table.name, critical_table=True)
         table.cds_handle, table.critical = handle, True
@@ -137,11 +136,11 @@ class CriticalTables:
         return CFE_SUCCESS
 
     def _restore(self, table: TableRecord) -> bool:
-        """Give a table the image that the CDS has (CFE_TBL_RestoreTableDataFromCDS); False when there is none.
+        """Restore a table's image from the CDS (CFE_TBL_RestoreTableDataFromCDS); return False if there is none.
 
-        As in cFE nobody says how much was put into the buffer: the CRC of what came back is that of nothing, 0, and a
-        dump is empty, until the next load. Where there is no image, or with release 7.0.0 in any case, the load that
-        was begun for it stays in progress.
+        As in cFE, the size of the content is not set. So until the next load the CRC of the restored image is 0, the
+        CRC of no bytes, and a dump is empty. If there is no image, and always with release 7.0.0, the load begun for it
+        stays in progress.
         """
         function = "RestoreTableDataFromCDS"
         buffer = self._registry.working_buffer(table)
@@ -166,7 +165,7 @@ class CriticalTables:
         return True
 
     def save(self, table: TableRecord) -> None:
-        """Keep the active image of a critical table; a failure is logged, and the table good all the same."""
+        """Save the active image of a critical table; a failure is logged and does not affect the table."""
         active, function = self._registry.active(table), "UpdateCriticalTblCDS"
         try:
             if active is None:
@@ -184,11 +183,11 @@ class CriticalTables:
         self._save(function, "Unable to update Critical Table Registry in CDS")
 
     def find(self, name: str) -> CriticalRecord | None:
-        """The record of a table's full name, also after its CDS was deleted, or None."""
+        """Return the record of a table's full name, even after its CDS was deleted, or None."""
         return next((record for record in self._records if record.name == name), None)
 
     def delete(self, record: CriticalRecord) -> None:
-        """Delete the CDS of a table that is not registered any more; the registry is written with its next change.
+        """Delete the CDS of a table that is no longer registered; the registry is written with its next change.
 
         Raises:
             CfeError: CFE_ES_CDS_WRONG_TYPE_ERR, CFE_ES_CDS_OWNER_ACTIVE_ERR, CFE_ES_ERR_NAME_NOT_FOUND.

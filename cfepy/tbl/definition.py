@@ -1,7 +1,7 @@
-"""The definition of a table, declared once by the app that owns it: for the app itself and for the tools on the ground.
+"""The definition of a table, declared once by its app, for the app itself and for ground tools.
 
-An app package offers its tables as `TABLES` next to its entry point, where tools find them. Stands for what a C app
-says in its table header and in CFE_TBL_FILEDEF.
+An app package offers its tables as `TABLES` next to its entry point, where tools find them. The module replaces a C
+app's table header and CFE_TBL_FILEDEF.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from cfepy.tbl.image import TableImage, pack_rows, unpack_rows
 
 Row = Mapping[str, Any]
 Rows = Sequence[Row] | Mapping[str, Any] | Mapping[int, Row]
-"""Rows from the first on, one row's fields, or rows by their number."""
+"""Rows from the first one on, the fields of one row, or rows by their number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,13 +26,13 @@ class TableType:
     Args:
         name: full name, "APP.Table".
         row: layout of a row.
-        rows: how many of them.
-        file: where the app loads it from at its start; empty when it does not.
-        description: of its file, at most 31 characters.
-        fault: the application's validation, for those who cannot ask the application: given a whole image, it says
-            what the application refuses it for, or None.
-        telemetry: for those who cannot ask the application, the packets that it makes as the table says: given a whole
-            image, and the telemetry that is declared otherwise, by MsgId.
+        rows: number of rows.
+        file: the file that the app loads at its start; empty for none.
+        description: description in its file, at most 31 characters.
+        fault: the application's validation, for tools: given a whole image, it returns why the application would refuse
+            it, or None.
+        telemetry: for tools, the packets that the application makes according to the table: it gets a whole image and
+            the other declared telemetry by MsgId.
 
     >>> point = TableType("APP.Points", Layout("Point", [("X", "u8"), ("Y", "u8")]), rows=3)
     >>> point.pack({1: {"X": 7}}).hex()
@@ -53,37 +53,37 @@ class TableType:
 
     @property
     def own_name(self) -> str:
-        """The name without the application's, as CFE_TBL_Register takes it: "Table"."""
+        """The name without the application's, as for CFE_TBL_Register: "Table"."""
         return self.name.partition(".")[2]
 
     @property
     def size(self) -> int:
-        """Bytes of the whole table."""
+        """The bytes of the whole table."""
         return self.rows * self.row.size
 
     def pack(self, values: Rows) -> bytes:
-        """The table's bytes; rows and fields that are not given are zero.
+        """Return the table's bytes; missing rows and fields are zero.
 
         Args:
-            values: the fields of the only row, a sequence of rows, or rows by their number, which begins at 0.
+            values: the fields of the only row, a sequence of rows, or rows by their number, from 0.
 
         Raises:
-            UsageError: too many rows, an unknown field, or a value that does not fit; `field` says which.
+            UsageError: for too many rows, an unknown field, or a value that does not fit; `field` has its path.
         """
         return pack_rows(self.row, self._in_order(values), self.rows)
 
     def unpack(self, data: bytes | bytearray | memoryview) -> list[dict[str, Any]]:
-        """All rows of a table image, zero rows included.
+        """Return all rows of a table image, including zero rows.
 
         Raises:
-            UsageError: the image has another size than the table.
+            UsageError: if the size of the image differs from the table.
         """
         if len(data) != self.size:
             raise UsageError(f"{self.name} has {self.size} bytes, this image has {len(data)}", field="data")
         return unpack_rows(self.row, data)
 
     def image(self, values: Rows) -> TableImage:
-        """The image of a table file, ready for `cfepy.tbl.build`; errors as `pack`."""
+        """Return the image of a table file for `cfepy.tbl.build`; see `pack` for the errors."""
         return TableImage(self.name, self.pack(values), self.description)
 
     def _in_order(self, values: Rows) -> Sequence[Row]:

@@ -1,7 +1,7 @@
-"""Dumping a table to a file: a request, a snapshot of the image, and the file, written with the next housekeeping.
+"""Table dumps: a request, a snapshot of the image, and the file, written with the next housekeeping.
 
-Stands for cfe_tbl_dump.c. The snapshot of a dump-only table is taken by its owner (CFE_TBL_DumpToBuffer), of any other
-table at once.
+The module replaces cfe_tbl_dump.c. The owner takes the snapshot of a dump-only table (CFE_TBL_DumpToBuffer). Snapshots
+of other tables are taken at once.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ DESCRIPTION = "Table Dump Image"
 
 
 def select_buffer(registry: TableRegistry, table: TableRecord, which: int) -> Buffer | None:
-    """The image that a dump or validate command means; None when there is none (CFE_TBL_GetSelectedBuffer)."""
+    """Return the image selected in a dump or validate command; None if there is none (CFE_TBL_GetSelectedBuffer)."""
     if which == ACTIVE_BUFFER:
         return registry.active(table)
     return registry.inactive(table) if which == INACTIVE_BUFFER else None
 
 
 class DumpRefused(CfeError):
-    """A dump that cannot be, with the id of the event that tells the ground; `text` is what that event says.
+    """Exception for a refused dump, with the id and `text` of the event for the ground.
 
-    There is none for a buffer whose id was freed: cFE refuses the dump and says nothing.
+    There is no event for a buffer whose id was freed: cFE refuses that dump silently.
     """
 
     def __init__(self, status: int, event_id: int, text: str) -> None:
@@ -52,17 +52,17 @@ class DumpRefused(CfeError):
 
 
 class DumpControl:
-    """One dump that the ground asked for (CFE_TBL_DumpControl_t).
+    """A dump requested by the ground (CFE_TBL_DumpControl_t).
 
     Attributes:
-        table: whose.
+        table: the table.
         table_name: its name.
-        source: the buffer that is copied.
-        source_id: its id when the ground asked; 0 once it was copied.
-        image: the snapshot, which goes to the file later.
-        file_name: of that file.
-        file_time: when the snapshot was taken.
-        performed: whether it was.
+        source: the buffer to copy.
+        source_id: its id at the request; 0 once it was copied.
+        image: the snapshot for the file.
+        file_name: name of the file.
+        file_time: time of the snapshot.
+        performed: whether the snapshot was taken.
         number: its id.
     """
 
@@ -81,12 +81,12 @@ class DumpControl:
 
     @property
     def has_source(self) -> bool:
-        """Whether the buffer still has the id that it had."""
+        """Whether the buffer still has the same id."""
         return self.source_id != UNDEFINED and self.source.load_id == self.source_id
 
 
 class Dumps:
-    """The dumps under way, at most CFE_PLATFORM_TBL_MAX_SIMULTANEOUS_LOADS.
+    """The dumps in progress, at most CFE_PLATFORM_TBL_MAX_SIMULTANEOUS_LOADS.
 
     Attributes:
         last_file: the file written last, for housekeeping.
@@ -104,13 +104,13 @@ class Dumps:
         self.last_file = ""
 
     def request(self, table: TableRecord, which: int, file_name: str) -> None:
-        """Begin a dump of the active or inactive image (CFE_TBL_AllocateDumpCtrlBlock, _PrepareDumpSnapshotBuffer).
+        """Start a dump of the active or inactive image (CFE_TBL_AllocateDumpCtrlBlock, _PrepareDumpSnapshotBuffer).
 
-        As in cFE a dump that fails for want of a buffer, or of an id, keeps its place among the dumps for ever.
+        As in cFE, a dump that fails for lack of a buffer or an id keeps its slot forever.
 
         Raises:
-            DumpRefused: one is pending, there is no such image, there are too many dumps, no buffer for the snapshot,
-                or the buffer has no id.
+            DumpRefused: if one is pending, the image does not exist, there are too many dumps, no buffer is free for
+                the snapshot, or the buffer has no id.
         """
         if table.dump_id != UNDEFINED:
             raise DumpRefused(CFE_TBL_INFO_DUMP_PENDING, ev.DUMP_PENDING_ERR_EID, "A dump is already pending")
@@ -135,15 +135,15 @@ class Dumps:
             raise DumpRefused(CFE_TBL_ERR_INVALID_HANDLE, UNDEFINED, f"{table.name!r} cannot be dumped")
 
     def take_snapshot(self, table: TableRecord, access: Access) -> int:
-        """Take the snapshot that waits for the owner (CFE_TBL_DumpToBuffer).
+        """Take the pending snapshot as the owner (CFE_TBL_DumpToBuffer).
 
-        The table goes on waiting until the file was written, and this was called once more.
+        The table stays pending until the file was written and this was called once more.
 
         Returns:
             CFE_SUCCESS, or CFE_TBL_INFO_NO_DUMP_PENDING.
 
         Raises:
-            CfeError: CFE_TBL_ERR_INVALID_HANDLE when the buffer has lost its id, or the snapshot is taken already.
+            CfeError: CFE_TBL_ERR_INVALID_HANDLE if the buffer has lost its id, or the snapshot was already taken.
         """
         dump = self._dumps.find(table.dump_id)
         if dump is not None:
@@ -157,7 +157,7 @@ class Dumps:
         return CFE_TBL_INFO_NO_DUMP_PENDING
 
     def _take(self, dump: DumpControl) -> bool:
-        """Copy the image (CFE_TBL_ExecuteDumpSnapshot); whether its buffer still has its id."""
+        """Copy the image (CFE_TBL_ExecuteDumpSnapshot); return whether its buffer still has its id."""
         if not dump.has_source or dump.image is None:
             return False
         dump.image.copy(dump.source.view())
@@ -166,13 +166,13 @@ class Dumps:
         return True
 
     def write_files(self, app_id: int) -> Iterator[tuple[DumpControl, int, int, str]]:
-        """Write every snapshot that was taken to its file.
+        """Write every finished snapshot to its file.
 
         Args:
             app_id: AppId of Table Services, for the header.
 
         Returns:
-            Each dump with id, type and text of the event that tells of it.
+            Each dump with the id, type and text of its event.
         """
         for number in range(self._dumps.capacity):
             dump = self._dumps.at(number)
@@ -201,7 +201,7 @@ class Dumps:
         return ev.WRITE_DUMP_INF_EID, ev.INFORMATION, "Successfully dumped table"
 
     def _store(self, name: str, data: bytes) -> tuple[int, str] | None:
-        """Write a file piece by piece, so that it is known which one found no room; event and text of that failure."""
+        """Write a file in parts, to find the part that fails; return event and text of the failure, or None."""
         headers = HEADER_SIZE + TABLE_HEADER_SIZE
         no_header = f"Error writing cFE File Header, Status=0x{CFE_STATUS_EXTERNAL_RESOURCE_FAIL & 0xFFFFFFFF:08X}"
         for end, event_id, text in (
@@ -221,7 +221,7 @@ class Dumps:
     def forget_owner(self, app_id: int) -> None:
         """Drop the dumps of an app's tables whose snapshots were not taken, because the app ends (CFE_TBL_CleanUpApp).
 
-        As in cFE the buffers that they had borrowed are not given back.
+        As in cFE, their shared buffers are not released.
         """
         for dump in [dump for dump in self._dumps if dump.has_source]:
             if dump.table.reg_id in self._registry.tables and dump.table.owner == app_id:

@@ -1,11 +1,12 @@
-"""Table files made and read by people and tools: headers and image in one, from field values (elf2cfetbl's job).
+"""Table files for users and tools: headers and image in one, from field values (the job of elf2cfetbl).
 
-A mission describes its tables as Python values and a layout; this turns them into the bytes that CFE_TBL_Load accepts.
+A mission describes its tables as Python values and a layout. This module converts them into the bytes that CFE_TBL_Load
+accepts.
 
-cFE's table files carry no check value. A file may be given one here, an integrity mark: the reserved word of its table
-header, which is 0 in all others and which NASA's cFE does not look at, then says "CR" and the CRC of the whole file. It
-is the CRC of CFE_ES_CalculateCRC, so that flight software can check it too. A marked file of which a bit is wrong is
-never loaded; a file without mark loads as ever.
+cFE's table files have no check value. Here a file can have one, an integrity mark: the reserved word of its table
+header then has "CR" and the CRC of the whole file. The word is 0 in all other files, and NASA's cFE ignores it. The CRC
+is the one of CFE_ES_CalculateCRC, so flight software can check it too. A marked file with a wrong bit is never loaded.
+A file without a mark loads as usual.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ _MARK = slice(HEADER_SIZE, HEADER_SIZE + 4)
 
 
 class TableImage(NamedTuple):
-    """What a table file holds: `data` belongs at byte `offset` of the table called `name` ("APP.Table")."""
+    """The content of a table file: `data` belongs at byte `offset` of the table `name` ("APP.Table")."""
 
     name: str
     data: bytes
@@ -41,10 +42,10 @@ class TableImage(NamedTuple):
 
 
 def build(image: TableImage) -> bytes:
-    """The table file of an image.
+    """Return the table file of an image.
 
     Raises:
-        UsageError: the name is empty, has no dot, or is longer than 39 characters; or there is no data.
+        UsageError: if the name is empty, has no dot, or is longer than 39 characters; or there is no data.
     """
     if "." not in image.name or not 0 < len(image.name) < FULL_NAME_SIZE:
         text = f"{image.name!r} is no full table name; write APP.Table, at most {FULL_NAME_SIZE - 1} characters"
@@ -62,10 +63,10 @@ def build(image: TableImage) -> bytes:
 
 
 def read(data: bytes) -> TableImage:
-    """The image in a table file.
+    """Return the image in a table file.
 
     Raises:
-        CfeError: the file is no table file or is too short; the statuses are those of CFE_TBL_Load.
+        CfeError: if the file is not a table file or is too short; with the statuses of CFE_TBL_Load.
     """
     header, table, image = read_table_file(data)
     ids = header.spacecraft_id, header.processor_id
@@ -74,7 +75,7 @@ def read(data: bytes) -> TableImage:
 
 
 def mark_for(data: bytes) -> int:
-    """The integrity mark that belongs into a table file: MARK_TAG and the CRC of the file with a mark of 0.
+    """Return the correct integrity mark of a table file: MARK_TAG and the CRC of the file with a mark of 0.
 
     Args:
         data: the whole file, whether or not it has a mark.
@@ -83,15 +84,15 @@ def mark_for(data: bytes) -> int:
 
 
 def mark_in(data: bytes) -> int:
-    """The integrity mark that a table file has; 0 for none."""
+    """Return the integrity mark in a table file; 0 for none."""
     return int.from_bytes(data[_MARK], "big")
 
 
 def with_mark(data: bytes) -> bytes:
-    """A table file with its integrity mark.
+    """Return a table file with its integrity mark.
 
     Raises:
-        UsageError: it is too short for a table file.
+        UsageError: if it is too short for a table file.
     """
     if len(data) < HEADER_SIZE + TABLE_HEADER_SIZE:
         raise UsageError(f"a table file has {HEADER_SIZE + TABLE_HEADER_SIZE} bytes at least, this one {len(data)}")
@@ -99,16 +100,16 @@ def with_mark(data: bytes) -> bytes:
 
 
 def is_intact(data: bytes) -> bool:
-    """Whether a table file has no integrity mark, or the one that belongs to it."""
+    """Return whether a table file has no integrity mark or a correct one."""
     mark = mark_in(data)
     return mark == 0 or mark == mark_for(data)
 
 
 def pack_rows(row: Layout, rows: Sequence[Mapping[str, Any]], capacity: int) -> bytes:
-    """A table that is an array of `capacity` equal structs, filled up with zeros after the given rows.
+    """Return a table that is an array of `capacity` equal structs, padded with zeros after the given rows.
 
     Raises:
-        UsageError: too many rows, or a value that does not fit; `field` says which row and field.
+        UsageError: for too many rows, or a value that does not fit; `field` has its path.
     """
     if len(rows) > capacity:
         raise UsageError(f"{len(rows)} rows of {row.name}; there is room for {capacity}", field="rows")
@@ -116,19 +117,19 @@ def pack_rows(row: Layout, rows: Sequence[Mapping[str, Any]], capacity: int) -> 
 
 
 def unpack_rows(row: Layout, data: bytes | bytearray | memoryview) -> list[dict[str, Any]]:
-    """The rows of such a table, zero rows included."""
+    """Return the rows of such a table, including zero rows."""
     return [row.unpack(data, at) for at in range(0, len(data) - row.size + 1, row.size)]
 
 
 def write_beside(definition: str, image: TableImage) -> Path:
-    """Write the table file that a definition describes: "x.py" makes "x.tbl" in the same directory.
+    """Write the table file of a definition: "x.py" makes "x.tbl" in the same directory.
 
     Args:
         definition: path of the definition, usually its `__file__`.
-        image: what it describes.
+        image: its image.
 
     Returns:
-        The path written.
+        The path of the file.
     """
     path = Path(definition).with_suffix(".tbl")
     path.write_bytes(build(image))

@@ -1,6 +1,6 @@
 """Loading a table: the working buffer, validation, and the switch to the new image.
 
-Stands for the second half of cfe_tbl_load.c.
+It replaces the second half of cfe_tbl_load.c.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from cfepy.tbl.table_file import LoadFile, Refused, TableStorage
 
 _SIGN_EXTENDED = 0xFFFFFFFFFFFFFFFF
 SRC_FILE, SRC_ADDRESS = 0, 1
-"""Where an image comes from (CFE_TBL_SrcEnum_t)."""
+"""The source of an image (CFE_TBL_SrcEnum_t)."""
 
 
 class Loads:
-    """What loads need of the registry, the buffers and the other services."""
+    """The loads of tables, with the registry, the buffers and the other services."""
 
     def __init__(
         self, registry: TableRegistry, memory: BufferMemory, ports: Ports, files: TableStorage, critical: CriticalTables
@@ -47,11 +47,11 @@ class Loads:
         """Check that a table can be loaded now, and reserve its working buffer (CFE_TBL_ValidateLoadRequest).
 
         Args:
-            table: to be loaded.
-            source_type: SRC_FILE or SRC_ADDRESS; C code can say any number.
+            table: the table to load.
+            source_type: SRC_FILE or SRC_ADDRESS; C code can pass any number.
 
         Raises:
-            Refused: a load is in progress, the table is dump-only, or no buffer is to be had.
+            Refused: if a load is in progress, the table is dump-only, or no buffer is free.
         """
         if table.is_loading:
             text = "Load already in progress"
@@ -68,10 +68,10 @@ class Loads:
     def fill_from_file(self, table: TableRecord, file: LoadFile) -> None:
         """Read a file into the working buffer (CFE_TBL_LoadContentFromFile, CFE_TBL_SetMetaDataFromFileHeader).
 
-        What there is of a file that is too short, or too long, is in the buffer when this fails.
+        If the file is too short or too long, the bytes already read stay in the buffer.
 
         Raises:
-            Refused: the file does not belong into the table, or no load is in progress.
+            Refused: if the file does not belong to the table, or no load is in progress.
         """
         file.check_fits(table)
         buffer = self._registry.loading(table)
@@ -100,16 +100,16 @@ class Loads:
         address: int | None = None,
         read: Callable[[], bytes] | None = None,
     ) -> None:
-        """Copy an image into the working buffer, or, with a user-defined address, make it the working buffer.
+        """Copy an image into the working buffer, or make it the working buffer if the address is user-defined.
 
         Args:
-            table: to be loaded.
+            table: the table to load.
             source: the image.
-            address: where C has it; None for bytes of Python, which get a number for telemetry.
-            read: gives it later on, when C's memory may be gone.
+            address: its address in C; None for bytes of Python, which get a number for telemetry.
+            read: reads it later, when C's memory may have disappeared.
 
         Raises:
-            Refused: the source has no bytes, or is shorter than the table (C would read past its end).
+            Refused: if the source is not bytes, or is shorter than the table (C would read past its end).
         """
         if not isinstance(source, Bytes):
             text = f"Attempted to load from illegal source type={type(source).__name__}"
@@ -128,10 +128,10 @@ class Loads:
         buffer.recompute_crc()
 
     def validate(self, table: TableRecord) -> list[Refused]:
-        """Run the validator over the working buffer; returns what to report, nothing when the image is good.
+        """Run the validator on the working buffer; return the refusals to report, or an empty list for a valid image.
 
-        A bad image is overwritten with zeros. A positive result of a validator is a mistake of its own and is reported
-        besides.
+        An invalid image is overwritten with zeros. A positive result of a validator is an error of the validator and is
+        reported too.
         """
         buffer = self._loading(table)
         result = table.judge(table.image(buffer))
@@ -151,7 +151,8 @@ class Loads:
         """Make the loaded image the active one (CFE_TBL_UpdateInternal).
 
         Returns:
-            CFE_SUCCESS, CFE_TBL_INFO_NO_UPDATE_PENDING, or CFE_TBL_INFO_TABLE_LOCKED: then try again later.
+            CFE_SUCCESS, CFE_TBL_INFO_NO_UPDATE_PENDING, or CFE_TBL_INFO_TABLE_LOCKED, after which the caller should try
+                again later.
         """
         registry = self._registry
         loaded = registry.loading(table)
@@ -174,7 +175,7 @@ class Loads:
         return CFE_SUCCESS
 
     def open(self, file: LoadFile) -> None:
-        """Read and check a file that was named; see `LoadFile.open`."""
+        """Read and check a file; see `LoadFile.open`."""
         file.open(self._files)
 
     def _loading(self, table: TableRecord) -> Buffer:

@@ -1,6 +1,6 @@
 """The messages of Table Services, commands and telemetry, each declared with its layout (cfe_tbl_msg.h).
 
-Also the records of a registry dump file and of the critical table registry.
+It also has the records of a registry dump file and of the critical table registry.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ REG_TLM_MID = local_tlm_topic_id_to_msg_id(0x0C)
 
 INACTIVE_BUFFER = 0
 ACTIVE_BUFFER = 1
-"""Which image a dump or validate command means (CFE_TBL_BufferSelect_Enum_t)."""
+"""The image in a dump or validate command (CFE_TBL_BufferSelect_Enum_t)."""
 
 FULL_NAME_SIZE = 40
 PATH_SIZE = 64
@@ -44,7 +44,7 @@ _VALIDATE = Layout("CFE_TBL_ValidateCmd_Payload_t", [("ActiveTableFlag", BUFFERS
 _TABLE_NAME = Layout("CFE_TBL_ActivateCmd_Payload_t", [("TableName", _FULL_NAME)])
 _DUMP_REGISTRY = Layout("CFE_TBL_DumpRegistryCmd_Payload_t", [("DumpFilename", _PATH)])
 NOTIFY_COMMAND = Layout("CFE_TBL_NotifyCmd_Payload_t", [("Parameter", "u32")])
-"""What `CFE_TBL_NotifyByMessage` sends to an owner."""
+"""The payload that `CFE_TBL_NotifyByMessage` sends to an owner."""
 
 HOUSEKEEPING = Layout(
     "CFE_TBL_HousekeepingTlm_Payload_t",

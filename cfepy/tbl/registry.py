@@ -1,7 +1,7 @@
-"""The table registry: which tables exist, which app owns each, and which apps use it through which handle.
+"""The table registry: the existing tables, their owners, and the handles of apps.
 
-Stands for cfe_tbl_regrec.c, cfe_tbl_accdesc.c and cfe_tbl_registry.c. A table lives until its owner and every app that
-shares it gave their handles back.
+It replaces cfe_tbl_regrec.c, cfe_tbl_accdesc.c and cfe_tbl_registry.c. A table exists until its owner and every app
+that shares it have released their handles.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ OPT_CRITICAL = 8
 _USR_DEF_BIT = 4
 
 MAX_NAME_LENGTH = 16
-"""Characters of a table's own name, the NUL included (CFE_MISSION_TBL_MAX_NAME_LENGTH)."""
+"""Characters of a table's own name, including the NUL (CFE_MISSION_TBL_MAX_NAME_LENGTH)."""
 
 Validator = Callable[[memoryview], int]
-"""Looks at an image; returns 0 when it is good, a negative number when not."""
+"""Checks an image; returns 0 if it is valid, otherwise a negative number."""
 
 
 class TableHandle(int):
-    """A table handle; an int with what CFE_TBL_Register had to say besides "success".
+    """A table handle: an int with the status of CFE_TBL_Register.
 
     Attributes:
         status: CFE_SUCCESS, CFE_TBL_WARN_DUPLICATE, CFE_TBL_WARN_NOT_CRITICAL or CFE_TBL_INFO_RECOVERED_TBL.
@@ -53,7 +53,7 @@ class TableHandle(int):
     status: int = CFE_SUCCESS
 
     def with_status(self, status: int) -> TableHandle:
-        """The same handle with another status."""
+        """Return the same handle with another status."""
         handle = TableHandle(self)
         handle.status = status
         return handle
@@ -63,18 +63,19 @@ class TableRecord:
     """A registered table (CFE_TBL_RegistryRec_t).
 
     Attributes:
-        owner: AppId, or 0 once the owner unregistered it.
-        buffers: its own one or two.
-        active_id: of the buffer that apps see; 0 until the first load. The buffer itself may have another id meanwhile.
-        previous_id: of the buffer that was active before.
-        next_id: of the buffer of a load in progress.
-        cds_handle: the block of the CDS that keeps a critical table's image; 0 for all others.
+        owner: AppId, or 0 once the owner has unregistered it.
+        buffers: its own one or two buffers.
+        active_id: id of the buffer that apps see; 0 until the first load. The buffer itself may have another id
+            meanwhile.
+        previous_id: id of the buffer that was active before.
+        next_id: id of the buffer of a load in progress.
+        cds_handle: the CDS block of a critical table's image; 0 for other tables.
         critical: whether its image outlives a processor reset.
         accesses: the handles on it.
-        validations: ids of what the owner shall validate; a release with one request at a time has it under None, the
-            other one for the active image under True and one for the inactive image under False.
-        dump_id: of a dump that the owner shall take, or has taken.
-        notify: (message id, function code, parameter) of the owner's wish to be told of requests.
+        validations: ids of the pending validations of the owner. A release with one request at a time has it under
+            None; the other release has one for the active image under True and one for the inactive image under False.
+        dump_id: id of a dump that the owner should take or has taken.
+        notify: (message id, function code, parameter) of the notification that the owner wants for requests.
     """
 
     def __init__(self, name: str, size: int, options: int, validator: Validator | None, owner: int) -> None:
@@ -100,7 +101,7 @@ class TableRecord:
 
     @property
     def is_loaded(self) -> bool:
-        """Whether it has an image that apps see."""
+        """Whether it has an image for apps."""
         return self.active_id != UNDEFINED
 
     @property
@@ -109,10 +110,10 @@ class TableRecord:
         return self.next_id != UNDEFINED
 
     def judge(self, image: memoryview) -> int:
-        """What the validator says of an image, a number of 32 bits; 0 without one.
+        """Return the validator's result for an image, a 32-bit number; 0 without a validator.
 
         Raises:
-            TypeError: it did not say a number; a mistake of the application.
+            TypeError: if the validator did not return a number, which is an error of the application.
         """
         result = 0 if self.validator is None else self.validator(image)
         if not isinstance(result, int):
@@ -120,30 +121,30 @@ class TableRecord:
         return to_signed(result)
 
     def set_active(self, buffer: Buffer) -> None:
-        """Let apps see a buffer (CFE_TBL_SetActiveBuffer)."""
+        """Make a buffer the active one (CFE_TBL_SetActiveBuffer)."""
         self.previous_id, self.active_id = self.active_id, buffer.load_id
 
     def image(self, buffer: Buffer) -> memoryview:
-        """The memory of the whole table in a buffer, also what was never put into it."""
+        """Return the memory of the whole table in a buffer, including parts that were never written."""
         return buffer.data[: self.size]
 
     def note_load(self, source: str, time: tuple[int, int]) -> None:
-        """Remember where and when the active image came from (CFE_TBL_RegRecResetLoadInfo)."""
+        """Record the source and time of the active image (CFE_TBL_RegRecResetLoadInfo)."""
         self.last_file, self.last_update, self.modified = source, time, False
 
     def tell_users(self) -> None:
-        """Every handle's next address is of new content (CFE_TBL_NotifyTblUsersOfUpdate)."""
+        """Mark the content as new for every handle (CFE_TBL_NotifyTblUsersOfUpdate)."""
         for access in self.accesses:
             access.updated = True
 
 
 class Access:
-    """What one app knows a table by (CFE_TBL_AccessDescriptor_t).
+    """An app's handle on a table (CFE_TBL_AccessDescriptor_t).
 
     Attributes:
-        locked: the app has the address of a buffer.
-        buffer_id: what that buffer's id was then.
-        updated: the content changed since the app last got the address.
+        locked: whether the app has the address of a buffer.
+        buffer_id: id of that buffer at the time.
+        updated: whether the content has changed since the app last got the address.
     """
 
     __slots__ = ("app_id", "buffer_id", "handle", "locked", "table", "updated")
@@ -162,11 +163,11 @@ class TableRegistry:
 
     Args:
         config: the limits.
-        memory: where the tables' buffers come from.
-        ports: has the system log.
+        memory: the source of the tables' buffers.
+        ports: provides the system log.
 
     Attributes:
-        services_app_id: AppId of Table Services, which may use every handle; 0 before their task runs.
+        services_app_id: AppId of Table Services, which may use every handle; 0 before its task runs.
     """
 
     def __init__(self, config: PlatformConfig, memory: BufferMemory, ports: Ports) -> None:
@@ -184,11 +185,11 @@ class TableRegistry:
         )
 
     def find(self, name: str) -> TableRecord | None:
-        """The table of a full name, or None."""
+        """Return the table with a full name, or None."""
         return next((table for table in self.tables if table.name == name), None)
 
     def by_name(self, name: str) -> TableRecord:
-        """The table of a full name.
+        """Return the table with a full name.
 
         Raises:
             CfeError: CFE_TBL_ERR_INVALID_NAME.
@@ -199,7 +200,7 @@ class TableRegistry:
         return table
 
     def check(self, app_name: str, name: str, size: int, options: int) -> str:
-        """The full name of a table to be, once name, options and size are found good, in that order.
+        """Check name, options and size of a new table, in that order, and return its full name.
 
         Raises:
             CfeError: CFE_TBL_ERR_INVALID_NAME, _OPTIONS or _SIZE.
@@ -218,10 +219,10 @@ class TableRegistry:
         return f"{app_name}.{name}"
 
     def duplicate(self, full_name: str, size: int, app_id: int) -> Access | None:
-        """The handle that an app already has on a table of its own of that name and size; None for a new name.
+        """Return the app's existing handle on its own table of the same name and size; None for a new name.
 
         Raises:
-            CfeError: CFE_TBL_ERR_DUPLICATE_NOT_OWNED, _DUPLICATE_DIFF_SIZE, or _UNREGISTERED when it has no handle.
+            CfeError: CFE_TBL_ERR_DUPLICATE_NOT_OWNED, _DUPLICATE_DIFF_SIZE, or _UNREGISTERED if it has no handle.
         """
         table = self.find(full_name)
         if table is None:
@@ -237,10 +238,10 @@ class TableRegistry:
         raise CfeError(CFE_TBL_ERR_UNREGISTERED, f"the owner of {full_name!r} has no handle on it")
 
     def add(self, table: TableRecord) -> Access:
-        """Enter a new table, with its buffers, and give its owner a handle.
+        """Add a new table with its buffers, and give its owner a handle.
 
         Raises:
-            CfeError: no registry entry, no handle or no buffer memory left; nothing is entered then.
+            CfeError: if no registry entry, handle or buffer memory is left; the table is then not added.
         """
         table.reg_id = self.tables.create(table)
         try:
@@ -251,12 +252,12 @@ class TableRegistry:
             raise
         if table.dump_only and not table.user_defined:
             buffer = self.exclusive_buffer(table)
-            assert buffer is not None  # nobody has an address of a table that was just made
+            assert buffer is not None  # no app has an address of a new table
             table.set_active(buffer)
         return access
 
     def connect(self, table: TableRecord, app_id: int) -> Access:
-        """One more handle on a table.
+        """Add a handle on a table.
 
         Raises:
             CfeError: CFE_TBL_ERR_HANDLES_FULL.
@@ -267,7 +268,7 @@ class TableRegistry:
         return access
 
     def release(self, access: Access) -> None:
-        """Take a handle back; with the last one of a table without owner the table goes too."""
+        """Release a handle. The last handle of a table without an owner also removes the table."""
         table = access.table
         if table.owner == access.app_id:
             table.owner = UNDEFINED
@@ -279,7 +280,7 @@ class TableRegistry:
     # -- buffers of a table, by their ids --
 
     def locate(self, table: TableRecord, buffer_id: int) -> Buffer | None:
-        """The buffer that an id means, whatever id it has itself by now (CFE_TBL_LocateLoadBufferByID)."""
+        """Return the buffer that an id refers to, even if it has another id now (CFE_TBL_LocateLoadBufferByID)."""
         if buffer_id == UNDEFINED:
             return None
         category, number = self._memory.ids.split(buffer_id)
@@ -288,11 +289,11 @@ class TableRegistry:
         return table.buffers[number if table.double_buffered else 0]
 
     def active(self, table: TableRecord) -> Buffer | None:
-        """The buffer that apps see; None before the first load."""
+        """Return the active buffer; None before the first load."""
         return self.locate(table, table.active_id)
 
     def loading(self, table: TableRecord) -> Buffer | None:
-        """The buffer of the load in progress (CFE_TBL_GetLoadInProgressBuffer)."""
+        """Return the buffer of the load in progress (CFE_TBL_GetLoadInProgressBuffer)."""
         buffer = self.locate(table, table.next_id)
         if buffer is None or buffer.load_id == table.next_id:
             return buffer
@@ -302,28 +303,30 @@ class TableRegistry:
         return None
 
     def inactive(self, table: TableRecord) -> Buffer | None:
-        """The buffer of the load in progress, else the one that was active before (CFE_TBL_GetInactiveBuffer)."""
+        """Return the buffer of the load in progress, otherwise the previously active one
+        (CFE_TBL_GetInactiveBuffer).
+        """
         return self.loading(table) or self.locate(table, table.previous_id)
 
     def is_update_pending(self, table: TableRecord) -> bool:
-        """Whether the load in progress waits for the owner to switch to it; release 7.0.0 asks for no activation."""
+        """Return whether a loaded image waits for the owner's update; release 7.0.0 does not require an activation."""
         buffer = self.locate(table, table.next_id)
         if buffer is None or buffer.load_id != table.next_id:
             return False
         return buffer.is_valid and (self._config.is_cfe_7_0_0 or buffer.activate_requested)
 
     def is_private(self, table: TableRecord, buffer: Buffer) -> bool:
-        """Whether a buffer is one of the table's own (CFE_TBL_LoadBuffIsPrivate)."""
+        """Return whether a buffer belongs to the table itself (CFE_TBL_LoadBuffIsPrivate)."""
         return self._memory.ids.split(buffer.load_id)[0] == self._category(table)
 
     def place(self, table: TableRecord) -> int:
-        """What a registry dump calls the buffer of the load in progress."""
+        """Return the number of the buffer of the load in progress in a registry dump."""
         return self._memory.ids.place(table.next_id)
 
     def discard_load(self, table: TableRecord) -> None:
         """Drop a load in progress (CFE_TBL_DiscardWorkingBuffer).
 
-        The buffer of a single-buffered table is free again, also when it is the table's own.
+        The buffer of a single-buffered table becomes free, even if it is the table's own.
         """
         buffer = None if table.double_buffered else self.locate(table, table.next_id)
         table.next_id = UNDEFINED
@@ -331,7 +334,7 @@ class TableRegistry:
             buffer.load_id = UNDEFINED
 
     def exclusive_buffer(self, table: TableRecord) -> Buffer | None:
-        """The own buffer that comes next; None when an app holds its address (CFE_TBL_GetInactiveBufferExclusive)."""
+        """Return the table's next own buffer; None if an app holds its address (CFE_TBL_GetInactiveBufferExclusive)."""
         next_id = self._memory.ids.after(table.active_id, self._category(table))
         buffer = self.locate(table, next_id)
         if buffer is None or buffer.load_id == next_id:
@@ -345,7 +348,7 @@ class TableRegistry:
         return buffer
 
     def working_buffer(self, table: TableRecord) -> Buffer | None:
-        """The buffer of the load in progress, which begins if there is none (CFE_TBL_GetWorkingBuffer)."""
+        """Return the buffer of the load in progress, and start a load if there is none (CFE_TBL_GetWorkingBuffer)."""
         buffer = self.loading(table)
         if buffer is not None:
             return buffer
@@ -355,7 +358,7 @@ class TableRegistry:
         return buffer
 
     def _new_buffer(self, table: TableRecord) -> Buffer | None:
-        """A buffer that starts as a copy of the active image, so that a file may hold part of the table."""
+        """Return a buffer with a copy of the active image, because a file may have only a part of the table."""
         buffer = self.exclusive_buffer(table) if table.double_buffered else self._memory.acquire_shared()
         if buffer is None:
             return None
@@ -366,7 +369,7 @@ class TableRegistry:
         return buffer
 
     def _holder(self, table: TableRecord, buffer: Buffer) -> Access | None:
-        """A handle whose address is on that buffer at this moment."""
+        """Return a handle that holds the address of a buffer now, or None."""
         locked = (access for access in table.accesses if access.locked)
         return next((access for access in locked if self.locate(table, access.buffer_id) is buffer), None)
 

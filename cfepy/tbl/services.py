@@ -1,8 +1,9 @@
-"""Table Services for apps (CFE_TBL_*): register, load, validate, update and look at tables.
+"""Table Services for apps (CFE_TBL_*): register, load, validate, update and inspect tables.
 
-What every app that has a handle may do is `TableAccess` (`access.py`); `TableServices` adds what owners do. A failed
-call raises CfeError with NASA's status; a call that NASA answers with a warning or information returns that number.
-Host code may look tables up (`get_info`) but owns none and has no handles. The ground's side is in `cfepy.tbl.task`.
+`TableAccess` (`access.py`) has the functions for every app with a handle. `TableServices` adds the functions for
+owners. A failed call raises CfeError with NASA's status. A call with a warning or information as its result returns
+that number. Host code can look tables up (`get_info`), but owns no tables and has no handles. The ground's side is in
+`cfepy.tbl.task`.
 """
 
 from __future__ import annotations
@@ -48,10 +49,10 @@ class TableServices(TableAccess):
     """The table registry of one mission and its API.
 
     Args:
-        kernel: tells whose task is running.
+        kernel: provides the running task.
         ports: the other services.
         config: limits and identities.
-        files: where table files are.
+        files: the file system of the table files.
     """
 
     def __init__(self, kernel: Kernel, ports: Ports, config: PlatformConfig, files: TableStorage) -> None:
@@ -75,32 +76,32 @@ class TableServices(TableAccess):
         self.task = TableTask(ports, config, files, parts)
 
     def early_init(self) -> None:
-        """What is done before any task runs (CFE_TBL_EarlyInit): the buffer pool, and the critical table registry."""
+        """Prepare the buffer pool and the critical table registry, before any task runs (CFE_TBL_EarlyInit)."""
         self._memory.early_init()
         self._critical.early_init()
 
     def task_main(self) -> None:
-        """The whole of the CFE_TBL task."""
+        """Run the CFE_TBL task."""
         self.task.main()
 
     # --- registration ---
 
     def register(self, name: str, size: int, options: int = 0, validate: Validator | None = None) -> TableHandle:
-        """Make a table of the calling app (CFE_TBL_Register).
+        """Create a table of the calling app (CFE_TBL_Register).
 
         Args:
             name: 1 to 15 characters; the full name is "APP.name".
             size: bytes.
             options: OPT_* joined by |. With OPT_CRITICAL the image outlives a processor reset.
-            validate: called with each image before it is used, or None to take any.
+            validate: called with each image before it is used; None accepts any.
 
         Returns:
-            The handle; `handle.status` is CFE_SUCCESS, CFE_TBL_WARN_DUPLICATE (the app has that table already),
+            The handle; `handle.status` is CFE_SUCCESS, CFE_TBL_WARN_DUPLICATE (the app already has that table),
             CFE_TBL_INFO_RECOVERED_TBL (a critical table with its image from before the reset) or
-            CFE_TBL_WARN_NOT_CRITICAL (the CDS did not take it).
+            CFE_TBL_WARN_NOT_CRITICAL (the CDS refused it).
 
         Raises:
-            CfeError: the status that NASA's function returns; an event tells the ground too.
+            CfeError: the status that NASA's function returns; an event also reports it to the ground.
         """
         try:
             app_id, app_name = self._caller()
@@ -119,7 +120,7 @@ class TableServices(TableAccess):
         return access.handle.with_status(self._make_critical(access.table)) if options & OPT_CRITICAL else access.handle
 
     def _checked(self, app_name: str, name: str, size: int, options: int) -> str:
-        """The full name; what is wrong with the table to be stands in the system log too (CFE_TBL_TxnCheckConfig)."""
+        """Return the full name of a new table; an error is also in the system log (CFE_TBL_TxnCheckConfig)."""
         try:
             return self.registry.check(app_name, name, size, options)
         except CfeError as error:
@@ -131,7 +132,9 @@ class TableServices(TableAccess):
             raise
 
     def _duplicate(self, full_name: str, size: int, app_id: int) -> Access | None:
-        """`registry.duplicate`, with the lines of the system log (CFE_TBL_TxnCheckDuplicateRegistration)."""
+        """Return the result of `registry.duplicate`, with lines in the system log
+        (CFE_TBL_TxnCheckDuplicateRegistration).
+        """
         table = self.registry.find(full_name)
         try:
             return self.registry.duplicate(full_name, size, app_id)
@@ -152,7 +155,7 @@ class TableServices(TableAccess):
             return CFE_TBL_WARN_NOT_CRITICAL
 
     def share(self, full_name: str) -> TableHandle:
-        """A handle on another app's table, "APP.name" (CFE_TBL_Share).
+        """Return a handle on another app's table, "APP.name" (CFE_TBL_Share).
 
         Raises:
             CfeError: CFE_TBL_ERR_INVALID_NAME, CFE_TBL_ERR_HANDLES_FULL.
@@ -168,7 +171,7 @@ class TableServices(TableAccess):
             raise
 
     def unregister(self, handle: int) -> None:
-        """Give a handle back; the owner's gives up the table (CFE_TBL_Unregister)."""
+        """Release a handle; the owner's handle releases the table (CFE_TBL_Unregister)."""
         try:
             self.registry.release(self._access("Unregister", handle))
         except CfeError as error:
@@ -190,19 +193,19 @@ class TableServices(TableAccess):
         """Load a table of the calling app and switch to the new image (CFE_TBL_Load).
 
         Args:
-            handle: the owner's.
-            source: path of a table file, or the image's bytes (for OPT_USR_DEF_ADDR the app's own bytearray, which
-                then is the table).
-            address: where C has the image's bytes.
-            read: gives them later on, when they may be gone.
-            source_type: what C code says that the source is, when that is neither a file nor an address.
+            handle: the owner's handle.
+            source: path of a table file, or the image's bytes (for OPT_USR_DEF_ADDR the app's own bytearray, which then
+                becomes the table).
+            address: address of the image in C.
+            read: reads the image later, when it may have disappeared.
+            source_type: the source type that C code passed, if it is neither a file nor an address.
 
         Returns:
-            CFE_SUCCESS, CFE_TBL_WARN_SHORT_FILE, CFE_TBL_WARN_PARTIAL_LOAD, or CFE_TBL_INFO_TABLE_LOCKED: an
-            application has the table's address, `manage` switches later.
+            CFE_SUCCESS, CFE_TBL_WARN_SHORT_FILE, CFE_TBL_WARN_PARTIAL_LOAD, or CFE_TBL_INFO_TABLE_LOCKED if an
+            application has the table's address; `manage` then switches later.
 
         Raises:
-            CfeError: what was wrong; an event tells the ground too, and the table is as it was.
+            CfeError: the error; an event also reports it to the ground, and the table stays unchanged.
         """
         caller = self._caller()[1]
         try:
@@ -228,7 +231,7 @@ class TableServices(TableAccess):
             else:
                 self._reports.file_refused(refused, caller, file, table)
             raise
-        except BaseException:  # a fault of the app's validator must not leave the table half loaded
+        except BaseException:  # an error of the app's validator must not leave the table half loaded
             self.registry.discard_load(table)
             raise
         if faults:
@@ -239,7 +242,7 @@ class TableServices(TableAccess):
         return self._finish_load(table, handle, caller, status)
 
     def _load_denied(self, error: CfeError, handle: int, caller: str) -> None:
-        """Tell of a load through a handle that does not allow it; release 7.0.0 says nothing of one that is none."""
+        """Report a load through a handle without the right to it; release 7.0.0 does not report an invalid handle."""
         access = self.registry.accesses.find(handle)
         if access is not None:
             refused = Refused(error.status, ev.HANDLE_ACCESS_ERR_EID, "No access to Tbl Handle")
@@ -277,7 +280,7 @@ class TableServices(TableAccess):
         return status
 
     def update(self, handle: int) -> int:
-        """Switch to the image that was loaded (CFE_TBL_Update).
+        """Switch to the loaded image (CFE_TBL_Update).
 
         Returns:
             CFE_SUCCESS, CFE_TBL_INFO_NO_UPDATE_PENDING or CFE_TBL_INFO_TABLE_LOCKED.
@@ -300,10 +303,10 @@ class TableServices(TableAccess):
         return status
 
     def validate(self, handle: int) -> int:
-        """Run the validator as the ground asked (CFE_TBL_Validate).
+        """Run the validator for a request of the ground (CFE_TBL_Validate).
 
         Returns:
-            CFE_SUCCESS whatever the validator found, or CFE_TBL_INFO_NO_VALIDATION_PENDING.
+            CFE_SUCCESS for any result of the validator, or CFE_TBL_INFO_NO_VALIDATION_PENDING.
         """
         table = self._access("Validate", handle, owner_only=True).table
         request = self._validations.take(table)
@@ -315,9 +318,9 @@ class TableServices(TableAccess):
         try:
             if buffer is not None:
                 result = table.judge(table.image(buffer))
-                if result == 0 or not self._config.is_cfe_7_0_0:  # 7.0.0 leaves a good mark of before
+                if result == 0 or not self._config.is_cfe_7_0_0:  # 7.0.0 keeps an earlier valid mark
                     buffer.is_valid = result == 0
-        finally:  # the ground gets an answer even when the validator raises
+        finally:  # the ground gets a result even if the validator raises
             request.result, request.performed = result, True
         caller = self._caller()[1]
         if result == 0:
@@ -325,7 +328,7 @@ class TableServices(TableAccess):
             self._reports.send(ev.VALIDATION_INF_EID, ev.INFORMATION, text)
             return CFE_SUCCESS
         status = f"0x{result & 0xFFFFFFFF:08X}"
-        told = "0x00000000" if self._config.is_cfe_7_0_0 else status  # 7.0.0 tells the status of the call
+        told = "0x00000000" if self._config.is_cfe_7_0_0 else status  # 7.0.0 reports the status of the call
         text = f"{caller} validation failed for {table.name} '{which}', Status={told}"
         self._reports.send(ev.VALIDATION_ERR_EID, ev.ERROR, text)
         if result > 0:
@@ -335,11 +338,11 @@ class TableServices(TableAccess):
         return CFE_SUCCESS
 
     def manage(self, handle: int) -> int:
-        """Do what the ground asked for of a table: validate, update or dump (CFE_TBL_Manage).
+        """Carry out the ground's requests on a table: validate, update or dump (CFE_TBL_Manage).
 
         Returns:
-            CFE_SUCCESS when there was nothing to do, CFE_TBL_INFO_UPDATED when the table changed, else what
-            `validate`, `update` or `dump_to_buffer` returned.
+            CFE_SUCCESS if there was no request, CFE_TBL_INFO_UPDATED if the table changed, otherwise the result of
+            `validate`, `update` or `dump_to_buffer`.
         """
         while True:
             status = self.get_status(handle)
@@ -353,13 +356,13 @@ class TableServices(TableAccess):
                 return status
 
     def dump_to_buffer(self, handle: int) -> int:
-        """Take the snapshot of a dump-only table that the ground asked for (CFE_TBL_DumpToBuffer).
+        """Take the snapshot of a dump-only table for a request of the ground (CFE_TBL_DumpToBuffer).
 
         Returns:
             CFE_SUCCESS or CFE_TBL_INFO_NO_DUMP_PENDING.
 
         Raises:
-            CfeError: CFE_TBL_ERR_INVALID_HANDLE when the image cannot be copied, as `Dumps.take_snapshot` tells.
+            CfeError: CFE_TBL_ERR_INVALID_HANDLE if the image cannot be copied; see `Dumps.take_snapshot`.
         """
         access = self._access(
             "DumpToBuffer", handle, log="App({app:x}) does not have access to Tbl Handle=0x{handle:x}"
@@ -367,7 +370,7 @@ class TableServices(TableAccess):
         return self._dumps.take_snapshot(access.table, access)
 
     def modified(self, handle: int) -> None:
-        """Say that the app changed the table's content itself (CFE_TBL_Modified)."""
+        """Report that the app changed the table's content itself (CFE_TBL_Modified)."""
         access = self._access("Modified", handle)
         table = access.table
         active, app_id = self.registry.active(table), self._caller()[0]
@@ -380,11 +383,11 @@ class TableServices(TableAccess):
             self._critical.save(table)
 
     def notify_by_message(self, handle: int, msg_id: int, fcn_code: int, parameter: int) -> None:
-        """Have a command sent whenever the ground asks for something of the table (CFE_TBL_NotifyByMessage).
+        """Request a command for each request of the ground on the table (CFE_TBL_NotifyByMessage).
 
         Args:
-            handle: the owner's.
-            msg_id: of the command.
+            handle: the owner's handle.
+            msg_id: MsgId of the command.
             fcn_code: its function code.
             parameter: 32 bits of payload.
         """
@@ -398,32 +401,34 @@ class TableServices(TableAccess):
 
     @property
     def pool_id(self) -> int:
-        """Handle of the table buffer pool; 0 before there is one."""
+        """The handle of the table buffer pool; 0 before it exists."""
         return self._memory.pool_id
 
     def buffer_sizes(self) -> dict[str, list[int]]:
-        """Bytes of the buffers in the table buffer pool, by the full names of tables; "" has those that are shared."""
+        """Return the bytes of the buffers in the table buffer pool by the full names of tables; shared buffers are
+        under "".
+        """
         found = {"": [len(buffer.data) for buffer in self._memory]}
         for table in self.registry.tables:
             found[table.name] = [table.size for buffer in table.buffers if buffer.block is not None]
         return found
 
     def place_buffers(self, places: BufferPlaces) -> None:
-        """Give images that are made from now on other memory than that of the table buffer pool."""
+        """Set the provider of memory for new images outside the table buffer pool."""
         self._memory.places = places
 
     def leave_memory(self, is_leaving: Callable[[memoryview], bool]) -> None:
-        """Let tables whose bytes are about to be taken out of memory keep copies of them.
+        """Copy the buffers whose memory is about to disappear.
 
         Args:
-            is_leaving: tells whether a buffer's bytes are.
+            is_leaving: returns whether a buffer's memory is about to disappear.
         """
         for buffer in (*self._memory, *(each for table in self.registry.tables for each in table.buffers)):
             if len(buffer.data) and is_leaving(buffer.data):
                 buffer.leave()
 
     def cleanup_app(self, app_id: int) -> None:
-        """Give back all tables, handles and dumps of an app that ended (CFE_TBL_CleanUpApp)."""
+        """Release all tables, handles and dumps of an ended app (CFE_TBL_CleanUpApp)."""
         self._dumps.forget_owner(app_id)
         for access in self.registry.accesses:
             if access.app_id == app_id:

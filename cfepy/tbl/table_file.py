@@ -1,7 +1,6 @@
-"""A table file on its way into a table: the checks on it, and the event of each that fails.
+"""A table file to be loaded: the checks on it, and the event for each failed check.
 
-Stands for the first half of cfe_tbl_load.c. A refusal carries the event that reports it; the code that asked for
-the load sends it.
+It replaces the first half of cfe_tbl_load.c. A refusal carries its event; the code that requested the load sends it.
 """
 
 from __future__ import annotations
@@ -52,26 +51,26 @@ class TableStorage(Protocol):
     """The file system as Table Services use it; failures raise OsalError."""
 
     def read_file(self, path: str) -> bytes:
-        """The whole content of a file."""
+        """Return the whole content of a file."""
 
     def leave_open(self, path: str) -> None:
         """Open a file and lose its descriptor."""
 
     def write_file(self, path: str, data: bytes) -> None:
-        """Make or replace a file."""
+        """Create or replace a file."""
 
     def exists(self, path: str) -> bool:
-        """Whether there is such a file."""
+        """Return whether the file exists."""
 
 
 class Refused(CfeError):
-    """A load that cannot be.
+    """Exception for a refused load.
 
     Args:
-        status: what CFE_TBL_Load returns.
-        event_id: the event that tells the ground.
-        text: what is wrong, as that event says it.
-        names_file: whether that event names the file too.
+        status: the result of CFE_TBL_Load.
+        event_id: the event for the ground.
+        text: the reason in the text of the event.
+        names_file: whether the event also names the file.
     """
 
     def __init__(self, status: int, event_id: int, text: str, names_file: bool = True) -> None:
@@ -81,12 +80,12 @@ class Refused(CfeError):
 
 
 class LoadFile:
-    """A table file as far as it could be read: `table_name` stays "[unknown]" until both headers are found good.
+    """A table file as far as it could be read; `table_name` is "[unknown]" until both headers are valid.
 
     Args:
-        path: where it is.
-        config: says which spacecraft and processors it may be for.
-        stays_open: whether nobody closes it, as after a load from the ground.
+        path: its path.
+        config: the accepted spacecraft and processors.
+        stays_open: whether the file is never closed, as after a load from the ground.
     """
 
     def __init__(self, path: str, config: PlatformConfig, stays_open: bool = False) -> None:
@@ -102,8 +101,8 @@ class LoadFile:
         """Read the file and check its headers (CFE_TBL_TxnOpenTableLoadFile).
 
         Raises:
-            Refused: it cannot be opened, is no cFE file, no table image, meant for another spacecraft or processor, or
-                its integrity mark says that it is damaged.
+            Refused: if it cannot be opened, is not a cFE file or a table image, is for another spacecraft or processor,
+                or is damaged according to its integrity mark.
         """
         try:
             data = files.read_file(self.path)
@@ -141,7 +140,9 @@ class LoadFile:
         self.image = data[HEADER_SIZE + TABLE_HEADER_SIZE :]
 
     def _check_ids(self, header: FileHeader) -> None:
-        """Check the processor that the file is for (CFE_TBL_ValidateTableHeaderId); an empty list takes all."""
+        """Check the spacecraft and processor in the header (CFE_TBL_ValidateTableHeaderId); an empty list
+        accepts all.
+        """
         spacecraft, processors = self._config.tbl_valid_scid, self._config.tbl_valid_prid
         if spacecraft and header.spacecraft_id not in spacecraft:
             text = f"Invalid Spacecraft ID (0x{header.spacecraft_id:08X})"
@@ -151,10 +152,11 @@ class LoadFile:
             raise Refused(CFE_TBL_ERR_BAD_PROCESSOR_ID, ev.PROCESSOR_ID_ERR_EID, text)
 
     def check_fits(self, table: TableRecord) -> None:
-        """Check that the content belongs into a table (CFE_TBL_ValidateFileIsLoadable).
+        """Check that the content fits a table (CFE_TBL_ValidateFileIsLoadable).
 
         Raises:
-            Refused: another table's file, no data, partial data for a table never loaded, or data that does not fit.
+            Refused: for another table's file, no data, partial data for a table never loaded, or data that does not
+                fit.
         """
         name, offset, size = self.table.table_name, self.table.offset, self.table.num_bytes
         if name != table.name:
@@ -172,12 +174,12 @@ class LoadFile:
             raise Refused(CFE_TBL_ERR_FILE_TOO_LARGE, ev.LOAD_EXCEEDS_SIZE_ERR_EID, text)
 
     def too_big(self) -> Refused:
-        """What is said of a file with more data than there is room for, or than its header says."""
+        """Return the refusal of a file with more data than there is room for, or than its header declares."""
         text = f"File has more data than Tbl Hdr indicates ({to_signed(self.table.num_bytes)})"
         return Refused(CFE_TBL_ERR_FILE_TOO_LARGE, ev.FILE_TOO_BIG_ERR_EID, text)
 
     def completeness(self, table: TableRecord) -> int:
-        """CFE_SUCCESS, or the warning that the file held only part of the table."""
+        """Return CFE_SUCCESS, or the warning that the file has only a part of the table."""
         if self.table.offset > 0:
             return CFE_TBL_WARN_PARTIAL_LOAD
         return CFE_TBL_WARN_SHORT_FILE if self.table.num_bytes < table.size else CFE_SUCCESS

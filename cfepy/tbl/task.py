@@ -1,10 +1,11 @@
-"""The CFE_TBL task: its pipe, dispatch, housekeeping, and what the ground can do with tables.
+"""The CFE_TBL task: its pipe, dispatch, housekeeping, and the ground's commands on tables.
 
-Stands for cfe_tbl_task.c and cfe_tbl_task_cmds.c: load, validate, activate, dump, and a file about the registry of all
-tables, which the background task of ES writes record by record. Release 7.0.0 refuses to LOAD any table; release 7.0.1
-keeps a load that failed in progress, until the ground gives it up.
-`Housekeeping` counts, remembers the last validation, load, update and dump, and builds values for packets
-(CFE_TBL_GetHkData, CFE_TBL_GetTblRegData); it sends nothing.
+It replaces cfe_tbl_task.c and cfe_tbl_task_cmds.c: load, validate, activate, dump, and a file about the registry of all
+tables. The background task of ES writes that file record by record. Release 7.0.0 refuses to LOAD any table. Release
+7.0.1 keeps a failed load in progress until the ground aborts it.
+
+`Housekeeping` counts, keeps the last validation, load, update and dump, and builds values for packets
+(CFE_TBL_GetHkData, CFE_TBL_GetTblRegData). It sends no packets.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ _NOT_DELETED = {
     CFE_ES_CDS_OWNER_ACTIVE_ERR: (ev.CDS_OWNER_ACTIVE_ERR_EID, "CDS '{}' owning app is still active"),
     CFE_ES_ERR_NAME_NOT_FOUND: (ev.CDS_NOT_FOUND_ERR_EID, "Unable to locate '{}' in CDS Registry"),
 }
-"""Event id and text of DELETE_CDS by what the CDS says."""
+"""Event id and text of DELETE_CDS by the status of the CDS."""
 
 REGISTRY_FILE = "/ram/cfe_tbl_reg.log"
 REGISTRY_DESCRIPTION = "Table Registry"
@@ -65,7 +66,7 @@ MAIN_PERF_ID = 3
 
 
 class Housekeeping:
-    """Counters and last values.
+    """Counters and last values for housekeeping.
 
     Attributes:
         last_updated: the table that changed last.
@@ -88,17 +89,17 @@ class Housekeeping:
         self.reset_counters()
 
     def reset_counters(self) -> None:
-        """The RESET_COUNTERS command."""
+        """Set the counters to 0 for the RESET_COUNTERS command."""
         self._commands = self._errors = 0
         self._validated = self._successes = self._failures = self._requests = 0
 
     def count_command(self, accepted: bool) -> None:
-        """Count a command done or refused."""
+        """Count an accepted or refused command."""
         self._commands += accepted
         self._errors += not accepted
 
     def count_request(self) -> None:
-        """Count a validation that an app has to do."""
+        """Count a validation request to an app."""
         self._requests += 1
 
     def request_registry(self, table: TableRecord) -> None:
@@ -106,7 +107,7 @@ class Housekeeping:
         self._registry_request = table
 
     def take_registry_request(self) -> TableRecord | None:
-        """The table whose entry is wanted, whether or not it still exists; asked for once."""
+        """Return the table whose entry was requested, even if it no longer exists, and clear the request."""
         table, self._registry_request = self._registry_request, None
         return table
 
@@ -121,7 +122,7 @@ class Housekeeping:
         self._failures += done.result != 0
 
     def collect(self) -> dict[str, Any]:
-        """The fields of packets.HOUSEKEEPING."""
+        """Return the fields of packets.HOUSEKEEPING."""
         self._count_a_validation()
         last, table = self._last_validation, self.last_updated
         if table is not None and table.reg_id in self._registry.tables:
@@ -148,10 +149,10 @@ class Housekeeping:
         return values | self._updated
 
     def registry_packet(self, table: TableRecord, owner_name: str) -> dict[str, Any]:
-        """The fields of packets.REGISTRY_PACKET for one table.
+        """Return the fields of packets.REGISTRY_PACKET for one table.
 
-        As in cFE a field that nothing is known for has the value of the last packet: all of them for a table that is
-        gone, CRC and file time for one that was never loaded.
+        As in cFE, an unknown field keeps its value from the last packet: all fields for a removed table, CRC and file
+        time for a table that was never loaded.
         """
         if table.reg_id not in self._registry.tables:
             return self._registry_fields
@@ -168,7 +169,7 @@ class Housekeeping:
         return self._registry_fields
 
     def registry_record(self, table: TableRecord, owner_name: str) -> dict[str, Any]:
-        """The fields of packets.REGISTRY_RECORD for one table."""
+        """Return the fields of packets.REGISTRY_RECORD for one table."""
         active = self._registry.active(table)
         return {
             **self._common(table, owner_name),
@@ -198,7 +199,7 @@ def _image(active: Buffer) -> dict[str, Any]:
 
 
 class Parts(NamedTuple):
-    """What the task works with."""
+    """The parts that the task works with."""
 
     registry: TableRegistry
     loads: Loads
@@ -210,7 +211,7 @@ class Parts(NamedTuple):
 
 
 class TableCommands:
-    """The commands about single tables; each returns whether it was carried out."""
+    """The commands about single tables; each handler returns whether the command was carried out."""
 
     def __init__(self, ports: Ports, config: PlatformConfig, parts: Parts, housekeeping: Housekeeping) -> None:
         self._ports = ports
@@ -228,7 +229,7 @@ class TableCommands:
             if table is None:
                 text = "Unable to locate in Table Registry"
                 raise Refused(CFE_TBL_ERR_INVALID_NAME, ev.NO_SUCH_TABLE_ERR_EID, text, names_file=False)
-            if not self._config.is_cfe_7_0_0:  # which forgets it, and so finds no buffer to load into
+            if not self._config.is_cfe_7_0_0:  # 7.0.0 forgets it, and so finds no buffer to load into
                 self._loads.reserve(table, SRC_FILE)
             self._loads.fill_from_file(table, file)
         except Refused as refused:
@@ -239,7 +240,7 @@ class TableCommands:
         return True
 
     def dump(self, packet: bytes) -> bool:
-        """Begin to write an image of a table to a file (CFE_TBL_DumpCmd)."""
+        """Start to write an image of a table to a file (CFE_TBL_DumpCmd)."""
         values = pk.DUMP.read(packet)
         path = pk.DUMP.read_name(packet, "DumpFilename")
         table = self._table(pk.DUMP.read_name(packet, "TableName"))
@@ -249,14 +250,14 @@ class TableCommands:
             self._dumps.request(table, values["ActiveTableFlag"], path)
         except DumpRefused as refused:
             self._reports.dump_refused(refused, table, values["ActiveTableFlag"], path)
-            if refused.event_id == UNDEFINED:  # the snapshot could not be taken; its owner is told all the same
+            if refused.event_id == UNDEFINED:  # the snapshot could not be taken, but its owner is notified anyway
                 self._notify(table)
             return False
         self._notify(table)
         return True
 
     def validate(self, packet: bytes) -> bool:
-        """Have an image of a table validated (CFE_TBL_ValidateCmd)."""
+        """Request the validation of an image of a table (CFE_TBL_ValidateCmd)."""
         values = pk.VALIDATE.read(packet)
         name, which = pk.VALIDATE.read_name(packet, "TableName"), values["ActiveTableFlag"]
         table = self._registry.find(name)
@@ -287,7 +288,7 @@ class TableCommands:
                 text = f"Tbl Services issued validation request for '{table.name}'"
                 self._debug(ev.VAL_REQ_MADE_INF_EID, text)
             return
-        if is_7_0_0:  # which tells of it in housekeeping, but does not mark the image as good
+        if is_7_0_0:  # 7.0.0 reports it in housekeeping, but does not mark the image as valid
             request.performed = True
             self._validations.add(request)
         else:
@@ -295,7 +296,7 @@ class TableCommands:
         self._reports.assumed_valid(table)
 
     def activate(self, packet: bytes) -> bool:
-        """Let a table's owner switch to the inactive image (CFE_TBL_ActivateCmd)."""
+        """Allow a table's owner to switch to the inactive image (CFE_TBL_ActivateCmd)."""
         name = pk.ACTIVATE.read_name(packet, "TableName")
         table = self._registry.find(name)
         if table is None:
@@ -323,7 +324,7 @@ class TableCommands:
         return True
 
     def delete_cds(self, packet: bytes) -> bool:
-        """Delete the CDS of a critical table that is not registered any more (CFE_TBL_DeleteCDSCmd)."""
+        """Delete the CDS of a critical table that is no longer registered (CFE_TBL_DeleteCDSCmd)."""
         name = pk.DELETE_CDS.read_name(packet, "TableName")
         if self._registry.find(name) is not None:
             text = f"'{name}' found in Table Registry. CDS cannot be deleted until table is unregistered"
@@ -345,7 +346,7 @@ class TableCommands:
         return True
 
     def abort_load(self, packet: bytes) -> bool:
-        """Give up a load that was begun (CFE_TBL_AbortLoadCmd)."""
+        """Abort a load in progress (CFE_TBL_AbortLoadCmd)."""
         table = self._named(packet)
         if table is None:
             return False
@@ -367,13 +368,15 @@ class TableCommands:
         return table
 
     def _notify(self, table: TableRecord) -> bool:
-        """Send the owner's notification; whether it was sent. Release 7.0.0 takes none to send for one sent."""
+        """Send the owner's notification; return whether it was sent. Release 7.0.0 also returns True without a
+        notification.
+        """
         if table.notify is None:
             return self._config.is_cfe_7_0_0
         msg_id, fcn_code, parameter = table.notify
         try:
             packet = command(msg_id, fcn_code, pk.NOTIFY_COMMAND.pack(Parameter=parameter))
-            if self._config.is_cfe_7_0_0:  # it never sets the size of this message
+            if self._config.is_cfe_7_0_0:  # 7.0.0 never sets the size of this message
                 packet = packet[:_SIZE_NOT_SET]
                 set_size(packet, _SIZE_NOT_SET)
             self._ports.sb.transmit_msg(bytes(packet))
@@ -394,7 +397,7 @@ class TableCommands:
 
 
 class RegistryDump:
-    """The one dump of the registry that may be under way."""
+    """The dump of the registry; only one can be in progress."""
 
     def __init__(self, ports: Ports, registry: TableRegistry, housekeeping: Housekeeping, files: TableStorage) -> None:
         self._ports = ports
@@ -405,13 +408,13 @@ class RegistryDump:
         self._job = FileWriteMetaData("", SUBTYPE_TBL_REG, REGISTRY_DESCRIPTION, self._record, self._ended)
 
     def request(self, wish: str) -> bool:
-        """Begin a dump.
+        """Start a dump.
 
         Args:
-            wish: name of the file; empty for the usual one, and completed where it lacks a folder or an ending.
+            wish: name of the file; empty for the default, and completed if it lacks a folder or an extension.
 
         Returns:
-            Whether the dump could be queued; no event tells of it if not, as in cFE.
+            Whether the dump could be queued; as in cFE, no event reports a failure.
         """
         if self._job.is_pending:
             return False
@@ -430,7 +433,7 @@ class RegistryDump:
             return False
 
     def _record(self, number: int) -> tuple[bytes, bool]:
-        """The record in a slot of the registry, nothing for a free one, and whether it is the last."""
+        """Return the record in a slot of the registry (no bytes for a free slot), and whether it is the last."""
         table = self._registry.tables.at(number)
         is_last = number >= self._registry.tables.capacity - 1
         if table is None:
@@ -481,7 +484,7 @@ class TableTask:
         )
 
     def main(self) -> None:
-        """The task's main function (CFE_TBL_TaskMain)."""
+        """Run the task's main function (CFE_TBL_TaskMain)."""
         ports = self._ports
         ports.es.perf_log_entry(MAIN_PERF_ID)
         self._registry.services_app_id = ports.es.get_app_id()
@@ -494,9 +497,9 @@ class TableTask:
         serve(ports, self._config, pipe, MAIN_PERF_ID, self.handle)
 
     def handle(self, packet: bytes) -> None:
-        """Do what one packet from the command pipe asks for (CFE_TBL_TaskPipe).
+        """Handle a packet from the command pipe (CFE_TBL_TaskPipe).
 
-        A handler returns True or False for the command or the error counter, None to count nothing.
+        A handler returns True for the command counter, False for the error counter, None for neither.
         """
         done = self._commands.dispatch(packet)
         if isinstance(done.result, bool):
@@ -517,7 +520,7 @@ class TableTask:
             self._error(ev.MID_ERR_EID, f"Invalid message ID -- ID = 0x{done.msg_id:X}")
 
     def note_update(self, table: TableRecord) -> None:
-        """Remember for housekeeping which table changed last."""
+        """Record the last changed table for housekeeping."""
         self._housekeeping.last_updated = table
 
     def _send_hk(self, packet: bytes) -> None:

@@ -1,7 +1,7 @@
-"""The validations that the ground asked for, until housekeeping has told their results.
+"""The validations requested by the ground, until housekeeping has reported their results.
 
-Stands for cfe_tbl_valresult.c. Release 7.0.1 lets a table have one request at a time. Release 7.0.0 takes any number
-until all slots are used: a request for the same image replaces the one before, which then nobody answers.
+It replaces cfe_tbl_valresult.c. Release 7.0.1 allows a table one request at a time. Release 7.0.0 accepts any number
+until all slots are used. There, a request for the same image replaces the one before, which then gets no result.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from cfepy.tbl.registry import TableRecord
 
 
 class Validation:
-    """One request (CFE_TBL_ValidationResult_t); `result` is the validator's, once `performed`."""
+    """A request (CFE_TBL_ValidationResult_t); `result` is the validator's result, once `performed`."""
 
     __slots__ = ("crc", "number", "of_active", "performed", "result", "table_name")
 
@@ -28,7 +28,7 @@ class Validations:
     """All requests of a mission.
 
     Args:
-        capacity: how many there may be (CFE_PLATFORM_TBL_MAX_NUM_VALIDATIONS).
+        capacity: maximum number of requests (CFE_PLATFORM_TBL_MAX_NUM_VALIDATIONS).
         one_at_a_time: whether a table has one request at a time.
     """
 
@@ -38,28 +38,30 @@ class Validations:
 
     @property
     def is_full(self) -> bool:
-        """Whether no more can be asked for."""
+        """Whether no more requests fit."""
         return len(self._slots) >= self._slots.capacity
 
     def add(self, request: Validation) -> None:
-        """Keep a request until its result was told.
+        """Keep a request until its result was reported.
 
         Raises:
-            CfeError: there are too many already.
+            CfeError: if there are too many.
         """
         request.number = self._slots.create(request)
 
     def ask(self, table: TableRecord, request: Validation) -> None:
-        """Keep a request that the table's owner answers."""
+        """Keep a request for the table's owner."""
         self.add(request)
         table.validations[None if self._one_at_a_time else request.of_active] = request.number
 
     def asked(self, table: TableRecord) -> Validation | None:
-        """The request that a table has, where it has one at a time."""
+        """Return a table's request, in a release with one request at a time."""
         return self._slots.find(table.validations.get(None, UNDEFINED))
 
     def take(self, table: TableRecord) -> Validation | None:
-        """The request that is next, inactive image first, and waits no more (CFE_TBL_CheckValidationRequest)."""
+        """Return the next request, inactive image first, and remove it from the table
+        (CFE_TBL_CheckValidationRequest).
+        """
         for which in (None, False, True):
             request = self._slots.find(table.validations.pop(which, UNDEFINED))
             if request is not None:
@@ -67,7 +69,7 @@ class Validations:
         return None
 
     def tell(self) -> Validation | None:
-        """Take one request that was performed; the next one waits, so that the ground misses none."""
+        """Return one finished request and remove it; the next one waits, so that the ground misses none."""
         for number in range(self._slots.capacity):
             request = self._slots.at(number)
             if request is not None and request.performed:

@@ -1,10 +1,9 @@
 """Testing missions with pytest: the fixture `mission`, exploration of schedules, Hypothesis strategies.
 
-What belongs here is used by tests of flight software: the plugin (`plugin`), which pytest finds by itself, the booting
-of missions for tests (`missions`) and generated inputs (`strategies`). A mission under test is a `Flight` of
-`cfepy.flight`, what judges every run belongs to `cfepy.monitors`. docs/testing.md has examples. Everything here is
-imported when it is first asked for, so that no other test-suite pays for it. The central file is
-`cfepy/testing/missions.py`.
+Code for tests of flight software belongs here: the plugin (`plugin`), which pytest finds by itself, the booting of
+missions for tests (`missions`) and generated inputs (`strategies`). A mission under test is a `Flight` of
+`cfepy.flight`; checking runs belongs to `cfepy.monitors`. See docs/testing.md for examples. Everything here is loaded
+on first use, so other test suites are not slowed down. The central file is `cfepy/testing/missions.py`.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ExpectationError", "Flight", "Missions", "explore"]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

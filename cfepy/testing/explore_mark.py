@@ -1,4 +1,4 @@
-"""`@explore`: which schedules a test is run under. What runs it comes from an add-on, and is loaded for such tests."""
+"""`@explore`: the schedules of a test. Its implementation comes from an add-on, and is loaded only for such tests."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from cfepy.status import UsageError
 from cfepy.testing.missions import EXPLORE_MARK
 
 POLICIES = ("all", "random", "pct", "abreast")
-BASE = "at"  # a schedule that has options, and is fifo's otherwise
+BASE = "at"  # a schedule that has options, and is otherwise fifo
 
 
 @dataclass(frozen=True, slots=True)
 class Exploration:
-    """Which schedules a test is run under; see `explore`.
+    """Schedules under which a test is run; see `explore`.
 
     Attributes:
-        seeds: how many.
-        policies: where they come from, by turns.
-        depth: of the bugs that PCT looks for; None for that of `cfepy explore`.
-        steps: how many decisions PCT expects of a run, at least.
-        options: a schedule whose options all have but fifo.
-        shrink: runs that shrinking may take; None for as many as there were until then, 300 to 800.
+        seeds: number of schedules.
+        policies: their policies, in turn.
+        depth: depth of the bugs that PCT looks for; None for the default of `cfepy explore`.
+        steps: minimum number of decisions that PCT expects in a run.
+        options: a schedule with the options of all except fifo.
+        shrink: maximum number of runs for shrinking; None for as many as before, 300 to 800.
         races: whether data races are failures.
     """
 
@@ -54,27 +54,23 @@ def explore(
 ) -> pytest.MarkDecorator:
     """Run a test under many schedules, until it fails under one.
 
-    Each schedule is a run of the whole test, with its function-scoped fixtures, `mission` and tmp_path made anew. The
-    first schedule is fifo. When the test fails, the schedule is shrunk to the fewest deviations from fifo that still
-    fail, and the failure shows these, and the command that does it again. Works on functions and classes.
-
     Args:
-        seeds: how many schedules; --cfepy-schedules overrules it.
-        policy: "random", "pct", "abreast", several of them, which take turns, or "all" as `cfepy explore` has it.
-        depth: of the bugs that PCT looks for; None for 3, and for 1 to 3 in "all".
-        steps: how many decisions PCT expects of a run, at least; they are counted.
-        any_priority: tasks of less urgent priority may go before more urgent ones.
-        hold: how long the running task may be held up, such as "500us"; empty for not at all.
-        connect: how long a connection between two ROS nodes may take, such as "50ms"; empty for what the mission has.
-        points: where others may get in besides calls: "lines", "attributes" or "calls", in some modules alone as
-            "lines:arm,util"; empty for nowhere.
-        races: accesses of Python code that nothing orders let it fail, too.
-        start: virtual time from the boot until which all is as with fifo, such as "600ms"; empty for none.
-        shrink: how many runs it may take to shrink a schedule; None for as many as there were until then, 300 to 800; 0
-            leaves it as it is.
+        seeds: number of schedules; overridden by --cfepy-schedules.
+        policy: "random", "pct", "abreast", several of them in turn, or "all" as in `cfepy explore`.
+        depth: depth of the bugs that PCT looks for; None for 3, and for 1 to 3 in "all".
+        steps: minimum number of decisions that PCT expects in a run; they are counted.
+        any_priority: whether less urgent tasks may go before more urgent ones.
+        hold: longest delay of the running task, such as "500us"; empty for none.
+        connect: longest duration of a connection between two ROS nodes, such as "50ms"; empty for the mission's own.
+        points: where other tasks may run in addition to calls: "lines", "attributes" or "calls", optionally only in
+            some modules as in "lines:arm,util"; empty for nowhere.
+        races: whether unordered accesses in Python code are failures too.
+        start: virtual time from the boot until which everything is as with fifo, such as "600ms"; empty for none.
+        shrink: maximum number of runs for shrinking a schedule; None for as many as before, 300 to 800; 0 for no
+            shrinking.
 
     Raises:
-        UsageError: an argument that cannot be.
+        UsageError: if an argument is invalid.
     """
     if not isinstance(seeds, int):
         raise UsageError("needs parentheses: write @explore(), or @explore(seeds=20)", field="@explore")

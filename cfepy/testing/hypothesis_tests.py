@@ -1,6 +1,6 @@
-"""Tests with @given: each example has missions of its own, and a failing one can be given to a colleague.
+"""Tests with @given: each example has its own missions, and a failing one can be passed on as a code.
 
-Hypothesis is not imported here before a test uses it.
+Hypothesis is not loaded here before a test uses it.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ _CODE = re.compile(r"@reproduce_failure\((['\"])(?P<version>[^'\"]+)\1, b(['\"])
 
 
 class ExampleTests:
-    """What tests with @given need.
+    """Support for tests with @given.
 
     Args:
-        code: of the one example to run, as `code_of` gives it; None runs them as Hypothesis does.
-        end_example: called when an example is over, with whether it has failed.
+        code: code of the only example to run, as from `code_of`; None runs them as Hypothesis does.
+        end_example: called at the end of an example, with whether it has failed.
     """
 
     def __init__(self, code: str | None, end_example: Callable[[bool], object]) -> None:
@@ -32,14 +32,14 @@ class ExampleTests:
         self._end_example = end_example
 
     def concerns(self, item: pytest.Item) -> bool:
-        """Whether a test has examples."""
+        """Return whether a test has examples."""
         return bool(getattr(getattr(item, "obj", None), "is_hypothesis_test", False))
 
     def prepare(self, item: pytest.Item) -> None:
-        """Before a test runs.
+        """Prepare a test.
 
         Raises:
-            UsageError: `code` is none.
+            UsageError: if `code` is invalid.
         """
         if not self.concerns(item):
             return
@@ -60,7 +60,7 @@ class ExampleTests:
             reproduce_failure(version, code.encode())(function)
 
     def _ending(self, inner: Callable[..., Any]) -> Callable[..., Any]:
-        """The test's own function, which ends its missions after each example."""
+        """Return the test's own function, ending its missions after each example."""
 
         @functools.wraps(inner)
         def example(*args: Any, **kwargs: Any) -> Any:
@@ -76,12 +76,12 @@ class ExampleTests:
         return example
 
     def code_of(self, error: BaseException) -> str | None:
-        """The code of the example that has failed; None when there is none, as for an error of the strategies."""
+        """Return the code of the failed example; None if there is none, as for an error in the strategies."""
         for note in _notes(error):
             found = _CODE.search(note)
             if found is not None:
                 return f"{found['version']}:{found['code']}"
-        return self._code  # Hypothesis does not tell the one that it was given
+        return self._code  # Hypothesis does not report the one that it was given
 
 
 def _notes(error: BaseException) -> Iterator[str]:

@@ -23,13 +23,13 @@ class FlightJournal:
     """The journal of one mission.
 
     Args:
-        path: while it is not decided whether it is kept.
-        plan: what is flown.
+        path: its path until it is decided whether to keep it.
+        plan: plan of the flight.
         policy: decides which task goes first.
 
     Attributes:
-        recorder: to be attached to the mission, with its own `policy`.
-        flight: the mission; set when it was made.
+        recorder: attach it to the mission, with its own `policy`.
+        flight: the mission, once it was created.
     """
 
     flight: Flight
@@ -41,19 +41,19 @@ class FlightJournal:
         self._ended = False
 
     def end(self) -> None:
-        """The run is over, whatever it came to."""
+        """Write the end of the run, whatever its result."""
         if not self._ended:
             self._ended = True
             self.recorder.end(self.flight.flown())
             self.recorder.__exit__(None, None, None)
 
     def keep(self, path: Path) -> Path:
-        """Give it the name that it keeps."""
+        """Give it its final name."""
         self.end()
         return self._path.replace(path)
 
     def drop(self) -> None:
-        """End the journal and delete it, since it is not needed."""
+        """End and delete the journal."""
         if not self._ended:
             self._ended = True
             self.recorder.__exit__(None, None, None)
@@ -61,16 +61,16 @@ class FlightJournal:
 
 
 class FlightJournals:
-    """Writes a journal for each mission, and keeps those of tests that fail.
+    """Writes a journal for each mission, and keeps the journals of tests that fail.
 
     Args:
-        folder: where; it is made if it is not there.
+        folder: folder of the journals; it is created if necessary.
 
     Raises:
-        UsageError: it cannot be made.
+        UsageError: if it cannot be created.
 
     Attributes:
-        kept: paths of the journals of the test that has failed last.
+        kept: paths of the journals of the last failed test.
     """
 
     def __init__(self, folder: str) -> None:
@@ -82,18 +82,18 @@ class FlightJournals:
             text = f"cannot be made: {error.strerror}; name a folder that you may write to"
             raise UsageError(text, file=folder, field="--cfepy-record") from None
         self._open: list[FlightJournal] = []
-        self._failed: list[FlightJournal] = []  # of the last example of Hypothesis that has failed
+        self._failed: list[FlightJournal] = []  # of the last failed Hypothesis example
         self._count = 0
 
     def begin(self, plan: RunPlan, policy: Policy | None) -> FlightJournal:
-        """The journal of a mission that is about to be made."""
+        """Return the journal of a mission that is about to be created."""
         self._count += 1
         journal = FlightJournal(self._folder / f"{self._count}{UNDECIDED}", plan, policy)
         self._open.append(journal)
         return journal
 
     def set_aside(self) -> None:
-        """What was written so far is of an example that has failed; the test may go on with others."""
+        """Mark the journals so far as those of a failed example; the test may continue with others."""
         for journal in self._failed:
             journal.drop()
         self._failed, self._open = self._open, []
@@ -101,7 +101,7 @@ class FlightJournals:
             journal.end()
 
     def keep(self, item: pytest.Item) -> None:
-        """The test has failed: name its journals after it."""
+        """Name the journals after the failed test."""
         found = self._open or self._failed
         name = re.sub(r"[^\w.-]+", "-", item.nodeid).strip("-")
         numbered = [f"{name}-{number}" for number in range(1, len(found) + 1)] if len(found) > 1 else [name]
@@ -109,13 +109,13 @@ class FlightJournals:
         found.clear()
 
     def drop(self, first: int = 0) -> None:
-        """What is left, from this number on, is of missions that did well."""
+        """Drop the journals from this number on, whose missions did not fail."""
         for journal in self._open[first:]:
             journal.drop()
         del self._open[first:]
 
     def end_test(self) -> None:
-        """The test is over."""
+        """End the test."""
         self.drop()
         for journal in self._failed:
             journal.drop()

@@ -1,7 +1,8 @@
-"""`Missions`, which the fixture `mission` gives: it boots missions, and ends them with the test or fixture that did.
+"""`Missions`, returned by the fixture `mission`: boots missions, and ends them with the test or fixture that booted
+them.
 
-It is a pytest plugin of its own, registered when the first test asks for a mission. To the report of a failed test it
-adds the state of its missions, and the command that does the same again.
+It is a separate pytest plugin, registered when the first test asks for a mission. It adds the state of its missions and
+the command that repeats the test to the report of a failed test.
 """
 
 from __future__ import annotations
@@ -33,23 +34,23 @@ __tracebackhide__ = True  # pytest shows the line of the test
 SECTION = "cfepy"
 _BELOW_TESTS = (Path(__file__).parents[1], Path(os.__file__).parent)  # cfepy, and the library that it calls
 FIFO = Schedule().text()
-BETWEEN = ";"  # schedules of several missions in one test
-EXPLORE_MARK = "cfepy_explore"  # as in `cfepy.extra.exploration.in_tests`, which is loaded for tests that have it
+BETWEEN = ";"  # between the schedules of several missions in one test
+EXPLORE_MARK = "cfepy_explore"  # as in `cfepy.extra.exploration.in_tests`, which is loaded for tests with this mark
 UNDER_TEST = pytest.StashKey["Conditions"]()
-"""In the stash of the configuration: what the missions of an explored test are flown under."""
+"""In the stash of the configuration: how the missions of an explored test are flown."""
 BELOW = 'the command in the section "cfepy" below'
 
 
 @dataclass(slots=True)
 class Conditions:
-    """What the missions of one run of an explored test are flown under.
+    """How the missions of one run of an explored test are flown.
 
     Attributes:
-        schedule: of each.
-        policy: in place of the schedule's own; None for that.
-        attachments: what watches each.
-        plans: what was flown, a mission each.
-        recorded: what the policies have decided, a mission each.
+        schedule: schedule of each mission.
+        policy: instead of the schedule's own; None for that.
+        attachments: observe each mission.
+        plans: flown plans, one per mission.
+        recorded: decisions of the policies, one per mission.
     """
 
     schedule: Schedule
@@ -60,10 +61,10 @@ class Conditions:
 
 
 def leave_out_own_lines(failure: pytest.ExceptionInfo[BaseException]) -> None:
-    """Of an error in what a test asks for, or of what did not come, show the test's lines and not those of cfepy.
+    """Show the test's lines and not those of cfepy, for a wrong call or a failed expectation.
 
     Args:
-        failure: its traceback ends with the last line of the test; that of any other error stays.
+        failure: its traceback is cut at the last line of the test; that of any other error stays.
     """
     if not isinstance(failure.value, (UsageError, ExpectationError)):
         return
@@ -81,19 +82,19 @@ class Missions:
     """Boots missions for tests; see the fixture `mission`.
 
     Args:
-        config: pytest's.
-        current: where the stash of `config` has the test that runs.
+        config: pytest's configuration.
+        current: key of the running test in the stash of `config`.
 
     Attributes:
-        flown: the missions of this test, in order; those of fixtures of a wider scope are not among them.
+        flown: the missions of this test, in order, without missions of fixtures with a wider scope.
     """
 
     def __init__(self, config: pytest.Config, current: pytest.StashKey[pytest.Item]) -> None:
         self.flown: list[Flight] = []
         self._config = config
         self._current = current
-        self._fixtures: list[pytest.FixtureRequest] = []  # that are being set up
-        self._fixed = 0  # how many of those flown fixtures have booted: the first ones
+        self._fixtures: list[pytest.FixtureRequest] = []  # fixtures that are being set up
+        self._fixed = 0  # number of flown missions that were booted by fixtures: the first ones
         folder = config.getoption("--cfepy-record")
         self._journals = None if folder is None else _journals(folder)
         self._examples = ExampleTests(config.getoption("--cfepy-example"), self._end_example)
@@ -111,22 +112,22 @@ class Missions:
         races: bool | None = None,
         attachments: Sequence[Attachment] = (),
     ) -> Flight:
-        """Boot a mission: it stands at virtual time 0, and runs when the test says so.
+        """Boot a mission: it is at virtual time 0, and runs when the test lets it run.
 
         Args:
-            name: a mission's folder, startup script or launch file, seen from the test's file first; or the name of a
-                shipped mission.
-            board: name or file of a board; None takes the mission's own.
-            seed: of everything random in it; None takes --cfepy-seed.
-            schedule: which task goes first, such as "random:7"; None takes that of @explore or --cfepy-schedule.
-            tasks: "thread", "greenlet" or "auto"; None takes --cfepy-tasks.
-            faults: what goes wrong: a plan's path, "seed:N", a `cfepy.faults.FaultPlan` or a dictionary of that form.
-            args: of a launch file.
-            races: accesses of Python code that nothing orders let the test fail; None is as @explore says.
-            attachments: what else watches the run or changes it (`cfepy.attachment.Attachment`).
+            name: a mission's folder, startup script or launch file, searched relative to the test's file first; or the
+                name of a mission included in cfepy.
+            board: name or file of a board; None for the mission's own.
+            seed: seed of everything random in it; None for --cfepy-seed.
+            schedule: which task goes first, such as "random:7"; None for the schedule of @explore or --cfepy-schedule.
+            tasks: "thread", "greenlet" or "auto"; None for --cfepy-tasks.
+            faults: injected faults: a plan's path, "seed:N", a `cfepy.faults.FaultPlan` or a dictionary of that form.
+            args: arguments of a launch file.
+            races: whether unordered accesses in Python code fail the test; None as in @explore.
+            attachments: observe or modify the run (`cfepy.attachment.Attachment`).
 
         Raises:
-            UsageError: there is no such mission or board, or something in it is wrong.
+            UsageError: if there is no such mission or board, or it has a mistake.
         """
         plan = RunPlan(
             (self._place(name),),
@@ -142,7 +143,7 @@ class Missions:
         return self._fly(plan, fault_attachments(faults), attachments)
 
     def _fly(self, plan: RunPlan, faults: Sequence[Attachment], attachments: Sequence[Attachment]) -> Flight:
-        is_own = bool(attachments or faults)  # which the command line of a run cannot have
+        is_own = bool(attachments or faults)  # not available on the command line of a run
         policy = plan.schedule.policy()
         conditions = None if self._is_wide else self._conditions
         if conditions is not None:
@@ -167,7 +168,8 @@ class Missions:
             self._fixed += bool(self._fixtures)
         return flight
 
-    # -- where it is ---------------------------------------------------------------------------------------------------
+    # -- context
+    # --------------------------------------------------------------------------------------------------------
 
     @property
     def _item(self) -> pytest.Item | None:
@@ -175,22 +177,22 @@ class Missions:
 
     @property
     def _conditions(self) -> Conditions | None:
-        """Those of an explored test, None in others."""
+        """Conditions of an explored test; None in others."""
         return self._config.stash.get(UNDER_TEST, None)
 
     @property
     def _is_wide(self) -> bool:
-        """Whether a fixture of a wider scope than a test's is being set up."""
+        """Whether a fixture with a wider scope than the test is being set up."""
         return bool(self._fixtures) and self._fixtures[-1].scope != "function"
 
     @property
     def _wants_races(self) -> bool:
-        """Whether the test is one that @explore looks for races in."""
+        """Whether @explore looks for races in the test."""
         mark = None if self._item is None or self._is_wide else self._item.get_closest_marker(EXPLORE_MARK)
         return mark is not None and mark.args[0].races
 
     def _place(self, name: str | os.PathLike[str]) -> str:
-        """A path as the command line would have it, or a name as it is."""
+        """Return a path as on the command line, or a name unchanged."""
         item = self._item
         beside = None if item is None else item.path.parent / os.fspath(name)
         if beside is None or not (beside.is_file() or (beside / "startup.scr").is_file()):
@@ -200,10 +202,10 @@ class Missions:
         return os.path.relpath(found, here) if found.is_relative_to(here) else str(found)
 
     def _schedule(self, given: str | Schedule | None) -> Schedule:
-        """The schedule of the next mission.
+        """Return the schedule of the next mission.
 
         Args:
-            given: by the test; None takes that of @explore or --cfepy-schedule.
+            given: schedule given by the test; None for the schedule of @explore or --cfepy-schedule.
         """
         if given is not None:
             return schedule_of(given)
@@ -217,10 +219,10 @@ class Missions:
         return text if text is None or text.startswith(SEED) else self._place(text)
 
     def _stall(self) -> float:
-        """For how many seconds a task may keep the CPU.
+        """Return for how many seconds a task may keep the CPU.
 
         Raises:
-            UsageError: what the configuration says is no such number.
+            UsageError: if the configuration has no valid number.
         """
         given = self._config.getoption("--cfepy-stall")
         text = str(self._config.getini("cfepy_stall") if given is None else given)
@@ -233,12 +235,12 @@ class Missions:
         return seconds
 
     def command(self, item: pytest.Item, schedule: Schedule | None = None, example: str | None = None) -> str:
-        """The command that does a test again.
+        """Return the command that repeats a test.
 
         Args:
             item: the test.
-            schedule: of its missions; None for the present one.
-            example: of a Hypothesis test, as `--cfepy-example` takes it.
+            schedule: schedule of its missions; None for the current one.
+            example: example of a Hypothesis test, as for `--cfepy-example`.
         """
         conditions = self._conditions
         if schedule is None and conditions is not None:
@@ -264,7 +266,7 @@ class Missions:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(self, request: pytest.FixtureRequest) -> Generator[None, Any, Any]:
-        """Know for which fixture a mission is booted."""
+        """Note for which fixture a mission is booted."""
         self._fixtures.append(request)
         try:
             return (yield)
@@ -273,7 +275,7 @@ class Missions:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_call(self, item: pytest.Item) -> Generator[None, Any, Any]:
-        """Look after the examples of Hypothesis; a test that went well fails if there were races in its missions."""
+        """Handle the examples of Hypothesis; a passed test fails if there were races in its missions."""
         self._examples.prepare(item)
         result = yield
         races = [race for flight in self.flown if flight.plan.races for race in flight.mission.record.data_races]
@@ -286,7 +288,7 @@ class Missions:
     def pytest_runtest_makereport(
         self, item: pytest.Item, call: pytest.CallInfo[None]
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-        """Tell of a failure how to get it again; of what a test does wrong, show the test's own lines."""
+        """Add the command that repeats a failure; for wrong calls in a test, show the test's own lines."""
         if call.excinfo is not None:
             leave_out_own_lines(call.excinfo)
         report = yield
@@ -323,7 +325,7 @@ class Missions:
         return lines
 
     def _end_example(self, failed: bool) -> None:
-        """An example of Hypothesis is over."""
+        """End an example of Hypothesis."""
         if failed and self._journals is not None:
             self._journals.set_aside()
         self._end_from(self._fixed)
@@ -338,19 +340,19 @@ class Missions:
 
 
 def _journals(folder: str) -> FlightJournals:
-    """Only runs with --cfepy-record import what journals need."""
+    """Only runs with --cfepy-record load the journal modules."""
     from cfepy.testing.journals import FlightJournals
 
     return FlightJournals(folder)
 
 
 def pytest_command(config: pytest.Config, item: pytest.Item, options: Sequence[str]) -> str:
-    """The command, as it can be given where this run was started.
+    """Return the command, as it can be entered where this run was started.
 
     Args:
-        config: of this run.
+        config: configuration of this run.
         item: the test.
-        options: to be added.
+        options: options to add.
     """
     file, _, rest = item.nodeid.partition("::")
     start = config.invocation_params.dir
@@ -360,7 +362,7 @@ def pytest_command(config: pytest.Config, item: pytest.Item, options: Sequence[s
 
 
 def _given(config: pytest.Config, name: str) -> list[str]:
-    """An option of this run that decides which tests there are, with its value, if it was given."""
+    """Return an option of this run that selects tests, with its value, if it was given."""
     words = [str(word) for word in config.invocation_params.args]
     for index, word in enumerate(words):
         if word == name and index + 1 < len(words):

@@ -1,9 +1,9 @@
-"""The pytest plugin: options, the fixture `mission`, and what is loaded only for tests that need it.
+"""The pytest plugin: options, the fixture `mission`, and parts that are loaded only for tests that need them.
 
-A suite that does not use cfepy pays for some options and a look at its collected tests: what a mission needs is
-imported when a test asks for one.
+A suite that does not use cfepy only pays for some options and a check of its collected tests: the code for missions is
+loaded when a test asks for one.
 
-PYTEST_DONT_REWRITE: it is loaded by its entry point or by name, and pytest warns of one that was loaded in both ways.
+PYTEST_DONT_REWRITE: it is loaded by its entry point or by name, and pytest warns if it was loaded in both ways.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ import pytest
 if TYPE_CHECKING:
     from cfepy.testing.missions import Missions
 
-EXPLORE_MARK = "cfepy_explore"  # as in `cfepy.testing.explore_mark`, which is loaded for tests that have it
+EXPLORE_MARK = "cfepy_explore"  # as in `cfepy.testing.explore_mark`, which is loaded for tests with this mark
 CURRENT = pytest.StashKey[pytest.Item]()
-"""In the stash of the configuration: the test that runs."""
+"""In the stash of the configuration: the running test."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """The options of cfepy."""
+    """Add the options of cfepy."""
     group = parser.getgroup("cfepy", "cfepy: missions under test")
     group.addoption("--cfepy-seed", type=int, default=0, metavar="N", help="seed of missions that a test gives none")
     group.addoption(
@@ -43,12 +43,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """The mark that `cfepy.testing.explore` makes."""
+    """Register the mark that `cfepy.testing.explore` makes."""
     config.addinivalue_line("markers", f"{EXPLORE_MARK}(exploration): made by @cfepy.testing.explore(...)")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Load what tests with @explore need, if there are any."""
+    """Load the modules for tests with @explore, if there are any."""
     if any(item.get_closest_marker(EXPLORE_MARK) for item in items):
         from cfepy.plugins import Hook
 
@@ -58,7 +58,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Note which test runs."""
+    """Note the running test."""
     item.config.stash[CURRENT] = item
 
 
@@ -69,12 +69,7 @@ def _add(config: pytest.Config, name: str, plugin: type) -> None:
 
 @pytest.fixture(scope="session")
 def mission(request: pytest.FixtureRequest) -> Missions:
-    """Boots missions: `flight = mission("capture", seed=1)`, by folder, launch file or shipped name.
-
-    A path is seen from the test's file first. The flight ends with the test, or with the fixture that made it. Give
-    board=, seed=, schedule=, tasks=, faults=, args= (of a launch file) or attachments= as needed; docs/testing.md has
-    examples.
-    """
+    """Return a function that boots missions: `flight = mission("capture", seed=1)`, by folder, launch file or name."""
     from cfepy.testing.missions import Missions
 
     found = request.config.pluginmanager.get_plugin("cfepy-missions")

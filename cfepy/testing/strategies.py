@@ -3,9 +3,9 @@
     @given(message=messages("std_msgs/String"), schedule=schedules())
     def test_it(mission, message, schedule): ...
 
-A ROS message is made of plain data first, so that it shrinks field by field; big types get short arrays, or a planning
-scene would never end. Packets and table rows come from the declarations of the dictionary. Schedules and faults are
-texts and plain dictionaries, which a failing example shows as a person would write them.
+A ROS message is made from plain data, so that it shrinks field by field; big types get short arrays, to keep examples
+small. Packets and table rows come from the declarations of the dictionary. Schedules and faults are texts and plain
+dictionaries, which are readable in a failing example.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ __all__ = ["fault_plans", "messages", "packets", "schedules", "tables"]
 OCTETS = ("uint8", "char")  # arrays of these are bytes
 SIGNED_BITS = {"int8": 8, "int16": 16, "int32": 32, "int64": 64, "byte": 8}
 LONGEST_TEXT = 12
-LIGHT, HEAVY = 16, 64  # weights of a type from which on arrays of it are shorter
+LIGHT, HEAVY = 16, 64  # weights of a type from which on its arrays are shorter
 LONGEST_PAYLOAD = 64
-MOST_ROWS = 4  # that are not all zero; more would only make examples longer
+MOST_ROWS = 4  # maximum number of rows that are not all zero; more would only make examples longer
 COMMAND_BIT = 0x1000
 HAS_TIME_OR_CODE = 0x0800
 TELEMETRY_IDS, COMMAND_IDS = (0x0801, 0x0FFF), (0x1801, 0x1FFF)
@@ -43,8 +43,8 @@ CODE_BYTE = 6
 UNKNOWN_CODE = 0x7F
 MissionName = str | os.PathLike[str] | None
 Fields = Mapping[str, st.SearchStrategy[Any]]
-DECISIONS = 500  # among which schedules deviate
-HUNDREDTHS = 100  # times of faults are of 10 ms
+DECISIONS = 500  # number of decisions among which schedules deviate
+HUNDREDTHS = 100  # times of faults are multiples of 10 ms
 MOST_COUNT = 20
 
 
@@ -52,7 +52,7 @@ class MessageValues:
     """Plain values of the types of a library: dictionaries, lists, numbers, texts, bytes for `uint8[]`.
 
     Args:
-        library: knows the types.
+        library: library with the types.
     """
 
     def __init__(self, library: Library) -> None:
@@ -61,10 +61,10 @@ class MessageValues:
         self._strategies: dict[str, st.SearchStrategy[Any]] = {}
 
     def of(self, field_type: str) -> st.SearchStrategy[Any]:
-        """Values of a type, such as "float64", "uint8[]", "time" or "geometry_msgs/Point[3]".
+        """Return a strategy for values of a type, such as "float64", "uint8[]", "time" or "geometry_msgs/Point[3]".
 
         Raises:
-            UsageError: there is no such type.
+            UsageError: if there is no such type.
         """
         found = self._strategies.get(field_type)
         if found is None:
@@ -72,7 +72,7 @@ class MessageValues:
         return found
 
     def fields(self, full_name: str) -> dict[str, st.SearchStrategy[Any]]:
-        """A strategy for each field of a message type; errors as `of`."""
+        """Return a strategy for each field of a message type; see `of` for the errors."""
         kind = self._library.message_class(full_name)
         return {name: self.of(slot) for name, slot in zip(kind.__slots__, kind._slot_types, strict=True)}
 
@@ -89,12 +89,12 @@ class MessageValues:
         return st.fixed_dictionaries(self.fields(field_type)) if "/" in field_type else _number_or_text(field_type)
 
     def _most(self, base: str) -> int:
-        """Items of an array without a length."""
+        """Return the number of items of an array without fixed length."""
         weight = self._weight(base)
         return 4 if weight <= LIGHT else 2 if weight <= HEAVY else 1
 
     def _weight(self, field_type: str) -> int:
-        """Roughly how many numbers and texts a value of a type has."""
+        """Return the approximate number of numbers and texts in a value of a type."""
         if field_type.endswith("]"):
             base, size = array_of(field_type)
             return 1 if base in OCTETS else (size or self._most(base)) * self._weight(base)
@@ -122,16 +122,16 @@ def _number_or_text(field_type: str) -> st.SearchStrategy[Any]:
 def messages(
     kind: str | type, *, near: str | os.PathLike[str] | None = None, **fields: st.SearchStrategy[Any]
 ) -> st.SearchStrategy[Any]:
-    """Messages of a ROS type, of all its values.
+    """Return a strategy for messages of a ROS type, with all its values.
 
     Args:
         kind: a type such as "std_msgs/String", or a message class, ROS's own or cfepy's.
-        near: a file or folder of the package that the type is from, such as `__file__`; ROS's common packages are
-            always known, and those near the working directory and on ROS_PACKAGE_PATH.
-        fields: strategies in place of those of single fields, such as `data=st.floats(0, 1)`.
+        near: a file or folder of the package that the type is from, such as `__file__`; ROS's common packages and those
+            near the working directory and on ROS_PACKAGE_PATH are always known.
+        fields: strategies for single fields, such as `data=st.floats(0, 1)`.
 
     Raises:
-        UsageError: there is no such type or field.
+        UsageError: if there is no such type or field.
 
     >>> messages("std_msgs/Bool", data=st.just(True)).example().data  # doctest: +SKIP
     True
@@ -147,12 +147,12 @@ def messages(
 
 
 def _as_class(kind: type, message: Any) -> Any:
-    """The message as one of `kind`, a class of the same type that was made elsewhere."""
+    """Return the message as one of `kind`, a class of the same type created elsewhere."""
     return message if type(message) is kind else kind().deserialize(message._pack())
 
 
 def cell_values(cell: Cell) -> st.SearchStrategy[Any]:
-    """All values that one field of a struct can have; text without the NUL that would end it."""
+    """Return a strategy for all values of one field of a struct; text without the NUL that would end it."""
     if cell.type.startswith("char"):
         printable = st.characters(min_codepoint=32, max_codepoint=126)
         return st.text(printable, max_size=max(0, cell.size - 1))
@@ -166,15 +166,15 @@ def cell_values(cell: Cell) -> st.SearchStrategy[Any]:
 
 
 def fields_of(layout: Layout, given: Fields, owner: str) -> st.SearchStrategy[dict[str, Any]]:
-    """Values of a struct by path: {"PacketID.AppName": "HK", "Counts[0]": 1}.
+    """Return a strategy for values of a struct by path: {"PacketID.AppName": "HK", "Counts[0]": 1}.
 
     Args:
         layout: the struct.
-        given: strategies in place of those that the type alone suggests, by path.
-        owner: of the fields, for the error.
+        given: strategies instead of those of the type, by path.
+        owner: owner of the fields, for the error.
 
     Raises:
-        UsageError: there is no such field.
+        UsageError: if there is no such field.
     """
     cells = {cell.path: cell_values(cell) for cell in layout.cells()}
     for path in given:
@@ -184,7 +184,7 @@ def fields_of(layout: Layout, given: Fields, owner: str) -> st.SearchStrategy[di
 
 
 def packed(layout: Layout, values: Mapping[str, Any]) -> bytes:
-    """The bytes of a struct from values by path; those that are not given are zero."""
+    """Return the bytes of a struct from values by path; missing ones are zero."""
     data = bytearray(layout.size)
     for cell in layout.cells():
         if cell.path in values:
@@ -200,18 +200,18 @@ def packets(
     malformed: bool = False,
     fields: Fields | None = None,
 ) -> st.SearchStrategy[bytes]:
-    """CCSDS packets as they go over the Software Bus.
+    """Return a strategy for CCSDS packets as on the Software Bus.
 
     Args:
-        name: a command or telemetry packet of the dictionary, such as "SAMPLE_APP_DISPLAY_PARAM", with valid fields;
-            a declaration itself; a MsgId, with any payload; None for any MsgId.
-        mission: whose dictionary it is; without one, that of the applications that cfepy brings along.
-        malformed: the packet has a mistake that its receiver has to find, since the bus takes it: it is too short or
-            too long for what it is, or has an unknown function code.
-        fields: strategies in place of those of single fields, by path.
+        name: a command or telemetry packet of the dictionary, such as "SAMPLE_APP_DISPLAY_PARAM", with valid fields; a
+            declaration itself; a MsgId, with any payload; None for any MsgId.
+        mission: mission with the dictionary; None for the applications included in cfepy.
+        malformed: whether the packet has a mistake that its receiver must find, because the bus accepts it: it is too
+            short or too long, or has an unknown function code.
+        fields: strategies for single fields, by path.
 
     Raises:
-        UsageError: there is no such packet, field or mission.
+        UsageError: if there is no such packet, field or mission.
     """
     good = _packets(name, mission, fields or {})
     return good.flatmap(_with_mistake) if malformed else good
@@ -258,7 +258,7 @@ def _any_payload(msg_id: int) -> st.SearchStrategy[bytes]:
 
 
 def _with_mistake(packet: bytes) -> st.SearchStrategy[bytes]:
-    """One of the mistakes that a packet can have; the shortest one first."""
+    """Return a strategy for mistakes of a packet, the shortest one first."""
     mistakes = [
         st.integers(CMD_HEADER_SIZE - 1, len(packet) - 1).map(lambda size: _resized(packet[:size])),
         st.binary(min_size=1, max_size=LONGEST_PAYLOAD).map(lambda more: _resized(packet + more)),
@@ -269,22 +269,22 @@ def _with_mistake(packet: bytes) -> st.SearchStrategy[bytes]:
 
 
 def _resized(packet: bytes) -> bytes:
-    """With the length in the header that its bytes have."""
+    """Return the packet with the correct length in its header."""
     return packet[: SIZE_BYTES.start] + (len(packet) - 7).to_bytes(2, "big") + packet[SIZE_BYTES.stop :]
 
 
 def tables(
     name: str, *, mission: MissionName = None, fields: Fields | None = None
 ) -> st.SearchStrategy[list[dict[str, Any]]]:
-    """Contents of a table: its rows, each with its fields, as `Flight.load_table` takes them.
+    """Return a strategy for contents of a table: its rows with their fields, as for `Flight.load_table`.
 
     Args:
         name: full name, such as "HK.CopyTable", or the table's own name if no other one has it.
-        mission: whose applications declare it; those that cfepy brings along are always known.
-        fields: strategies in place of those of single fields, by path within a row.
+        mission: mission whose applications declare it; those included in cfepy are always known.
+        fields: strategies for single fields, by path within a row.
 
     Raises:
-        UsageError: there is no such table, field or mission.
+        UsageError: if there is no such table, field or mission.
     """
     kind = table_type(name, None if mission is None else os.fspath(mission))
     row = fields_of(kind.row, fields or {}, kind.name).map(lambda values: kind.row.unpack(packed(kind.row, values)))
@@ -294,14 +294,12 @@ def tables(
 
 
 def schedules(decisions: int = DECISIONS, *, most: int = 3, candidates: int = 3) -> st.SearchStrategy[str]:
-    """Schedules that deviate from fifo in a few decisions, as `mission(schedule=...)` takes them: "at:42=1".
-
-    They shrink to the fewest deviations, and these to the earliest.
+    """Return a strategy for schedules with a few deviations from fifo, as for `mission(schedule=...)`: "at:42=1".
 
     Args:
-        decisions: how many decisions a run has, about; later ones are as fifo has them.
-        most: deviations.
-        candidates: how many tasks there are to choose from, at most; where there are fewer, the last one is meant.
+        decisions: approximate number of decisions in a run; later ones are as with fifo.
+        most: maximum number of deviations.
+        candidates: maximum number of tasks to choose from; if there are fewer, the last one is used.
     """
     deviations = st.dictionaries(st.integers(0, decisions - 1), st.integers(1, candidates - 1), max_size=most)
     return deviations.map(lambda chosen: Schedule().at(chosen).text() if chosen else Schedule().text())
@@ -315,19 +313,19 @@ def fault_plans(
     most: int = 3,
     until: float = 10.0,
 ) -> st.SearchStrategy[dict[str, Any]]:
-    """What may go wrong, as `mission(faults=...)` takes it: {"faults": [{"drop": "/odom", "number": 1}]}.
+    """Return a strategy for faults, as for `mission(faults=...)`: {"faults": [{"drop": "/odom", "number": 1}]}.
 
     They shrink to the fewest faults, and these to the first message or the earliest time.
 
     Args:
-        mission: whose messages and applications are struck, when these are not given. It is flown once to find them.
-        messages: topics, and packets by the names of the dictionary.
+        mission: mission whose messages and applications are targets if none are given. It is flown once to find them.
+        messages: topics, and packets by their names in the dictionary.
         apps: cFE names.
-        most: faults.
+        most: maximum number of faults.
         until: virtual time in s until which they happen.
 
     Raises:
-        UsageError: there is nothing to strike.
+        UsageError: if there is no target.
     """
     if mission is None and not messages and not apps:
         raise UsageError("there is nothing to strike; give a mission, messages or apps")
@@ -343,7 +341,7 @@ def fault_plans(
 
 
 def _faults(messages: Sequence[str], apps: Sequence[str], until: float) -> Iterator[st.SearchStrategy[dict[str, Any]]]:
-    """A strategy for each kind of fault."""
+    """Yield a strategy for each kind of fault."""
     when = st.integers(0, round(until * HUNDREDTHS)).map(lambda hundredths: hundredths / HUNDREDTHS)
     number = st.integers(1, MOST_COUNT)
     if messages:
@@ -364,7 +362,7 @@ def _faults(messages: Sequence[str], apps: Sequence[str], until: float) -> Itera
 
 @cache
 def _found_in(mission: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The messages that have a receiver in a mission, and its own applications."""
+    """Return the messages with a receiver in a mission, and its own applications."""
     from cfepy.faults import targets_of
 
     targets = targets_of(read_mission(mission))

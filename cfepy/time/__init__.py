@@ -1,8 +1,8 @@
 """Time Services: one spacecraft time for all, set by ground and tone (cFE TIME).
 
-What belongs here makes, keeps or converts spacecraft time. The virtual time of the simulation does not; it belongs to
-the kernel (`cfepy.rtos`). The five services do not import each other; what TIME needs of the others it finds in its
-`Ports`. The central file is `cfepy/time/service.py`.
+Code that generates, keeps or converts spacecraft time belongs here. The virtual time of the simulation belongs to the
+kernel (`cfepy.rtos`). The five services are independent of one another; TIME reaches the others through its `Ports`.
+The central file is `cfepy/time/service.py`.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ __all__ = [
     "subtract",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

@@ -1,11 +1,12 @@
-"""The spacecraft clock: the values at the last tone, and the present time that follows from them.
+"""The spacecraft clock: the values at the last tone, and the present time computed from them.
 
-MET is the MET at the tone plus what the processor's own clock counted since, on a client also the delay of the tone on
-its way; TAI is MET plus STCF, and UTC is TAI less the leap seconds. The processor's clock is the kernel's virtual
-time. Spacecraft time is one integer that is added to that clock, so asking for it is an addition, and the telemetry
-stamp is kept for as long as the clock stands still. Stands for the reference state of CFE_TIME_GetReference; the ring
-of versions that NASA's readers need on a preemptive processor is not needed where a task is only interrupted inside
-kernel calls.
+MET is the MET at the tone plus the time that the processor's own clock has counted since, and on a client also the
+delay of the tone. TAI is MET plus STCF. UTC is TAI minus the leap seconds. The processor's clock is the kernel's
+virtual time.
+
+Spacecraft time is an integer added to that clock, so reading it is an addition. The telemetry stamp is cached while the
+clock stands still. The module replaces the reference state of CFE_TIME_GetReference. NASA's readers need a ring of
+versions on a preemptive processor. Here a task is only interrupted inside kernel calls, so the ring is not needed.
 """
 
 from __future__ import annotations
@@ -26,11 +27,11 @@ ADD, SUBTRACT = 1, 2
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """What the time is computed from (CFE_TIME_ReferenceState_t); times in ticks of 2**-32 s.
+    """The reference values of the time (CFE_TIME_ReferenceState_t); times in ticks of 2**-32 s.
 
-    `met` and `latch` are MET and local clock at the last tone; `stcf` is added to MET to get TAI; `delay` is what the
-    tone needs to reach a client; `flying` means that no time was received lately, `was_set` that the time was declared
-    right.
+    `met` and `latch` are MET and local clock at the last tone. `stcf` is added to MET to get TAI. `delay` is the delay
+    of the tone to a client. `flying` means that no time was received recently. `was_set` means that the time was
+    declared valid.
     """
 
     met: int = 0
@@ -46,20 +47,20 @@ class Reference:
 class SpacecraftTime:
     """The reference and the time computed from it.
 
-    Until the first `update` all of it is zero, so that the time is the processor's own clock counted from the epoch.
+    Until the first `update` all values are zero, so the time is the processor's own clock counted from the epoch.
 
     Args:
         kernel: its virtual time is the local clock.
-        utc: spacecraft time is UTC instead of TAI.
-        client: this processor follows a server's time.
+        utc: whether spacecraft time is UTC instead of TAI.
+        client: whether this processor follows a server's time.
 
     Attributes:
-        reference: what the time is computed from; changed by `update` only.
-        server_flying: the time server is in flywheel mode (CFE_TIME_Global.ServerFlyState).
+        reference: the reference values; only `update` changes them.
+        server_flying: whether the time server is in flywheel mode (CFE_TIME_Global.ServerFlyState).
         stamp_now: spacecraft time at `stamp_at` for a telemetry header: seconds << 16 | upper subseconds.
-        stamp_at: the virtual time in ns that `stamp_now` belongs to; -1 when the clock was set since.
-        on_jump: called when the clock was set, so that others drop a time they remembered.
-        version: how often the reference changed.
+        stamp_at: the virtual time of `stamp_now` in ns; -1 if the clock was set since.
+        on_jump: called when the clock was set, so that other parts drop a cached time.
+        version: number of changes of the reference.
     """
 
     __slots__ = (
@@ -89,7 +90,7 @@ class SpacecraftTime:
         self.on_jump: Callable[[], object] = _nobody_listens
 
     def local(self) -> int:
-        """The local clock in ticks (CFE_TIME_LatchClock)."""
+        """Return the local clock in ticks (CFE_TIME_LatchClock)."""
         return ticks_of_ns(self._kernel.now)
 
     def update(self, **changes: int | bool) -> None:
@@ -105,27 +106,29 @@ class SpacecraftTime:
             self.on_jump()
 
     def since_tone(self) -> int:
-        """Ticks since the last tone."""
+        """Return the ticks since the last tone."""
         return self.local() - self.reference.latch
 
     def current_met(self) -> int:
-        """MET in ticks."""
+        """Return MET in ticks."""
         return self._met_offset + self.local() & MASK_64
 
     def current_tai(self) -> int:
-        """TAI in ticks."""
+        """Return TAI in ticks."""
         return self.current_met() + self.reference.stcf & MASK_64
 
     def current_utc(self) -> int:
-        """UTC in ticks."""
+        """Return UTC in ticks."""
         return self.current_tai() - (self.reference.leap_seconds << 32) & MASK_64
 
     def now(self) -> SysTime:
-        """Spacecraft time: TAI, or UTC when so configured."""
+        """Return the spacecraft time: TAI, or UTC if so configured."""
         return from_ticks(self._offset - (-(self._kernel.now << 32) // NS_PER_S))
 
     def stamp(self) -> int:
-        """Spacecraft time as the 48-bit integer of a telemetry header; costs an attribute look-up while time stands."""
+        """Return the spacecraft time as the 48-bit integer of a telemetry header; an attribute lookup while time stands
+        still.
+        """
         now = self._kernel.now
         if now != self.stamp_at:
             self.stamp_at = now
@@ -133,7 +136,7 @@ class SpacecraftTime:
         return self.stamp_now
 
     def state(self) -> int:
-        """CLOCK_INVALID, CLOCK_VALID or CLOCK_FLYWHEEL (CFE_TIME_CalculateState)."""
+        """Return CLOCK_INVALID, CLOCK_VALID or CLOCK_FLYWHEEL (CFE_TIME_CalculateState)."""
         if not self.reference.was_set:
             return CLOCK_INVALID
         is_flying = self.reference.flying or (self._client and self.server_flying)
@@ -141,4 +144,4 @@ class SpacecraftTime:
 
 
 def _nobody_listens() -> None:
-    """No one remembers a time."""
+    """Do nothing: no part caches a time."""

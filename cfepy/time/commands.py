@@ -1,7 +1,7 @@
-"""The commands of Time Services, and how each is answered (cfe_time_task.c).
+"""The commands of Time Services and their replies (cfe_time_task.c).
 
-A server refuses commands for clients, a client those for servers, and both refuse to switch source or tone signal when
-they are not configured to; each in NASA's words.
+A server refuses commands for clients, and a client those for servers. Both refuse to switch source or tone signal if
+they are not configured for it. The replies have NASA's texts.
 """
 
 from __future__ import annotations
@@ -35,19 +35,19 @@ _SIGNALS = {SIGNAL_PRIMARY: "PRIMARY", SIGNAL_REDUNDANT: "REDUNDANT"}
 
 
 class TimeCommands:
-    """Handles the packets of Time Services' pipe that are not about the tone.
+    """Handles the packets of Time Services' pipe, except those about the tone.
 
     Args:
         ports: the other services.
-        clock: what commands set.
-        tone: likewise.
-        settings: what this processor may be told.
-        on_housekeeping: called before each housekeeping packet, when NASA saves the reset variables.
+        clock: the clock that commands set.
+        tone: the tone that commands set.
+        settings: the commands that this processor accepts.
+        on_housekeeping: called before each housekeeping packet, when NASA's code saves the reset variables.
 
     Attributes:
-        table: message ids and function codes with their handlers; the tone's own are added by the task.
+        table: message ids and function codes with their handlers; the task adds those of the tone.
         replies: the command counters.
-        data_store: where the start values came from, for the diagnostic packet.
+        data_store: the source of the start values, for the diagnostic packet.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class TimeCommands:
             (pk.ADD_ONE_HZ_ADJUSTMENT, partial(self._one_hz, ADD)),
             (pk.SUB_ONE_HZ_ADJUSTMENT, partial(self._one_hz, SUBTRACT)),
         )
-        self.table.handle(pk.SEND_HK, self._send_housekeeping, any_length=True)  # NASA's does not look
+        self.table.handle(pk.SEND_HK, self._send_housekeeping, any_length=True)  # NASA's code does not check it
         self.replies = Replies(ports)
         self.data_store = RESET_AREA_NEW
         self._ports = ports
@@ -89,7 +89,7 @@ class TimeCommands:
         self._version_at_reset = 0
 
     def process(self, packet: bytes) -> None:
-        """Handle one packet of the pipe (CFE_TIME_TaskPipe)."""
+        """Handle a packet of the pipe (CFE_TIME_TaskPipe)."""
         done = self.table.dispatch(packet)
         if done.outcome in (BAD_MSG_ID, BAD_CODE, BAD_LENGTH):
             self._reject(done)
@@ -106,7 +106,7 @@ class TimeCommands:
         self.replies.send(event_id, text, ev.ERROR)
 
     def _is_allowed(self, allowed: bool, event_id: int, what: str, option: str) -> bool:
-        """Whether the configuration allows a command; an event when not."""
+        """Return whether the configuration allows a command; send an event if not."""
         if not allowed:
             self.replies.reject(event_id, f"{what} commands invalid without CFE_PLATFORM_TIME_CFG_{option} set to TRUE")
         return allowed
@@ -216,12 +216,14 @@ class TimeCommands:
         seconds, subseconds = fields["Seconds"], fields["Subseconds"]
         adjustments = self._tone.adjustments
         adjustments.one_hz, adjustments.one_hz_direction = to_ticks((seconds, subseconds)), direction
-        shown = seconds - (seconds >> 31 << 32)  # the event shows seconds with a sign
+        shown = seconds - (seconds >> 31 << 32)  # the event shows signed seconds
         text = f"STCF 1Hz Adjust -- secs = {shown}, ssecs = 0x{subseconds:X}, dir[1=Pos, 2=Neg] = {direction}"
         self.replies.accept(ev.ONEHZ_EID, text)
 
     def _time(self, packet: bytes, what: str, invalid: int, ending: str = "") -> int | None:
-        """The time in a command, in ticks; None after an event when its microseconds make a second or more."""
+        """Return the time in a command, in ticks; None after an error event if its microseconds are a second
+        or more.
+        """
         seconds, micros = _seconds_and_micros(packet)
         if micros >= US_PER_S:
             self.replies.reject(invalid, f"Invalid {what} -- secs = {seconds}, usecs = {micros}{ending}")
@@ -230,7 +232,7 @@ class TimeCommands:
 
 
 def _seconds_and_micros(packet: bytes) -> tuple[int, int]:
-    """The payload of all commands with a time, which is the same."""
+    """Return the payload of a command with a time, which is the same for all these commands."""
     fields = pk.SET_TIME.read(packet)
     return fields["Seconds"], fields["MicroSeconds"]
 

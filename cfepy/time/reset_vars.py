@@ -1,6 +1,6 @@
-"""What outlives a processor reset: MET, STCF, tone delay, leap seconds and tone signal, in the bytes that C has.
+"""The values that outlive a processor reset: MET, STCF, tone delay, leap seconds and tone signal, in C's byte layout.
 
-Stands for CFE_TIME_QueryResetVars and CFE_TIME_UpdateResetVars.
+It replaces CFE_TIME_QueryResetVars and CFE_TIME_UpdateResetVars.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ from cfepy.time.systime import fields_of, ticks_of
 from cfepy.time.tone import SIGNAL_PRIMARY, SIGNAL_REDUNDANT, Tone
 
 KEPT = "TIME"
-"""Name of these 32 bytes among the objects that outlive a processor reset."""
+"""The key of these 32 bytes among the objects that outlive a processor reset."""
 
 SIGNATURE = 0xA5A55A5A
 RESET_AREA_NEW, RESET_AREA_EXISTING = 3, 4
-"""Where the start values came from (DataStoreStatus of the diagnostic packet)."""
+"""The source of the start values (DataStoreStatus of the diagnostic packet)."""
 
 
 def start(kept: dict[str, Any], clock: SpacecraftTime, tone: Tone, settings: TimeSettings) -> int:
-    """Set the clock to what was kept, or to the configured values when that is not there or not sound.
+    """Set the clock to the kept values, or to the configured values if these are missing or invalid.
 
     Args:
         kept: objects that outlive a processor reset.
-        clock: to be set.
+        clock: the clock to set.
         tone: gets the tone signal.
         settings: the configured values.
 
@@ -44,7 +44,7 @@ def start(kept: dict[str, Any], clock: SpacecraftTime, tone: Tone, settings: Tim
 
 
 def save(kept: dict[str, Any], clock: SpacecraftTime, tone: Tone) -> None:
-    """Keep the values of now; MET without the tone's delay, which is kept separately."""
+    """Save the present values; MET is saved without the tone's delay, which is separate."""
     reference = clock.reference
     kept[KEPT] = RESET_VARS.pack(
         Signature=SIGNATURE,

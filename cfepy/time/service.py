@@ -34,7 +34,7 @@ SynchCallback = Callable[[], object]
 
 
 class TimeServices:
-    """Time of one processor.
+    """The Time Services of one processor.
 
     Args:
         kernel: its virtual time is the local clock.
@@ -75,8 +75,8 @@ class TimeServices:
         """Start the clock, before any task exists (CFE_TIME_EarlyInit).
 
         Args:
-            kept: objects that outlive a processor reset; "TIME" are the reset variables. They are put there anew with
-                each housekeeping packet.
+            kept: objects that outlive a processor reset; "TIME" has the reset variables. They are saved there again
+                with each housekeeping packet.
         """
         clock = self.clock
         self._kept = kept
@@ -87,60 +87,60 @@ class TimeServices:
         self.task.whole_second_ns = self._kernel.now - (met.subseconds * NS_PER_S >> 32)
 
     def task_main(self) -> None:
-        """The main task of CFE_TIME (CFE_TIME_TaskMain)."""
+        """Run the main task of CFE_TIME (CFE_TIME_TaskMain)."""
         self.task.main()
 
     def cleanup_app(self, app_id: int) -> None:
-        """Forget the callback of an application that ended (CFE_TIME_CleanUpApp)."""
+        """Remove the callback of an ended application (CFE_TIME_CleanUpApp)."""
         self._callbacks.pop(app_id, None)
 
     def _save(self) -> None:
         reset_vars.save(self._kept, self.clock, self.tone)
 
-    # -- what time it is -------------------------------------------------------------------------------------------
+    # -- the present time ------------------------------------------------------------------------------------------
 
     def text(self) -> str:
-        """Spacecraft time as `print_` writes it."""
+        """Return the spacecraft time in the format of `print_`."""
         return st.print_(self.clock.now())
 
     def get_time(self) -> SysTime:
-        """Spacecraft time: TAI, or UTC when so configured (CFE_TIME_GetTime)."""
+        """Return the spacecraft time: TAI, or UTC if so configured (CFE_TIME_GetTime)."""
         return self.clock.now()
 
     def get_tai(self) -> SysTime:
-        """International Atomic Time: MET plus STCF (CFE_TIME_GetTAI)."""
+        """Return International Atomic Time: MET plus STCF (CFE_TIME_GetTAI)."""
         return from_ticks(self.clock.current_tai())
 
     def get_utc(self) -> SysTime:
-        """Coordinated Universal Time: TAI less leap seconds (CFE_TIME_GetUTC)."""
+        """Return Coordinated Universal Time: TAI minus leap seconds (CFE_TIME_GetUTC)."""
         return from_ticks(self.clock.current_utc())
 
     def get_met(self) -> SysTime:
-        """Mission elapsed time (CFE_TIME_GetMET)."""
+        """Return the mission elapsed time (CFE_TIME_GetMET)."""
         return from_ticks(self.clock.current_met())
 
     def get_met_seconds(self) -> int:
-        """Whole seconds of MET (CFE_TIME_GetMETseconds)."""
+        """Return the whole seconds of MET (CFE_TIME_GetMETseconds)."""
         return self.get_met().seconds
 
     def get_met_subsecs(self) -> int:
-        """Subseconds of MET, in 2**-32 s (CFE_TIME_GetMETsubsecs)."""
+        """Return the subseconds of MET, in 2**-32 s (CFE_TIME_GetMETsubsecs)."""
         return self.get_met().subseconds
 
     def get_stcf(self) -> SysTime:
-        """Spacecraft time correlation factor, what is added to MET (CFE_TIME_GetSTCF)."""
+        """Return the spacecraft time correlation factor, which is added to MET (CFE_TIME_GetSTCF)."""
         return from_ticks(self.clock.reference.stcf)
 
     def get_leap_seconds(self) -> int:
-        """Seconds that TAI is ahead of UTC (CFE_TIME_GetLeapSeconds)."""
+        """Return the seconds by which TAI is ahead of UTC (CFE_TIME_GetLeapSeconds)."""
         return self.clock.reference.leap_seconds
 
     def get_clock_state(self) -> int:
-        """-1 not set, 0 valid, 1 flywheel (CFE_TIME_GetClockState)."""
+        """Return -1 if not set, 0 if valid, 1 in flywheel mode (CFE_TIME_GetClockState)."""
         return self.clock.state()
 
     def get_clock_info(self) -> int:
-        """The clock state flags, 16 bits (CFE_TIME_GetClockInfo)."""
+        """Return the clock state flags, 16 bits (CFE_TIME_GetClockInfo)."""
         return clock_info(self.clock, self.tone)
 
     # -- arithmetic ------------------------------------------------------------------------------------------------
@@ -154,17 +154,18 @@ class TimeServices:
     print_ = staticmethod(st.print_)
 
     def met2sc_time(self, met: tuple[int, int]) -> SysTime:
-        """The spacecraft time that a mission elapsed time is (CFE_TIME_MET2SCTime)."""
+        """Return the spacecraft time of a mission elapsed time (CFE_TIME_MET2SCTime)."""
         tai = st.add(met, self.get_stcf())
         return st.subtract(tai, (self.get_leap_seconds(), 0)) if self._settings.utc else tai
 
     # -- signals ---------------------------------------------------------------------------------------------------
 
     def register_synch_callback(self, callback: SynchCallback) -> None:
-        """Have a function called at every good tone, in the task CFE_TIME (CFE_TIME_RegisterSynchCallback).
+        """Register a function to call at every good tone, in the task CFE_TIME (CFE_TIME_RegisterSynchCallback).
 
         Raises:
-            CfeError: CFE_TIME_BAD_ARGUMENT (not callable), CFE_TIME_TOO_MANY_SYNCH_CALLBACKS (the application has one).
+            CfeError: CFE_TIME_BAD_ARGUMENT (not callable), CFE_TIME_TOO_MANY_SYNCH_CALLBACKS (the application already
+                has one).
         """
         app_id = self._callback_owner(callback)
         if app_id in self._callbacks:
@@ -174,7 +175,7 @@ class TimeServices:
         self._callbacks[app_id] = callback
 
     def unregister_synch_callback(self, callback: SynchCallback) -> None:
-        """Call it no more (CFE_TIME_UnregisterSynchCallback).
+        """Unregister the function (CFE_TIME_UnregisterSynchCallback).
 
         Raises:
             CfeError: CFE_TIME_BAD_ARGUMENT (not callable), CFE_TIME_CALLBACK_NOT_REGISTERED.
@@ -194,28 +195,28 @@ class TimeServices:
         slots = self._config.es_max_applications
         for app_id in sorted(self._callbacks, key=lambda app_id: to_index(app_id, ES_APPID_BASE, slots)):
             callback = self._callbacks.get(app_id)
-            if callback is not None:  # one that was called before may have ended this one's application
+            if callback is not None:  # an earlier callback may have ended this application
                 callback()
 
     def local1hz_isr(self) -> None:
-        """A local 1 Hz signal from a board without timers (CFE_TIME_Local1HzISR)."""
+        """Handle a local 1 Hz signal of a board without timers (CFE_TIME_Local1HzISR)."""
         self.task.interrupt(self.clock.local())
 
     def external_tone(self) -> None:
-        """A tone from outside, at this instant (CFE_TIME_ExternalTone)."""
+        """Handle an external tone at this instant (CFE_TIME_ExternalTone)."""
         self.tone.interrupt(self.clock.local())
 
     def external_met(self, new_met: tuple[int, int]) -> None:
-        """Tell the MET at the tone, as seconds and subseconds (CFE_TIME_ExternalMET).
+        """Receive the MET at the tone, as seconds and subseconds (CFE_TIME_ExternalMET).
 
         Raises:
-            CfeError: CFE_TIME_NOT_IMPLEMENTED without `time_cfg_src_met`; NASA's does not even compile then.
+            CfeError: CFE_TIME_NOT_IMPLEMENTED without `time_cfg_src_met`; NASA's code does not compile then.
         """
         self._need_source("met")
         self._sender.send_met(new_met)
 
     def external_gps(self, new_time: tuple[int, int], new_leaps: int) -> None:
-        """Tell the spacecraft time at the tone and its leap seconds (CFE_TIME_ExternalGPS).
+        """Receive the spacecraft time at the tone and its leap seconds (CFE_TIME_ExternalGPS).
 
         Raises:
             CfeError: CFE_TIME_NOT_IMPLEMENTED without `time_cfg_src_gps`.
@@ -224,7 +225,7 @@ class TimeServices:
         self._sender.send_time(new_time, new_leaps)
 
     def external_time(self, new_time: tuple[int, int]) -> None:
-        """Tell the spacecraft time at the tone (CFE_TIME_ExternalTime).
+        """Receive the spacecraft time at the tone (CFE_TIME_ExternalTime).
 
         Raises:
             CfeError: CFE_TIME_NOT_IMPLEMENTED without `time_cfg_src_time`.

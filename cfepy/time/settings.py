@@ -1,6 +1,6 @@
-"""How Time Services is configured: server or client, where tone and time come from, and the limits, as TIME needs them.
+"""The configuration of Time Services: server or client, the sources of tone and time, and the limits.
 
-Stands for cfe_time_verify.h and the constants that CFE_TIME_InitData works out.
+It replaces cfe_time_verify.h and the constants that CFE_TIME_InitData computes.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ SOURCES = ("met", "gps", "time")
 
 @dataclass(frozen=True, slots=True)
 class TimeSettings:
-    """The configuration; times and limits are in ticks of 2**-32 s, but for whole seconds.
+    """The configuration; times and limits are in ticks of 2**-32 s, except whole seconds.
 
-    `client` follows a server's time instead of keeping one; `fake_tone` makes tones of the local 1 Hz signal; `will_be`
-    means that a message tells the time of the next tone, not of the last one; `utc` makes UTC the spacecraft time;
-    `can_select_signal` and `can_select_source` allow the two commands; `external` is what an external source tells:
-    "met", "gps", "time", or "" when there is none.
+    `client` follows a server's time instead of keeping one. `fake_tone` makes tones from the local 1 Hz signal.
+    `will_be` means that a message has the time of the next tone, not of the last one. `utc` makes UTC the spacecraft
+    time. `can_select_signal` and `can_select_source` allow the two commands. `external` is the kind of external source:
+    "met", "gps", "time", or "" if there is none.
     """
 
     client: bool
@@ -46,10 +46,10 @@ class TimeSettings:
 
     @classmethod
     def of(cls, config: PlatformConfig) -> TimeSettings:
-        """The settings of a platform configuration.
+        """Return the settings of a platform configuration.
 
         Raises:
-            UsageError: they contradict each other.
+            UsageError: if they contradict each other.
         """
         external = [source for source in SOURCES if getattr(config, f"time_cfg_src_{source}")]
         _check(config, external)

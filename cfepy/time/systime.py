@@ -1,7 +1,7 @@
-"""Spacecraft time values and their arithmetic (CFE_TIME_SysTime_t, CFE_TIME_Add and the like).
+"""Spacecraft time values and their arithmetic (CFE_TIME_SysTime_t, CFE_TIME_Add and its relatives).
 
-A time is 32 bits of seconds and 32 bits of 2**-32 s. Within Time Services one 64-bit integer of 2**-32 s stands for it,
-here called ticks, so that adding, carrying and rolling over are a single addition. Pure functions.
+A time is 32 bits of seconds and 32 bits of 2**-32 s. Time Services use one 64-bit integer of 2**-32 s for it, called
+ticks here, so addition with carry and rollover is a single addition. All functions are pure.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ EPOCH_YEAR = 1980
 A_LT_B = -1
 EQUAL = 0
 A_GT_B = 1
-"""What `compare` gives (CFE_TIME_Compare_t)."""
+"""The results of `compare` (CFE_TIME_Compare_t)."""
 
 _HALF_RANGE = 0x80000000
 _SECONDS_PER_DAY = 86400
@@ -35,40 +35,40 @@ class SysTime(NamedTuple):
 
 
 def to_ticks(time: tuple[int, int]) -> int:
-    """A time as one integer of 2**-32 s."""
+    """Return a time as one integer of 2**-32 s."""
     return (time[0] << 32) + time[1] & MASK_64
 
 
 def from_ticks(ticks: int) -> SysTime:
-    """The time of an integer of 2**-32 s; more than 64 bits roll over."""
+    """Return the time for an integer of 2**-32 s; it wraps at 64 bits."""
     return SysTime(ticks >> 32 & MASK_32, ticks & MASK_32)
 
 
 def ticks_of_ns(duration_ns: int) -> int:
-    """Nanoseconds as 2**-32 s, rounded up, so that the way back gives the same (OS_TimeGetSubsecondsPart)."""
+    """Return nanoseconds as 2**-32 s, rounded up, so that the conversion back is exact (OS_TimeGetSubsecondsPart)."""
     return -(-(duration_ns << 32) // NS_PER_S)
 
 
 def copy(time: tuple[int, int]) -> SysTime:
-    """Another time of the same value (the macro CFE_TIME_Copy); a SysTime never changes, so sharing it does as well."""
+    """Return a copy of a time (the macro CFE_TIME_Copy); a SysTime never changes, so sharing it works too."""
     return SysTime(*time)
 
 
 def add(first: tuple[int, int], second: tuple[int, int]) -> SysTime:
-    """The sum; seconds beyond 32 bits roll over (CFE_TIME_Add)."""
+    """Return the sum; seconds wrap at 32 bits (CFE_TIME_Add)."""
     return from_ticks(to_ticks(first) + to_ticks(second))
 
 
 def subtract(first: tuple[int, int], second: tuple[int, int]) -> SysTime:
-    """`first` less `second`; below zero it rolls over (CFE_TIME_Subtract)."""
+    """Return `first` minus `second`; a negative result wraps (CFE_TIME_Subtract)."""
     return from_ticks(to_ticks(first) - to_ticks(second))
 
 
 def compare(first: tuple[int, int], second: tuple[int, int]) -> int:
-    """Which time is later: A_LT_B (-1), EQUAL (0) or A_GT_B (1) (CFE_TIME_Compare).
+    """Return which time is later: A_LT_B (-1), EQUAL (0) or A_GT_B (1) (CFE_TIME_Compare).
 
-    Seconds that lie more than 2**31 apart are taken for a clock that rolled over in between, so the smaller one is
-    the later.
+    If the seconds differ by more than 2**31, the clock is assumed to have wrapped in between, so the smaller one is
+    later.
     """
     if first[0] != second[0]:
         later = first[0] > second[0]
@@ -79,10 +79,10 @@ def compare(first: tuple[int, int], second: tuple[int, int]) -> int:
 
 
 def sub2micro_secs(subseconds: int) -> int:
-    """Subseconds of 2**-32 s as microseconds, cut off (CFE_TIME_Sub2MicroSecs).
+    """Return subseconds of 2**-32 s as microseconds, rounded down (CFE_TIME_Sub2MicroSecs).
 
     Raises:
-        CfeError: CFE_TIME_BAD_ARGUMENT when it is not within 32 bits.
+        CfeError: CFE_TIME_BAD_ARGUMENT if it is not within 32 bits.
     """
     if not 0 <= subseconds <= MASK_32:
         raise CfeError(CFE_TIME_BAD_ARGUMENT, f"subseconds are {subseconds}, they must be 0 to {MASK_32}")
@@ -90,10 +90,11 @@ def sub2micro_secs(subseconds: int) -> int:
 
 
 def micro2sub_secs(microseconds: int) -> int:
-    """Microseconds as subseconds of 2**-32 s, rounded up; a second or more gives 0xFFFFFFFF (CFE_TIME_Micro2SubSecs).
+    """Return microseconds as subseconds of 2**-32 s, rounded up; a second or more gives 0xFFFFFFFF
+    (CFE_TIME_Micro2SubSecs).
 
     Raises:
-        CfeError: CFE_TIME_BAD_ARGUMENT when it is negative.
+        CfeError: CFE_TIME_BAD_ARGUMENT if it is negative.
     """
     if microseconds < 0:
         raise CfeError(CFE_TIME_BAD_ARGUMENT, f"microseconds are {microseconds}, they must not be negative")
@@ -103,7 +104,7 @@ def micro2sub_secs(microseconds: int) -> int:
 
 
 def print_(time: tuple[int, int]) -> str:
-    """A time as text since the epoch 1980-001, year-day-hour:minute:second.10us (CFE_TIME_Print).
+    """Return a time as text since the epoch 1980-001, year-day-hour:minute:second.10us (CFE_TIME_Print).
 
     >>> print_((1001000, 0))
     '1980-012-14:03:20.00000'
@@ -116,7 +117,7 @@ def print_(time: tuple[int, int]) -> str:
 
 @lru_cache(maxsize=64)
 def _date(days: int) -> str:
-    """Year and day of the year, some days after the epoch."""
+    """Return the year and the day of the year, a number of days after the epoch."""
     year = EPOCH_YEAR
     while days >= (length := _days_of(year)):
         days -= length
@@ -130,10 +131,10 @@ def _days_of(year: int) -> int:
 
 
 def fields_of(ticks: int) -> dict[str, int]:
-    """A time as the fields of CFE_TIME_SysTime_t."""
+    """Return a time as the fields of CFE_TIME_SysTime_t."""
     return sys_time_fields(from_ticks(ticks))
 
 
 def ticks_of(fields: Mapping[str, int]) -> int:
-    """The time that the fields of a CFE_TIME_SysTime_t are, in ticks."""
+    """Return the time in the fields of a CFE_TIME_SysTime_t, in ticks."""
     return to_ticks((fields["Seconds"], fields["Subseconds"]))

@@ -1,7 +1,8 @@
-"""The tasks of Time Services: CFE_TIME itself, one that announces every tone, and one that announces every second.
+"""The tasks of Time Services: CFE_TIME itself, a task that announces every tone, and a task that announces every
+second.
 
-A timer gives the local 1 Hz signal at the whole seconds of MET. Stands for CFE_TIME_TaskMain, CFE_TIME_Tone1HzTask,
-CFE_TIME_Local1HzTask and the timer "cFS-1Hz".
+A timer gives the local 1 Hz signal at the whole seconds of MET. The module replaces CFE_TIME_TaskMain,
+CFE_TIME_Tone1HzTask, CFE_TIME_Local1HzTask and the timer "cFS-1Hz".
 """
 
 from __future__ import annotations
@@ -30,10 +31,10 @@ TIMER_PRIORITY = 0
 
 
 class TimeTask:
-    """The tasks.
+    """The tasks of Time Services.
 
     Args:
-        kernel: the processor.
+        kernel: the kernel of the processor.
         ports: the other services.
         config: limits.
         settings: server or client, simulated tone or not.
@@ -44,7 +45,7 @@ class TimeTask:
 
     Attributes:
         one_hz_ready: given at each local 1 Hz signal.
-        whole_second_ns: a virtual time at which MET had no subseconds; the 1 Hz signal keeps to it.
+        whole_second_ns: a virtual time in ns at which MET had no subseconds; the 1 Hz signal is aligned to it.
     """
 
     def __init__(
@@ -67,7 +68,7 @@ class TimeTask:
         self._tone = tone
         self._commands = commands
         self._tone_ready = tone_ready
-        self._one_hz_latch: int | None = None  # of the signal whose message is still to come
+        self._one_hz_latch: int | None = None  # of the signal whose message is still to arrive
         told = [pk.TONE_CMD, pk.SEND_CMD] if settings.fake_tone else [pk.TONE_CMD]
         self._signals = [command.packet() for command in told]
         self._one_hz_signal = pk.ONEHZ_CMD.packet()
@@ -80,7 +81,7 @@ class TimeTask:
     # -- tasks -----------------------------------------------------------------------------------------------------
 
     def main(self) -> None:
-        """The task CFE_TIME (CFE_TIME_TaskMain)."""
+        """Run the task CFE_TIME (CFE_TIME_TaskMain)."""
         self._ports.es.perf_log_entry(MAIN_PERF_ID)
         pipe = self._init()
         serve(self._ports, self._config, pipe, MAIN_PERF_ID, self._commands.process)
@@ -130,18 +131,18 @@ class TimeTask:
             ports.es.perf_log_exit(ONE_HZ_TASK_PERF_ID)
 
     def _timer(self) -> None:
-        """The timer: it keeps to the instants at which MET is whole, so that a tone never moves the clock."""
+        """Run the timer, aligned to the times at which MET is whole, so that a tone never moves the clock."""
         kernel = self._kernel
         due = kernel.now + NS_PER_S - (kernel.now - self.whole_second_ns) % NS_PER_S
         if self._settings.fake_tone:
-            self._tone.signal_latch = ticks_of_ns(due) - SECOND  # so that the first tone is a good one
+            self._tone.signal_latch = ticks_of_ns(due) - SECOND  # this makes the first tone a good one
         while True:
             kernel.delay(due - kernel.now)
             self.interrupt(ticks_of_ns(due))
             due += NS_PER_S
 
     def interrupt(self, latch: int) -> None:
-        """The local 1 Hz signal (CFE_TIME_Local1HzISR).
+        """Handle the local 1 Hz signal (CFE_TIME_Local1HzISR).
 
         Args:
             latch: local time of the signal, in ticks.
@@ -151,15 +152,16 @@ class TimeTask:
         self.one_hz_ready.give()
 
     def take_tone(self, latch: int) -> None:
-        """A simulated tone came (CFE_TIME_Tone1HzISR); see `Tone.interrupt`."""
+        """Handle a simulated tone (CFE_TIME_Tone1HzISR); see `Tone.interrupt`."""
         self._tone.interrupt(latch)
 
     # -- messages about the tone -----------------------------------------------------------------------------------
 
     def _one_hz_command(self, packet: bytes) -> None:
-        """A second is over; it also makes the simulated tone (CFE_TIME_OneHzCmd).
+        """Handle the end of a second, and generate the simulated tone (CFE_TIME_OneHzCmd).
 
-        A message that is not of the local signal, such as one of the ground's, makes a tone of now.
+        A message that does not come from the local signal, such as one from the ground, generates a tone at the present
+        time.
         """
         self._ports.es.perf_log_entry(ONE_HZ_PERF_ID)
         self._tone.one_hz()

@@ -26,7 +26,9 @@ FLAG_REFERR = 0x0010
 
 
 def clock_info(clock: SpacecraftTime, tone: Tone) -> int:
-    """The clock state flags (CFE_TIME_GetClockInfo); FLAG_REFERR is never set, since a reference is always whole."""
+    """Return the clock state flags (CFE_TIME_GetClockInfo); FLAG_REFERR is never set, because a reference is always
+    consistent.
+    """
     reference = clock.reference
     flags = 0
     for is_set, flag in (
@@ -48,7 +50,7 @@ def clock_info(clock: SpacecraftTime, tone: Tone) -> int:
 
 
 def housekeeping(clock: SpacecraftTime, tone: Tone, replies: Replies) -> Mapping[str, object]:
-    """Fields of the housekeeping packet; 8-bit counters wrap.
+    """Return the fields of the housekeeping packet; 8-bit counters wrap.
 
     Args:
         clock: the clock.
@@ -69,13 +71,13 @@ def housekeeping(clock: SpacecraftTime, tone: Tone, replies: Replies) -> Mapping
 
 
 def diagnostic(clock: SpacecraftTime, tone: Tone, version_at_reset: int, data_store: int) -> Mapping[str, object]:
-    """Fields of the diagnostic packet.
+    """Return the fields of the diagnostic packet.
 
     Args:
         clock: the clock.
         tone: the tone.
-        version_at_reset: `clock.version` when counters were reset.
-        data_store: where the start values came from (cfepy.time.reset_vars).
+        version_at_reset: `clock.version` when the counters were reset.
+        data_store: the source of the start values (cfepy.time.reset_vars).
     """
     settings = tone.settings
     return {

@@ -1,13 +1,13 @@
-"""Time at the tone: a tone tells when, a message tells which time it was, and the pair sets the clock.
+"""Time at the tone: a tone marks an instant, a message has its time, and the pair sets the clock.
 
-A server with a simulated tone, cFE's default, makes the tone of its local 1 Hz signal and counts MET in tones; one with
-an external source takes MET or STCF from the message; a client takes all of the message (CFE_TIME_Tone1HzISR,
-CFE_TIME_ToneVerify, CFE_TIME_ToneUpdate, CFE_TIME_Local1HzStateMachine). Without a good pair for some seconds the clock
-goes on by itself, which is called flywheel mode. A simulated tone is taken at the instant its interrupt was due, not
-when the task got round to it: on a real processor that delay shakes the time and makes flywheel mode come and go.
+A server with a simulated tone, cFE's default, makes the tone from its local 1 Hz signal and counts MET in tones. A
+server with an external source takes MET or STCF from the message. A client takes all values of the message
+(CFE_TIME_Tone1HzISR, CFE_TIME_ToneVerify, CFE_TIME_ToneUpdate, CFE_TIME_Local1HzStateMachine). Without a good pair for
+some seconds the clock continues on its own, in flywheel mode. A simulated tone counts at the time its interrupt was
+due, not when the task handled it. On a real processor that delay disturbs the time and makes flywheel mode come and go.
 
-A server sends the message itself: its own time, or that of an external source (CFE_TIME_ToneSend, CFE_TIME_ToneSendMET,
-CFE_TIME_ToneSendGPS, CFE_TIME_ToneSendTime).
+A server sends the message itself: with its own time, or the time of an external source (CFE_TIME_ToneSend,
+CFE_TIME_ToneSendMET, CFE_TIME_ToneSendGPS, CFE_TIME_ToneSendTime).
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from cfepy.time.systime import A_GT_B, A_LT_B, MASK_32, add, compare, fields_of,
 SECOND = 1 << 32
 TONE_PERF_ID = 7
 SOURCE_INTERNAL, SOURCE_EXTERNAL = 1, 2
-"""Where the time comes from (CFE_TIME_SourceSelect_Enum_t)."""
+"""The source of the time (CFE_TIME_SourceSelect_Enum_t)."""
 
 SIGNAL_PRIMARY, SIGNAL_REDUNDANT = 1, 2
-"""Where the tone comes from (CFE_TIME_ToneSignalSelect_Enum_t)."""
+"""The source of the tone (CFE_TIME_ToneSignalSelect_Enum_t)."""
 
 SEND_MET_PERF_ID = 9
 
@@ -50,7 +50,7 @@ class ToneCounters:
 
 @dataclass(slots=True)
 class Adjustments:
-    """What ground commands add to STCF: once, and at every 1 Hz; in ticks."""
+    """The adjustments of STCF by ground commands: once, and at every 1 Hz; in ticks."""
 
     one_time: int = 0
     one_time_direction: int = ADD
@@ -60,7 +60,7 @@ class Adjustments:
 
 @dataclass(frozen=True, slots=True)
 class ToneData:
-    """What a message tells of a tone (CFE_TIME_ToneDataCmd_Payload_t); times in ticks."""
+    """The data of a message about a tone (CFE_TIME_ToneDataCmd_Payload_t); times in ticks."""
 
     met: int = 0
     stcf: int = 0
@@ -70,24 +70,24 @@ class ToneData:
 
 @dataclass(slots=True)
 class Tone:
-    """The tone's state.
+    """The state of the tone.
 
     Args:
-        clock: what it sets.
-        settings: the role of this processor, and the windows that tones and messages must keep to.
-        ports: for its events.
+        clock: the clock to set.
+        settings: the role of this processor, and the time windows for tones and messages.
+        ports: sends its events.
         give_tone: wakes the task that announces the tone.
-        notify: calls the functions that were registered for every tone.
+        notify: calls the functions registered for every tone.
 
     Attributes:
         source: SOURCE_INTERNAL or SOURCE_EXTERNAL.
         signal: SIGNAL_PRIMARY or SIGNAL_REDUNDANT.
-        good: the last tone came a second after the one before.
+        good: whether the last tone came a second after the one before.
         virtual_met: seconds of MET, counted in good tones.
-        forced_to_fly: a command wants flywheel mode, so that pairs do not set the clock.
-        auto_start_fly: flywheel mode began and its event is still to be sent.
+        forced_to_fly: whether a command requires flywheel mode, so that pairs do not set the clock.
+        auto_start_fly: whether flywheel mode began and its event is still to be sent.
         signal_latch: local time of the last tone, in ticks.
-        data_latch: local time when the last message about a tone came, in ticks.
+        data_latch: local time at which the last message about a tone arrived, in ticks.
     """
 
     clock: SpacecraftTime
@@ -112,7 +112,7 @@ class Tone:
         self.source = SOURCE_EXTERNAL if self.settings.can_select_source else SOURCE_INTERNAL
 
     def interrupt(self, latch: int) -> None:
-        """A tone came (CFE_TIME_Tone1HzISR).
+        """Handle a tone (CFE_TIME_Tone1HzISR).
 
         Args:
             latch: local time of the tone, in ticks.
@@ -131,13 +131,13 @@ class Tone:
         self.ports.es.perf_log_exit(TONE_PERF_ID)
 
     def take_signal(self) -> None:
-        """The message came that says that there was a tone (CFE_TIME_ToneSignal)."""
+        """Handle the message that announces a tone (CFE_TIME_ToneSignal)."""
         if self.settings.will_be:
             self._verify(self.data_latch, self.signal_latch)
         self.counters.tone_signal += 1
 
     def take_data(self, data: ToneData) -> None:
-        """The message came that tells the time at a tone (CFE_TIME_ToneData)."""
+        """Handle the message with the time at a tone (CFE_TIME_ToneData)."""
         self.data_latch = self.clock.local()
         self._pending = data
         if not self.settings.will_be:
@@ -145,7 +145,7 @@ class Tone:
         self.counters.tone_data += 1
 
     def _verify(self, first: int, second: int) -> None:
-        """Set the clock when tone and message are both new and close together (CFE_TIME_ToneVerify)."""
+        """Set the clock if tone and message are both new and close together (CFE_TIME_ToneVerify)."""
         old_first, old_second = self._previous
         self._previous = (first, second)
         is_new = first != old_first and second != old_second
@@ -165,7 +165,9 @@ class Tone:
             self.ports.evs.send_event(FLY_OFF_EID, INFORMATION, "Stop FLYWHEEL")
 
     def _server_update(self, was_flying: bool) -> dict[str, int]:
-        """What a server takes from a message: with an internal source nothing, since it wrote the message itself."""
+        """Return the values that a server takes from a message; none with an internal source, because it wrote the
+        message.
+        """
         data = self._pending
         self.clock.server_flying = False
         if self.source == SOURCE_INTERNAL:
@@ -181,7 +183,7 @@ class Tone:
         return changes
 
     def _client_update(self) -> dict[str, int]:
-        """What a client takes from a message: everything."""
+        """Return the values that a client takes from a message: all of them."""
         data = self._pending
         self.clock.server_flying = data.state == CLOCK_FLYWHEEL
         return {
@@ -192,7 +194,7 @@ class Tone:
         }
 
     def one_hz(self) -> None:
-        """Do what comes every second before its tone (CFE_TIME_Local1HzStateMachine)."""
+        """Do the work of every second before its tone (CFE_TIME_Local1HzStateMachine)."""
         clock, adjustments = self.clock, self.adjustments
         if adjustments.one_hz:
             self.adjust(adjustments.one_hz, adjustments.one_hz_direction)
@@ -204,24 +206,24 @@ class Tone:
             clock.update(met=reference.met + elapsed, latch=reference.latch + elapsed)
 
     def fly(self) -> None:
-        """Go on without a tone."""
+        """Switch to flywheel mode."""
         if not self.settings.client:
             self.clock.server_flying = True
         self.clock.update(flying=True)
 
     def adjust(self, ticks: int, direction: int) -> None:
-        """Add to STCF, or take away."""
+        """Add to STCF, or subtract from it."""
         self.clock.update(stcf=self.clock.reference.stcf + (ticks if direction == ADD else -ticks))
 
 
 class ToneDataSender:
-    """Sends the message.
+    """Sends the message about the tone.
 
     Args:
         ports: the bus, and the performance log.
         clock: the time.
-        tone: counts MET, and knows which source is selected.
-        settings: whether the message is about the next tone, and how far off an external time may be.
+        tone: counts MET, and has the selected source.
+        settings: whether the message is about the next tone, and the limit for external times.
     """
 
     def __init__(self, ports: Ports, clock: SpacecraftTime, tone: Tone, settings: TimeSettings) -> None:
@@ -237,7 +239,7 @@ class ToneDataSender:
         self._transmit(met + self._settings.will_be << 32, reference.stcf, reference.leap_seconds)
 
     def send_met(self, met: tuple[int, int]) -> None:
-        """Send an external MET, or the own time when the MET is not wanted or not to be believed."""
+        """Send an external MET, or the own time if the MET is not wanted or not plausible."""
         self._ports.es.perf_log_entry(SEND_MET_PERF_ID)
         reference = self._clock.reference
         if self._is_wanted(met, from_ticks(self._met_at_tone())):
@@ -247,11 +249,11 @@ class ToneDataSender:
         self._ports.es.perf_log_exit(SEND_MET_PERF_ID)
 
     def send_time(self, time: tuple[int, int], leap_seconds: int | None = None) -> None:
-        """Send what makes an external spacecraft time come true, or the own time when that is not wanted or believed.
+        """Send an STCF that gives an external spacecraft time, or the own time if that is not wanted or not plausible.
 
         Args:
-            time: at the tone.
-            leap_seconds: that go with it; None keeps the own ones.
+            time: the time at the tone.
+            leap_seconds: its leap seconds; None keeps the present ones.
         """
         reference = self._clock.reference
         leaps = reference.leap_seconds if leap_seconds is None else leap_seconds
@@ -263,11 +265,11 @@ class ToneDataSender:
             self.send()
 
     def _met_at_tone(self) -> int:
-        """Whole seconds of MET at the tone that the message is about, in ticks."""
+        """Return the whole seconds of MET at the tone of the message, in ticks."""
         return (self._clock.current_met() >> 32) + self._settings.will_be << 32
 
     def _is_wanted(self, given: tuple[int, int], expected: tuple[int, int]) -> bool:
-        """Whether an external source is selected, and a set clock would not be changed by too much."""
+        """Return whether an external source is selected, and would not change a set clock by too much."""
         if self._tone.source == SOURCE_INTERNAL:
             return False
         delta = self._settings.max_delta

@@ -1,7 +1,7 @@
-"""The console of a mission: where OS_printf, the system log and the event port write their lines.
+"""The console of a mission: the output of OS_printf, the system log and the event port.
 
-It keeps every line as it is, for tests and tools, and shows it on a stream, where control characters are escapes, or
-hands it to a display.
+It keeps every line unchanged for tests and tools. It also prints each line on a stream, with control characters
+escaped, or passes it to a display.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from cfepy.writing.escapes import console_line, raw
 
 
 class Console:
-    """Keeps and shows lines of text.
+    """Keeps and prints lines of text.
 
     Args:
-        stream: where lines are shown; the standard output of the moment when None.
-        quiet: keep the lines, show none.
-        sink: a display that gets every line instead of the stream, quiet or not.
+        stream: the stream for the lines; None means the current standard output.
+        quiet: keep the lines but print none.
+        sink: a display that gets every line instead of the stream, even with `quiet`.
 
     Attributes:
-        lines: everything written.
-        record: gets every line too; a mission notes them in its trace.
+        lines: all lines written so far.
+        record: also called with every line; a mission notes them in its trace.
     """
 
     __slots__ = ("lines", "quiet", "record", "sink", "stream")
@@ -39,7 +39,7 @@ class Console:
         self.record: Callable[[str], object] | None = None
 
     def write(self, text: str) -> None:
-        """Add text: one line, or several with newlines between them; a newline at the end adds no empty line."""
+        """Add text of one or several lines; a newline at the end adds no empty line."""
         for line in without_addresses(text).removesuffix("\n").split("\n"):
             self.lines.append(line)
             if self.record is not None:
@@ -47,7 +47,9 @@ class Console:
             self._show(line)
 
     def show(self, line: str) -> None:
-        """Show a line that is no part of the run, such as one that differs from run to run: it is not kept."""
+        """Print a line that does not belong to the run, such as one that differs from run to run. The line is
+        not kept.
+        """
         self._show(line)
 
     def _show(self, line: str) -> None:

@@ -1,11 +1,11 @@
-"""What a terminal would obey, as text: `\\x1b` in place of the character ESC.
+"""Control characters as visible text: `\\x1b` in place of the character ESC.
 
-A name or a text of a file, a mission or a peer may hold characters that move the cursor, set the title of a window,
-hide what stands beside them or turn its order round. All that cfepy prints comes through here: `safe_output` puts a
-`SafeStream` in the place of standard output and standard error, and `rich_console` makes consoles of rich. What goes
-past them, such as data for another program, takes `raw` or `for_data`; tests/test_layers.py has the list of the places.
+A name or a text from a file, a mission or a peer may have characters that move the cursor, set the title of a window,
+hide nearby text or reverse its order. All output of cfepy is escaped here. `safe_output` replaces standard output and
+standard error with a `SafeStream`, and `rich_console` makes consoles of rich. Output that must bypass them, such as
+data for another program, uses `raw` or `for_data`; tests/test_layers.py lists these places.
 
-Colours are the one exception, and only for the lines that nodes print, as roslaunch shows them (`console_line`).
+The only exception is colour in lines that nodes print, as in roslaunch (`console_line`).
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from typing import TYPE_CHECKING, Any, TextIO, cast
 if TYPE_CHECKING:
     from rich.console import Console as RichConsole
 
-_ALWAYS = "\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f"  # C0, DEL and C1 but for tab, newline and carriage return
-_ORDER = "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"  # turn the order of text round (UAX 9)
-_BREAKS = "\u2028\u2029"  # lines and paragraphs end there, for some
-_BYTES = "\ud800-\udfff"  # no characters: Python's form of bytes that are not text, in the name of a file (PEP 383)
+_ALWAYS = "\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f"  # C0, DEL and C1, except tab, newline and carriage return
+_ORDER = "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"  # these change the direction of text (UAX 9)
+_BREAKS = "\u2028\u2029"  # some programs end lines and paragraphs there
+_BYTES = "\ud800-\udfff"  # Python's form of bytes that are not text, in file names (PEP 383)
 _IN_TEXT = re.compile(f"[{_ALWAYS}{_ORDER}{_BREAKS}{_BYTES}]|\r(?!\n)")
 _IN_LINE = re.compile(f"[{_ALWAYS}{_ORDER}{_BREAKS}{_BYTES}\t\n\r]")
 _SHORT = {"\t": "\\t", "\n": "\\n", "\r": "\\r"}
 _COLOUR = re.compile(r"\x1b\[[\d;]*m")  # Select Graphic Rendition (ECMA-48)
 _ENDS_COLOUR = re.compile(r"\x1b\[0*m")
-_OF_NODE = re.compile(r"(?:[^\s:]+: )?\[[\w/]+\] ")  # how lines of nodes begin, after the name of another mission
+_OF_NODE = re.compile(r"(?:[^\s:]+: )?\[[\w/]+\] ")  # the beginning of a node's line, after the name of another mission
 
 
 def _written(found: re.Match[str]) -> str:
@@ -38,21 +38,22 @@ def _written(found: re.Match[str]) -> str:
 
 
 def visible(text: str) -> str:
-    """A text of one or several lines, with each control character as an escape such as `\\x1b`."""
+    """Return a text of one or several lines, with each control character as an escape such as `\\x1b`."""
     return _IN_TEXT.sub(_written, text)
 
 
 def visible_line(text: object) -> str:
-    """What is one line, such as a name: newlines and tabs are escapes, too."""
+    """Return the text of a single line, such as a name, with newlines and tabs escaped too."""
     return _IN_LINE.sub(_written, str(text))
 
 
 def node_text(text: str, colours: bool) -> str:
-    """A line of a node as `visible` shows it, except for its colours.
+    """Return a line of a node as `visible` shows it, except for its colours.
 
     Args:
         text: the line, without the name of its node.
-        colours: keep them, and end them with the line; False leaves them out, for what is no terminal.
+        colours: keep colours and reset them at the end of the line; False removes them, if the output is not a
+            terminal.
     """
     if "\x1b" not in text:
         return visible(text)
@@ -71,7 +72,7 @@ def node_text(text: str, colours: bool) -> str:
 
 
 def console_line(line: str, colours: bool) -> str:
-    """A line of a mission's console, as it is shown; only what nodes print may have colours.
+    """Return a line of a mission's console in printable form; only lines of nodes may have colours.
 
     Args:
         line: the line, without its end.
@@ -85,22 +86,22 @@ class SafeStream:
     """A stream of text that writes control characters as escapes.
 
     Args:
-        stream: where to.
+        stream: the stream to write to.
 
     Attributes:
-        raw: the stream itself, which writes all as it comes.
+        raw: the stream itself, which writes text unchanged.
     """
 
     def __init__(self, stream: TextIO) -> None:
         self.raw = stream
 
     def write(self, text: str) -> int:
-        """Write a text; how long it was."""
+        """Write a text with control characters escaped; return its length."""
         self.raw.write(visible(text))
         return len(text)
 
     def writelines(self, lines: Iterable[str]) -> None:
-        """Write texts."""
+        """Write several texts."""
         for line in lines:
             self.write(line)
 
@@ -109,28 +110,28 @@ class SafeStream:
 
 
 def safe(stream: TextIO) -> TextIO:
-    """The stream, such that it writes control characters as escapes."""
+    """Return the streamor a wrapper that writes control characters as escapes."""
     return stream if isinstance(stream, SafeStream) else cast("TextIO", SafeStream(stream))
 
 
 def raw(stream: TextIO) -> TextIO:
-    """The stream behind a safe one; any other one as it is."""
+    """Return the stream behind a safe stream, or the stream itself."""
     return stream.raw if isinstance(stream, SafeStream) else stream
 
 
 def for_data(stream: TextIO) -> TextIO:
-    """The stream for data that another program reads: as it is, unless it is a terminal."""
+    """Return the stream for data that another program reads: unescaped, unless the stream is a terminal."""
     return stream if stream.isatty() else raw(stream)
 
 
 def keep_output_safe() -> None:
-    """Make standard output and standard error safe again, after something such as a bar of rich has replaced them."""
+    """Make standard output and standard error safe again, for example after a rich progress bar has replaced them."""
     sys.stdout, sys.stderr = safe(sys.stdout), safe(sys.stderr)
 
 
 @contextlib.contextmanager
 def safe_output() -> Iterator[None]:
-    """Around a command: what it prints on standard output and standard error has no control characters."""
+    """Escape control characters in the output of a command; a context manager."""
     before = sys.stdout, sys.stderr
     keep_output_safe()
     mine = sys.stdout, sys.stderr
@@ -144,7 +145,7 @@ def safe_output() -> Iterator[None]:
 
 
 def rich_console(stream: TextIO, **options: Any) -> RichConsole:
-    """A console of rich on a stream: its own colours and movements pass, control characters in texts do not."""
+    """Return a console of rich on a stream; it keeps rich's own control sequences and escapes those in texts."""
     from rich.console import Console, ConsoleOptions, RenderableType
     from rich.segment import Segment
 

@@ -1,7 +1,7 @@
-"""HTML as text: elements, and what a notebook shows: tables that are read on a light and on a dark ground.
+"""HTML as text: elements, and tables for notebooks with a light or a dark theme.
 
-All text that comes from a mission is escaped here. A notebook lends its colours to what stands in it, so that only
-trouble has one of its own, which its theme tells.
+All text from a mission is escaped here. The output takes its colours from the notebook. Only error lines have a colour
+of their own, which the notebook's theme sets.
 """
 
 from __future__ import annotations
@@ -13,22 +13,28 @@ from collections.abc import Iterable, Sequence
 _CONTROLS = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff\ufffe\uffff]")
 _TROUBLE = "color: var(--jp-error-color1, var(--vscode-errorForeground, #c62828)); white-space: pre-wrap"
 _LINES = "max-height: 24em; overflow: auto; margin: 0; white-space: pre; font-family: monospace"
-FEW = 12  # rows of a table that are seen at once
-MOST = 100  # rows of a table that there are
+FEW = 12  # rows of a table that are visible at once
+MOST = 100  # maximum number of rows of a table
 
 
 def escaped(text: object) -> str:
-    """Text for an element or an attribute; characters that no page may have are shown by their number."""
+    """Return text for an element or an attribute, with characters that a page cannot have replaced by their number."""
     return html.escape(printable(str(text)))
 
 
 def printable(text: str) -> str:
-    """A text in which characters that neither XML nor a page may have are shown by their number."""
+    """Return a text with characters that neither XML nor a page can have replaced by their number."""
     return _CONTROLS.sub(lambda match: f"\\x{ord(match[0]):02x}", text)
 
 
 def element(name: str, inside: str = "", **attributes: object) -> str:
-    """An element around HTML; `class_` is the attribute class, `data_path` is data-path, None leaves one out."""
+    """Return an element around HTML.
+
+    Args:
+        name: name of the element.
+        inside: the HTML inside it.
+        attributes: `class_` is the attribute class and `data_path` is data-path; None omits an attribute.
+    """
     given = "".join(
         f' {key.rstrip("_").replace("_", "-")}="{escaped(value)}"'
         for key, value in attributes.items()
@@ -38,37 +44,37 @@ def element(name: str, inside: str = "", **attributes: object) -> str:
 
 
 def headline(title: str, about: str) -> str:
-    """The first line of what a notebook shows."""
+    """Return the first line of a notebook's output."""
     return element("div", f"{element('b', escaped(title))}: {escaped(about)}")
 
 
 def trouble(text: str) -> str:
-    """A line about something that is wrong."""
+    """Return a line that reports an error."""
     return element("div", escaped(text), style=_TROUBLE)
 
 
 def code(text: str) -> str:
-    """A command, or whatever else is to be copied."""
+    """Return a command or other text to copy."""
     return element("div", element("code", escaped(text)))
 
 
 def folded(title: str, inside: str, is_open: bool = False) -> str:
-    """Something below a title that can be opened and closed; nothing when there is nothing inside."""
+    """Return a title with a part that the reader can open and close; an empty text if `inside` is empty."""
     head = element("summary", escaped(title), style="cursor: pointer")
     return element("details", head + inside, open="" if is_open else None) if inside else ""
 
 
 def lines_of(lines: Sequence[str]) -> str:
-    """Lines of a console or of source code."""
+    """Return lines of a console or of source code."""
     return element("pre", escaped("\n".join(lines)), style=_LINES) if lines else ""
 
 
 def rows_of(titles: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """A table; numbers stand at the right. Of a long one the first rows are seen, the others are folded.
+    """Return a table with numbers aligned right. Of a long table the first rows are visible and the others are folded.
 
     Args:
-        titles: of its columns.
-        rows: what is in it, a value for each column.
+        titles: titles of its columns.
+        rows: its rows, each with a value for every column.
     """
     if not rows:
         return ""

@@ -1,7 +1,7 @@
-"""The files that cFE writes on command, as text for people: the subtype in the header says what each record is.
+"""Files that cFE writes on command, as readable text; the subtype in the header gives the type of the records.
 
 System log, exception and reset log, event log, applications, tasks, critical data store, routes, pipes, tables, and the
-performance data of ES: which parts of the flight software were entered and left when, and how long each took.
+performance data of ES: which parts of the flight software were entered and left when, and their durations.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from cfepy.units import US_PER_S
 
 Record = dict[str, Any]
 FREE_FILTER = 0xFFFF
-"""The event id of a filter that is not in use (CFE_EVS_FREE_SLOT)."""
+"""The event id of an unused filter (CFE_EVS_FREE_SLOT)."""
 EXIT_BIT = 0x80000000
 WHOLE_WORD = 1 << 32
 
 
 class Column(NamedTuple):
-    """What is shown of a record: title, path of the field, and how its value is written."""
+    """A column of a record: title, path of the field, and format of the value."""
 
     title: str
     path: str
@@ -37,7 +37,7 @@ class Column(NamedTuple):
 
 
 class DumpKind(NamedTuple):
-    """A kind of file: what it is called, the size of a record, how one is read, and what of it is shown."""
+    """A kind of file: its name, size and reader of a record, and columns."""
 
     name: str
     size: int
@@ -47,10 +47,7 @@ class DumpKind(NamedTuple):
 
 @dataclass(slots=True)
 class DumpFile:
-    """A file that was read: its records, and why it is not whole, if it is not.
-
-    `lines` are those of a system log; `about` is what stands before the records of performance data.
-    """
+    """A file that was read: its records, and the reason if it is incomplete."""
 
     kind: str
     header: FileHeader
@@ -61,46 +58,47 @@ class DumpFile:
     problem: str = ""
 
 
-# -- how values are written --------------------------------------------------------------------------------------------
+# -- formats of values
+# ---------------------------------------------------------------------------------------------------
 def hexadecimal(value: int) -> str:
-    """A MsgId or the like."""
+    """Return a MsgId or another number in hexadecimal."""
     return f"0x{value:04X}"
 
 
 def identifier(value: int) -> str:
-    """A resource id."""
+    """Return a resource id."""
     return f"0x{value:08X}"
 
 
 def yes(value: int) -> str:
-    """A truth value, in the fewest letters."""
+    """Return a truth value, as short as possible."""
     return "yes" if value else "-"
 
 
 def time_of(value: Record) -> str:
-    """A time as cFE prints it."""
+    """Return a time as cFE prints it."""
     return time_text((value["Seconds"], value["Subseconds"]))
 
 
 def one_line(value: str) -> str:
-    """A text that may have several lines."""
+    """Return a text that may have several lines."""
     return value.replace("\n", "\\n")
 
 
 def named(*names: str) -> Callable[[Any], str]:
-    """Writes the name of an enumeration's value, which counts from 0."""
+    """Return a format with the name of an enumeration's value, counted from 0."""
     return lambda value: names[value] if value < len(names) else str(value)
 
 
 def filters(value: list[Record]) -> str:
-    """The event filters that are in use: id, mask, count."""
+    """Return the used event filters: id, mask, count."""
     used = (each for each in value if each["EventID"] != FREE_FILTER)
     return ", ".join(f"{each['EventID']}: 0x{each['Mask']:04X} ({each['Count']})" for each in used)
 
 
 # -- the kinds ---------------------------------------------------------------------------------------------------------
 def _event(data: bytes) -> Record:
-    """A record of the event log: the packet as it was sent."""
+    """Return a record of the event log: the packet as it was sent."""
     seconds, subseconds = get_msg_time(data)
     return {"Time": {"Seconds": seconds, "Subseconds": subseconds}, **evs.LONG_EVENT.unpack(data, TLM_HEADER_SIZE)}
 
@@ -223,14 +221,14 @@ KINDS = {
 
 # -- reading -----------------------------------------------------------------------------------------------------------
 def read_dump(data: bytes, file: str) -> DumpFile:
-    """What is in a file that cFE wrote; of one that is cut off or damaged, the records up to there.
+    """Return the contents of a file written by cFE; for an incomplete or damaged one, the records up to there.
 
     Args:
         data: its bytes.
         file: its name, for errors.
 
     Raises:
-        UsageError: it is no file of cFE, or of a kind that is not read here.
+        UsageError: if it is not a file of cFE, or of an unsupported kind.
     """
     try:
         head = read_header(data)
@@ -264,7 +262,7 @@ def read_dump(data: bytes, file: str) -> DumpFile:
 
 
 def value_at(record: Record, path: str) -> Any:
-    """The value of a field, "BaseInfo.TimeCode"."""
+    """Return the value of a field, "BaseInfo.TimeCode"."""
     value: Any = record
     for name in path.split("."):
         value = value[name]
@@ -273,7 +271,7 @@ def value_at(record: Record, path: str) -> Any:
 
 @dataclass(slots=True)
 class Timing:
-    """How long a part took, in us, each time that it was entered and left; `open` are entries without an exit yet."""
+    """Durations of a part in us; `open` are entries without an exit yet."""
 
     taken_us: list[float] = field(default_factory=list)
     open: list[float] = field(default_factory=list)
@@ -281,10 +279,10 @@ class Timing:
 
 
 def read_perf_data(body: bytes) -> tuple[dict[str, Any], list[dict[str, Any]], str]:
-    """The metadata, the entries in order of time, and what is wrong with the file.
+    """Return the metadata, the entries in order of time, and the errors in the file.
 
     Args:
-        body: what follows the file header.
+        body: data after the file header.
     """
     if len(body) < PERF_METADATA.size:
         return {}, [], f"is cut off: the metadata have {len(body)} of {PERF_METADATA.size} bytes"
@@ -308,7 +306,7 @@ def _record(entry: dict[str, int], about: dict[str, Any]) -> dict[str, Any]:
 
 
 def timings(records: Iterable[dict[str, Any]]) -> dict[int, Timing]:
-    """Times between entry and exit, by id; an entry within an entry of the same id is left first."""
+    """Return durations from entry to exit, by id; a nested entry with the same id is left first."""
     found: dict[int, Timing] = {}
     for record in records:
         timing = found.setdefault(record["Id"], Timing())

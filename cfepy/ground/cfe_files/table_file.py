@@ -1,9 +1,9 @@
-"""A table file taken apart for people: its headers, its image as rows of named fields, and everything wrong with it.
+"""A decoded table file: its headers, its image as rows of named fields, and all its errors.
 
-`document` gives everything in a file as plain values, without zeros that can be left out;
-`cfepy.ground.cfe_files.table_yaml` turns it into a file that people edit, and back. Where `take_apart` stops at the
-first error, `defects_of` goes on as far as the file lets it: it finds each defect, with its offset and field, before a
-spacecraft refuses the file.
+`document` returns the contents of a file as plain values, without zeros that can be left out;
+`cfepy.ground.cfe_files.table_yaml` converts it into an editable file, and back. `take_apart` stops at the first error;
+`defects_of` continues as far as possible and finds each defect, with its offset and field, before a spacecraft refuses
+the file.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ from cfepy.status import CfeError, UsageError
 from cfepy.tbl import TableType, is_intact, mark_for, mark_in
 
 Find = Callable[[str], TableType | None]
-"""What a table is made of, by its full name; None when it is not declared."""
+"""Returns the type of a table by its full name; None if it is not declared."""
 ROW = "row"
-"""Gives a row its number where empty ones before it are left out; fields of this name make that impossible."""
+"""Key for the number of a row after empty rows that are left out; not possible if fields have this name."""
 HEADER_FIELDS = (
     "description",
     "spacecraft_id",
@@ -58,7 +58,7 @@ class Leaf(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class TableContents:
-    """Headers, image, what follows the image, and the table's type if it is known."""
+    """Headers, image, data after the image, and the table's type if it is known."""
 
     header: FileHeader
     table: TableHeader
@@ -68,30 +68,32 @@ class TableContents:
 
     @property
     def crc(self) -> int:
-        """CRC-16 of the image, as cFE shows it in telemetry once the whole table is loaded."""
+        """CRC-16 of the image, as in cFE's telemetry after the whole table was loaded."""
         return crc16(self.image)
 
     @property
     def is_whole(self) -> bool:
-        """Whether the image is all of the table; where the type is not known it counts as such from offset 0."""
+        """Whether the image is the whole table; if the type is unknown, whether it starts at offset 0."""
         return self.table.offset == 0 and (self.kind is None or len(self.image) == self.kind.size)
 
     def pack(self) -> bytes:
-        """The file's bytes."""
+        """Return the file's bytes."""
         return self.header.pack() + self.table.pack() + self.image + self.after
 
     @property
     def is_marked(self) -> bool:
-        """Whether it has the integrity mark that belongs to it (`cfepy.tbl.image`)."""
+        """Return whether it has its integrity mark (`cfepy.tbl.image`)."""
         data = self.pack()
         return mark_in(data) == mark_for(data)
 
     def marked(self) -> TableContents:
-        """This file with its integrity mark."""
+        """Return this file with its integrity mark."""
         return replace(self, table=replace(self.table, reserved=mark_for(self.pack())))
 
     def rows(self) -> list[dict[str, Any]] | None:
-        """All rows of the table, those outside a partial image as zeros; None when they cannot stand for the image."""
+        """Return all rows of the table, with zeros outside of a partial image; None if they cannot represent
+        the image.
+        """
         kind, offset = self.kind, self.table.offset
         if kind is None or offset + len(self.image) > kind.size:
             return None
@@ -100,7 +102,7 @@ class TableContents:
         return rows if cut(kind.pack(rows), offset, len(self.image)) == self.image else None
 
     def leaves(self) -> Iterator[Leaf]:
-        """Every field of every row; bytes in hexadecimal, sixteen at a time, when there are no rows."""
+        """Yield every field of every row; without rows, hexadecimal bytes, sixteen at a time."""
         rows = self.rows()
         if rows is not None:
             yield from leaves_of(rows, "rows")
@@ -115,7 +117,7 @@ def cut(data: bytes, offset: int, size: int) -> bytes:
 
 
 def leaves_of(value: Any, path: str) -> Iterator[Leaf]:
-    """The scalars in nested dicts and lists."""
+    """Yield the scalars in nested dicts and lists."""
     if isinstance(value, dict):
         for name, item in value.items():
             yield from leaves_of(item, f"{path}.{name}")
@@ -131,11 +133,11 @@ def take_apart(data: bytes, find: Find, file: str) -> TableContents:
 
     Args:
         data: its bytes.
-        find: knows the types of tables.
+        find: finds the types of tables.
         file: its name, for errors.
 
     Raises:
-        UsageError: it is no table file.
+        UsageError: if it is not a table file.
     """
     try:
         header, table, image = read_table_file(data)
@@ -146,7 +148,7 @@ def take_apart(data: bytes, find: Find, file: str) -> TableContents:
 
 
 def document(file: TableContents) -> dict[str, Any]:
-    """Everything in a table file as plain values in the order in which people read them."""
+    """Return the contents of a table file as plain values, in reading order."""
     values: dict[str, Any] = {"table": file.table.table_name}
     values.update((name, getattr(file.header, name)) for name in HEADER_FIELDS)
     if file.table.reserved and not file.is_marked:
@@ -167,7 +169,7 @@ def document(file: TableContents) -> dict[str, Any]:
 
 
 def _used(rows: list[dict[str, Any]], may_number: bool) -> list[dict[str, Any]]:
-    """The rows that are not all zero; with `may_number` false, empty ones between them stay in their place."""
+    """Return the rows that are not all zero; if `may_number` is false, empty ones between them stay."""
     used: list[dict[str, Any]] = []
     following = 0
     for number, row in enumerate(rows):
@@ -182,7 +184,7 @@ def _used(rows: list[dict[str, Any]], may_number: bool) -> list[dict[str, Any]]:
 
 
 def _trimmed(value: Any) -> Any:
-    """A value without the zeros at the ends of lists; an empty struct between others is {}."""
+    """Return a value without zeros at the ends of lists; an empty struct between others is {}."""
     if isinstance(value, dict):
         return {name: _trimmed(item) for name, item in value.items()}
     if not isinstance(value, list):
@@ -192,7 +194,7 @@ def _trimmed(value: Any) -> Any:
 
 
 def one_nan(value: Any) -> Any:
-    """A value with all kinds of NaN replaced by one of them: YAML has a single word for all."""
+    """Return a value with all kinds of NaN replaced by a single one, because YAML has only one."""
     if isinstance(value, dict):
         return {name: one_nan(item) for name, item in value.items()}
     if isinstance(value, list):
@@ -201,7 +203,7 @@ def one_nan(value: Any) -> Any:
 
 
 def is_zero(value: Any) -> bool:
-    """Whether a value is what a field that is not given becomes."""
+    """Return whether a value equals that of a missing field."""
     if isinstance(value, dict):
         return all(is_zero(item) for item in value.values())
     if isinstance(value, list):
@@ -210,7 +212,7 @@ def is_zero(value: Any) -> bool:
 
 
 class TableDefect(NamedTuple):
-    """Something wrong: `offset` counts bytes of the file from 0, `field` is the field there."""
+    """An error: `offset` counts bytes of the file from 0, `field` is the field there."""
 
     offset: int
     field: str
@@ -218,11 +220,11 @@ class TableDefect(NamedTuple):
 
 
 def defects_of(data: bytes, find: Find) -> Iterator[TableDefect]:
-    """What is wrong with a table file, in the order of the file.
+    """Yield the errors of a table file, in the order of the file.
 
     Args:
         data: its bytes.
-        find: knows the types of tables.
+        find: finds the types of tables.
     """
     if len(data) < HEADER_SIZE:
         yield TableDefect(len(data), "file header", f"the file ends here, the header has {HEADER_SIZE} bytes")
@@ -230,7 +232,7 @@ def defects_of(data: bytes, find: Find) -> Iterator[TableDefect]:
     found = list(_file_header(data))
     yield from found
     if any(defect.offset < LENGTH_AT for defect in found):
-        return  # some other kind of file, and what follows means something else
+        return  # another kind of file, with other data after the header
     if len(data) < IMAGE_AT:
         yield TableDefect(len(data), "table header", f"the file ends here, the headers have {IMAGE_AT} bytes")
         return
@@ -254,7 +256,7 @@ def _file_header(data: bytes) -> Iterator[TableDefect]:
 
 
 def _text_field(data: bytes, at: int, size: int, field: str) -> Iterator[TableDefect]:
-    """A text must end in its field, and nothing may come after its end."""
+    """Check a text: it must end inside its field, with nothing after its end."""
     end = data.find(b"\0", at, at + size)
     if end < 0:
         yield TableDefect(at + size - 1, field, f"has no NUL in its {size} bytes; shorten the text")
@@ -280,7 +282,7 @@ def _table_header(data: bytes, table: TableHeader, kind: TableType | None) -> It
 
 
 def _content(image: bytes, table: TableHeader, kind: TableType | None) -> Iterator[TableDefect]:
-    """What the application's own validation says of a whole image; of a part of a table it cannot be asked."""
+    """Check a whole image with the application's own validation, which does not work for a part of a table."""
     if kind is None or kind.fault is None or table.offset or table.num_bytes != kind.size or len(image) != kind.size:
         return
     fault = kind.fault(image)

@@ -1,11 +1,11 @@
-"""Table files as YAML that people write and read, comments and all: `write` makes the text, `read` the file again.
+"""Table files as YAML for editing: `write` creates the text, `read` the table file from it.
 
     table: HK.CopyTable
     description: HK Copy Tbl
     rows:
     - {InputMid: 0x0801, InputOffset: 16, OutputMid: 0x089C, OutputOffset: 16, NumBytes: 4}
 
-docs/tables_and_logs.md describes the whole format. Errors say file, line and field.
+See docs/tables_and_logs.md for the format. Errors give file, line and field.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ U32 = 0xFFFFFFFF
 WIDTH = 110
 HEX_LINE = 64
 HEXADECIMAL = re.compile(r"(mid|msg_?id|message_?id|mask|group|groupdata|buffer)$", re.IGNORECASE)
-"""Names of fields that people read in hexadecimal."""
+"""Names of fields shown in hexadecimal."""
 
 
 # -- writing -----------------------------------------------------------------------------------------------------------
 
 
 def write(values: dict[str, Any]) -> str:
-    """The YAML text of a document, a line for each row that fits on one."""
+    """Return the YAML text of a document, with one line for each row that fits."""
     return "\n".join(_block(values, "")) + "\n"
 
 
 def flow(value: Any, name: str = "") -> str:
-    """A value on one line, as YAML writes it; numbers in hexadecimal where the name of their field says so."""
+    """Return a value on one line, in YAML form; numbers in hexadecimal according to the name of their field."""
     import yaml
 
     if isinstance(value, dict):
@@ -54,7 +54,7 @@ def flow(value: Any, name: str = "") -> str:
 
 
 def _block(value: Any, indent: str) -> Iterator[str]:
-    """The lines of a mapping or a list: each item on one line if it fits, else a block of its own below."""
+    """Yield the lines of a mapping or list: each item on one line if it fits, else as a block below."""
     if isinstance(value, list):
         for item in value:
             first, *others = _block(item, indent + "  ") if _wants_block("", item, len(indent)) else [flow(item)]
@@ -82,14 +82,14 @@ def _wants_block(name: str, item: Any, before: int) -> bool:
 
 
 def read(path: Path, find: Find) -> TableContents:
-    """The table file that a YAML file describes.
+    """Return the table file for a YAML file.
 
     Args:
         path: the YAML file.
-        find: knows the types of tables; a layout in the file goes before it.
+        find: finds the types of tables; a layout in the file has precedence.
 
     Raises:
-        UsageError: something is wrong in it; file, line and field are given.
+        UsageError: if it has an error, with file, line and field.
     """
     root = load(path, handed=True)
     said = root.mapping(KEYS)
@@ -107,7 +107,7 @@ def read(path: Path, find: Find) -> TableContents:
 
 
 def own_type(said: dict[str, Marked]) -> TableType | None:
-    """The table's type as the file itself declares it; None when it does not."""
+    """Return the table's type declared in the file itself; None if there is none."""
     if "layout" not in said:
         if "count" in said:
             raise said["count"].fail("is the number of rows of a `layout`, and there is none; add it, or remove this")
@@ -158,7 +158,7 @@ def _number(said: dict[str, Marked], name: str, default: int = 0) -> int:
 
 
 def _wants_mark(said: dict[str, Marked]) -> bool:
-    """Every file is marked, but for one that says otherwise or has something else in that place."""
+    """Return whether to add an integrity mark: always, unless the file excludes it or uses that place."""
     if "mark" not in said:
         return "reserved" not in said
     if not isinstance(said["mark"].value, bool):
@@ -194,7 +194,7 @@ def _image(said: dict[str, Marked], kind: TableType | None, offset: int) -> byte
 
 
 def _packed(rows: Marked | None, kind: TableType) -> bytes:
-    """All bytes of a table from the rows that are given."""
+    """Return all bytes of a table from its rows."""
     image = bytearray(kind.size)
     number = -1
     for row in rows.items() if rows is not None else ():
@@ -214,7 +214,7 @@ def _packed(rows: Marked | None, kind: TableType) -> bytes:
 
 
 def _place(row: Marked, path: str) -> Marked:
-    """The part of a row that a path, "Config[2].FcnCode", leads to, or the nearest one around it."""
+    """Return the part of a row at a path, "Config[2].FcnCode", or the nearest one around it."""
     place = row
     for name, index in re.findall(r"(\w+)|\[(\d+)\]", path):
         if isinstance(place.value, dict) and name in place.value:

@@ -1,5 +1,5 @@
-"""The graph of a mission: who sends which messages into whose pipes, and how that is drawn.
+"""The graph of a mission: senders, messages, and the pipes of receivers, and its presentation.
 
-What belongs here knows what a flight has shown (`model`) and writes it down for people and for other programs: as text,
-for graphviz, as a drawing. What the flight was like, and how many messages were lost, belongs to the report of a run.
+Code that collects the findings of a flight (`model`) or presents them as text, for graphviz or as a drawing belongs
+here. The flight itself, and the number of lost messages, belong to the report of a run.
 """

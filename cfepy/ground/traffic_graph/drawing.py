@@ -1,8 +1,8 @@
-"""The graph of a mission as a drawing (SVG): who sends, the messages, who takes them, from left to right.
+"""The graph of a mission as a drawing (SVG): senders, messages, receivers, from left to right.
 
-Who sends and takes stands on both sides, so that no line goes back. Messages with the same senders and the same takers
-share a box. Boxes are put in the order that lets lines cross least (the barycentre method), then beside what they are
-connected with. Nothing is needed to draw it, and the same graph gives the same bytes.
+A unit that sends and receives is on both sides, so that no line goes back. Messages with the same senders and receivers
+share a box. Boxes are ordered so that few lines cross (the barycentre method), then placed beside connected boxes. No
+other program is needed, and the same graph gives the same bytes.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from cfepy.ground.traffic_graph.graph_texts import about_text, kind_text, room_t
 from cfepy.ground.traffic_graph.model import CORE_NAME, Channel, MissionGraph, Offer, Taker
 
 MARGIN, GAP, LINE, PAD = 16, 14, 17, 8
-LEFT, MIDDLE, RIGHT, BETWEEN = 170, 290, 280, 130  # widths of the columns, and of the room for lines
+LEFT, MIDDLE, RIGHT, BETWEEN = 170, 290, 280, 130  # widths of the columns, and of the space for lines
 LETTER = 6.5  # average width of a letter
 SWEEPS = 24
 TOP = 58
@@ -51,9 +51,9 @@ class Box:
     """A box of the drawing, and its neighbours in the columns beside it, each with the height of its port.
 
     Attributes:
-        key: what it stands for.
+        key: the represented object.
         height: in px, like all places and sizes.
-        y: of its upper edge.
+        y: its upper edge.
     """
 
     key: str
@@ -68,11 +68,11 @@ class Box:
 
 
 class Drawing:
-    """A drawing in the making.
+    """A drawing under construction.
 
     Args:
-        graph: what is drawn.
-        is_document: it is to stand alone, and not in a page.
+        graph: the graph.
+        is_document: whether it is a document of its own, and not part of a page.
     """
 
     def __init__(self, graph: MissionGraph, is_document: bool) -> None:
@@ -88,7 +88,7 @@ class Drawing:
         self._parts: list[str] = []
 
     def text(self) -> str:
-        """The drawing."""
+        """Return the drawing."""
         left, middle, right = self._columns()
         bottom = _settle(left, middle, right)
         self._lines(left, middle, right)
@@ -121,7 +121,8 @@ class Drawing:
         rows = len(self._pipes.get(name, ())) + len(self._offers.get(name, ()))
         return Box(name, 2 * PAD + LINE * (2 + rows))
 
-    # -- what is drawn -------------------------------------------------------------------------------------------------
+    # -- drawing
+    # --------------------------------------------------------------------------------------------------------
 
     def _lines(self, left: dict[str, Box], middle: dict[str, Box], right: dict[str, Box]) -> None:
         for name, box in left.items():
@@ -145,7 +146,7 @@ class Drawing:
         self._parts.append(f'<path fill="{hue}" d="{point}"/>')
 
     def _pipe_y(self, box: Box, pipe: str) -> float:
-        """Where lines into a pipe end; those of cFE's services as one are not told apart."""
+        """Return where lines into a pipe end; the pipes of cFE's services as one box are not distinguished."""
         if box.key == CORE_NAME:
             return box.middle
         at = list(self._pipes[box.key]).index(pipe)
@@ -160,7 +161,7 @@ class Drawing:
         self._text(x + 14, box.y + PAD + 12 + LINE, kind_text(unit), "small", width - 20)
 
     def _inside(self, box: Box) -> None:
-        """The pipes of a taker, and what it offers."""
+        """Draw the pipes of a receiver, and its services."""
         y = box.y + PAD + 12 + 2 * LINE
         for pipe, takers in self._pipes.get(box.key, {}).items():
             room = room_text(takers)
@@ -188,7 +189,7 @@ class Drawing:
         self._parts.append(f'<rect {place} rx="4" class="box{more}"/>')
 
     def _text(self, x: float, y: float, text: str, kind: str, width: float, about: str = "") -> None:
-        """A text that is cut where it is too long; a pointer on it sees all."""
+        """Draw a text, truncated if it is too long, with the full text as tooltip."""
         most = max(int(width / LETTER), 4)
         shown = text if len(text) <= most else text[: most - 1] + "\N{HORIZONTAL ELLIPSIS}"
         title = f"<title>{_escaped(about or text)}</title>" if about or shown != text else ""
@@ -212,17 +213,17 @@ _X_RIGHT = _X_MIDDLE + MIDDLE + BETWEEN
 
 
 def graph_svg(graph: MissionGraph, is_document: bool = True) -> str:
-    """The graph drawn in SVG, in the colours that the reader's system prefers.
+    """Return the graph drawn in SVG, in the colours of the reader's system.
 
     Args:
         graph: the graph.
-        is_document: it is to stand alone, and not in a page.
+        is_document: whether it is a document of its own, and not part of a page.
     """
     return Drawing(graph, is_document).text()
 
 
 def _escaped(text: str) -> str:
-    """Text as XML may have it."""
+    """Return a text escaped for XML."""
     return escape(_CONTROLS.sub("\N{REPLACEMENT CHARACTER}", text))
 
 
@@ -236,7 +237,9 @@ def _groups(channels: Iterable[Channel]) -> dict[str, list[Channel]]:
 
 
 def _pipes_of(graph: MissionGraph) -> dict[str, dict[str, list[Taker]]]:
-    """The pipes of each unit by name, with what is subscribed to; cFE's services as one have too many to be shown."""
+    """Return the pipes of each unit by name, with their subscriptions; cFE's services as one box have too many
+    to show.
+    """
     found: dict[str, dict[str, list[Taker]]] = {}
     for channel in graph.channels:
         for each in channel.subscriptions:
@@ -264,7 +267,7 @@ def _port(box: Box, neighbours: Sequence[Box], one: Box) -> float:
 
 
 def _spread(box: Box, at: int, count: int) -> float:
-    """The height of one of several lines at a side of a box."""
+    """Return the height of one of several lines at a side of a box."""
     return box.y + box.height * (at + 1) / (count + 1)
 
 
@@ -272,7 +275,7 @@ def _spread(box: Box, at: int, count: int) -> float:
 
 
 def _settle(*columns: dict[str, Box]) -> float:
-    """Give every box its place; the height that is used."""
+    """Place every box; returns the used height."""
     orders = [list(column.values()) for column in columns]
     best = _stack(orders)
     for sweep in range(SWEEPS):
@@ -289,7 +292,7 @@ def _settle(*columns: dict[str, Box]) -> float:
 
 
 def _wish(box: Box) -> float:
-    """Where a box would like to be: amid its neighbours."""
+    """Return the preferred place of a box: the mean of its neighbours."""
     return sum(each.middle for each in box.links) / len(box.links) if box.links else box.middle
 
 
@@ -298,7 +301,7 @@ def _height(order: Sequence[Box]) -> float:
 
 
 def _stack(orders: Sequence[Sequence[Box]]) -> tuple[float, list[list[Box]]]:
-    """Put the boxes of each column one below the other; how far lines then go up and down, and the orders."""
+    """Place the boxes of each column one below the other; returns the vertical extent of lines, and the orders."""
     for order in orders:
         y = float(TOP)
         for box in order:
@@ -308,7 +311,7 @@ def _stack(orders: Sequence[Sequence[Box]]) -> tuple[float, list[list[Box]]]:
 
 
 def _place(order: Sequence[Box], bottom: float) -> None:
-    """Put each box amid its neighbours, as far as those above and below leave room."""
+    """Move each box towards its neighbours, as far as there is room."""
     y = float(TOP)
     for box in order:
         box.y = max(y, _wish(box) - box.height / 2)

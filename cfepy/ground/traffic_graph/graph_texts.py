@@ -1,4 +1,4 @@
-"""The graph of a mission as text for people, and for graphviz."""
+"""The graph of a mission as text, and for graphviz."""
 
 from __future__ import annotations
 
@@ -13,18 +13,19 @@ _NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
 def graph_text(graph: MissionGraph, width: int = 100) -> str:
-    """A paragraph for each application and node: what it sends and to whom, what it takes out of which pipe.
+    """Return a paragraph for each application and node: the messages that it sends, with receivers, and those that it
+    receives, with pipes.
 
     Args:
         graph: the graph.
-        width: of a line, in letters; names are never broken.
+        width: of a line, in characters; names are never broken.
     """
     paragraphs = [[f"{graph.mission}: {graph.summary}"], *(_paragraph(graph, unit) for unit in graph.units)]
     return "\n\n".join("\n".join(_wrapped(line, width) for line in lines) for lines in paragraphs) + "\n"
 
 
 def _wrapped(line: str, width: int) -> str:
-    """A line that goes on below its own second word where it is too long; what is in brackets stays together."""
+    """Return a line wrapped with indentation to its second word; text in brackets stays together."""
     own = line[: len(line) - len(line.lstrip())]
     below = own + " " * 7 if own == _MARGIN else own + "  "
     head, bracket, rest = line.lstrip().partition("  (")
@@ -80,7 +81,7 @@ def _number(channel: Channel) -> str:
 
 
 def kind_text(unit: Unit) -> str:
-    """What a unit is."""
+    """Return the kind of a unit."""
     if unit.kind == CORE:
         return "the core"
     if unit.kind == NODE:
@@ -89,7 +90,7 @@ def kind_text(unit: Unit) -> str:
 
 
 def about_text(channel: Channel) -> str:
-    """The type of a topic's messages, and how many come in a virtual second."""
+    """Return the type of a topic's messages, and their number per virtual second."""
     parts = [channel.type] if channel.is_topic else []
     if channel.hz:
         parts.append(f"{channel.hz:,.1f} Hz")
@@ -97,7 +98,7 @@ def about_text(channel: Channel) -> str:
 
 
 def room_text(takers: Sequence[Taker]) -> str:
-    """How much room there is in a pipe, and how much of it for each kind of message where that is less."""
+    """Return the limit of a pipe, and the limits of messages that are lower."""
     depth = takers[0].depth
     limits = sorted({each.limit for each in takers if each.limit < depth})
     if not limits:
@@ -106,7 +107,9 @@ def room_text(takers: Sequence[Taker]) -> str:
 
 
 def graph_dot(graph: MissionGraph) -> str:
-    """The graph in graphviz's language: applications are boxes, nodes ellipses, messages notes, pipes on the arrows."""
+    """Return the graph in graphviz's language: applications are boxes, nodes ellipses, messages notes, pipes on the
+    arrows.
+    """
     lines = [f"digraph {_quoted(graph.mission)} {{", "rankdir=LR;", 'node [fontname="sans-serif", fontsize=10];']
     lines.append('edge [fontname="sans-serif", fontsize=8];')
     lines += [f"{_quoted(unit.name)} [shape={_SHAPES[unit.kind]}, style=bold];" for unit in graph.units]

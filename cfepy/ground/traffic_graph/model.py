@@ -1,7 +1,7 @@
-"""`MissionGraph`: applications and nodes, the messages between them with their MsgIds, and the pipes they wait in.
+"""`MissionGraph`: applications and nodes, their messages with MsgIds, and the pipes that receive them.
 
-It is what the routing table and ROS's graph say at one moment, with the senders that were seen until then: cFE knows of
-no sender before it sends.
+It combines the routing table and ROS's graph at one moment with the senders observed until then, because cFE does not
+know a sender before it sends.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _GOAL = "ActionGoal"
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """What sends and receives; `app` is its name in cFE, which for a node is another than `name`."""
+    """A sender and receiver; `app` is its name in cFE, which differs from `name` for a node."""
 
     name: str
     kind: str
@@ -34,7 +34,7 @@ class Unit:
 
 @dataclass(frozen=True, slots=True)
 class Taker:
-    """A pipe that takes a message: whose, its room for messages of all kinds, and for how many of this one."""
+    """A pipe that receives a message: its owner, its limit for all messages, and for this one."""
 
     unit: str
     pipe: str
@@ -44,8 +44,9 @@ class Taker:
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """One MsgId: what it is called and carries, who was seen to send it, how many a virtual second since
-    the mission was operational, who takes it."""
+    """One MsgId: its name and type, its observed senders, its number per virtual second since the mission was
+    operational, and its receivers.
+    """
 
     msg_id: int
     name: str
@@ -56,7 +57,7 @@ class Channel:
 
     @property
     def is_topic(self) -> bool:
-        """Whether it is a topic of ROS."""
+        """Whether it is a ROS topic."""
         return "/" in self.type
 
 
@@ -72,7 +73,7 @@ class Offer:
 
 @dataclass(frozen=True, slots=True)
 class MissionGraph:
-    """All of it, in the order of names and MsgIds."""
+    """The whole graph, ordered by names and MsgIds."""
 
     mission: str
     units: tuple[Unit, ...]
@@ -80,12 +81,12 @@ class MissionGraph:
     offers: tuple[Offer, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain numbers and text."""
+        """Return plain numbers and text."""
         return asdict(self)
 
     @property
     def summary(self) -> str:
-        """How much there is of it, in a line."""
+        """Return its size, in a line."""
         nodes = sum(unit.kind == NODE for unit in self.units)
         pipes = {each.pipe for channel in self.channels for each in channel.subscriptions}
         counts = {"node": nodes, "application": len(self.units) - nodes, "message": len(self.channels)}
@@ -93,11 +94,7 @@ class MissionGraph:
         return ", ".join(f"{count} {what}{'' if count == 1 else 's'}" for what, count in counts.items())
 
     def of_interest(self) -> MissionGraph:
-        """Itself without what every mission has.
-
-        The services of cFE are one unit, and what they send to each other is left out; so are the log that nobody
-        reads and the services that set log levels.
-        """
+        """Return the graph without the parts that every mission has."""
         core = {unit.name for unit in self.units if unit.kind == CORE}
         rest = [unit for unit in self.units if unit.name not in core]
         channels = tuple(filter(_is_of_interest, (_with_one_core(channel, core) for channel in self.channels)))
@@ -110,7 +107,7 @@ class MissionGraph:
 
 
 def _mentioned(channels: Iterable[Channel]) -> set[str]:
-    """Names of all that send or take something."""
+    """Return the names of all that send or receive something."""
     return {name for each in channels for name in (*each.senders, *(taker.unit for taker in each.subscriptions))}
 
 
@@ -128,11 +125,11 @@ def _is_of_interest(channel: Channel) -> bool:
 
 
 def graph_of(mission: Mission, senders_of: Mapping[int, Iterable[str]]) -> MissionGraph:
-    """The graph of a mission that flies.
+    """Return the graph of a running mission.
 
     Args:
         mission: the mission.
-        senders_of: names of the applications that were seen to send each MsgId.
+        senders_of: names of the applications that sent each MsgId.
     """
     names = _names_of_nodes(mission)
     channels = tuple(_channels(mission, senders_of, names))
@@ -141,7 +138,7 @@ def graph_of(mission: Mission, senders_of: Mapping[int, Iterable[str]]) -> Missi
 
 
 def _names_of_nodes(mission: Mission) -> dict[str, str]:
-    """Names of nodes by those of their applications; a script that is no node (yet) has none."""
+    """Return the names of nodes by those of their applications, without scripts that are not (yet) nodes."""
     nodes = [] if mission.ros is None else mission.ros.graph.nodes.values()
     return {node.config.app: node.names.name for node in nodes}
 
@@ -166,7 +163,7 @@ def _channels(mission: Mission, senders_of: Mapping[int, Iterable[str]], names: 
 
 
 def _units(mission: Mission, names: Mapping[str, str], mentioned: set[str]) -> Iterator[Unit]:
-    """All that send or receive, and the rest of the startup script."""
+    """Yield all that send or receive, and the rest of the startup script."""
     apps = {name: app for app, name in names.items()}
     listed = [names.get(entry.name, entry.name) for entry in mission.spec.entries if entry.kind == "CFE_APP"]
     scripts = {entry.name for entry in mission.spec.entries if entry.symbol == NODE_SYMBOL}

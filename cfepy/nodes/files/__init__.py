@@ -1,9 +1,9 @@
-"""The files of a run: what its programs write stays with the run, over the host's files, which are only ever read.
+"""Files of a run: a layer for the output of its programs over the host's files, which are only read.
 
-What belongs here decides what a program finds at a path: the layers and what is copied up (`overlay`), paths and
-where they lie (`paths`), what a file says of itself (`stamps`), and Python's functions that take paths or descriptors,
-`open` (`opened`), those of `os` (`file_calls`) and those of modules that open files in C (`shared`). The files of OSAL
-are in `cfepy.osal`.
+Everything that determines a program's view of a path belongs here: the layers and copying on write (`overlay`), paths
+and places (`paths`), metadata (`stamps`), and Python's functions that take paths or descriptors: `open` (`opened`),
+those of `os` (`file_calls`) and those of modules that open files in C (`shared`). The files of OSAL are in
+`cfepy.osal`.
 """
 
 from __future__ import annotations

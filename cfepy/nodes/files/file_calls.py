@@ -1,7 +1,7 @@
-"""The functions of `os` that take paths or descriptors, over the files of a run.
+"""Functions of `os` that take paths or descriptors, working on the files of a run.
 
-A path may be relative to the node's working directory, to an open folder (`dir_fd`), or an open file itself; errors
-name it as the program gave it.
+A path may be relative to the node's working directory or to an open folder (`dir_fd`), or may be an open file itself.
+Errors name it as the program gave it.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ class FolderEntry:
 
     Args:
         folder: the folder as it was given.
-        name: of the file.
-        kind: of file, as the folder itself says (`stat.S_IFMT`), so that it needs no right to look at the file.
-        look: `stat` of a path of the program.
+        name: name of the file.
+        kind: file type given by the folder (`stat.S_IFMT`), so no permission on the file itself is needed.
+        look: `stat` for a path of the program.
     """
 
     def __init__(self, folder: str, name: str, kind: int, look: Callable[..., os.stat_result]) -> None:
@@ -48,27 +48,27 @@ class FolderEntry:
         return f"<DirEntry {self.name!r}>"
 
     def inode(self) -> int:
-        """Its number."""
+        """Return the inode number."""
         return self.stat(follow_symlinks=False).st_ino
 
     def is_dir(self, *, follow_symlinks: bool = True) -> bool:
-        """Whether it is a folder."""
+        """Return whether it is a folder."""
         return stat.S_ISDIR(self._found(follow_symlinks))
 
     def is_file(self, *, follow_symlinks: bool = True) -> bool:
-        """Whether it is a file."""
+        """Return whether it is a file."""
         return stat.S_ISREG(self._found(follow_symlinks))
 
     def is_symlink(self) -> bool:
-        """Whether it is a link."""
+        """Return whether it is a link."""
         return stat.S_ISLNK(self._kind)
 
     def is_junction(self) -> bool:
-        """Whether it is what only Windows has."""
+        """Return False: only Windows has junctions."""
         return False
 
     def stat(self, *, follow_symlinks: bool = True) -> os.stat_result:
-        """What it says of itself."""
+        """Return the metadata of the file."""
         return self._look(self.path, follow_symlinks=follow_symlinks)
 
     def _found(self, follow: bool) -> int:
@@ -81,7 +81,7 @@ class FolderEntry:
 
 
 class BytesFolderEntry(FolderEntry):
-    """The same of a folder that is given as bytes."""
+    """Entry of a folder that was given as bytes."""
 
     def __init__(self, folder: bytes, name: str, kind: int, look: Callable[..., os.stat_result]) -> None:
         super().__init__(os.fsdecode(folder), name, kind, look)
@@ -89,7 +89,7 @@ class BytesFolderEntry(FolderEntry):
 
 
 class Entries:
-    """`os.scandir`, sorted by name: the order of a directory is the file system's whim.
+    """`os.scandir`, sorted by name, because the order of a directory depends on the file system.
 
     Args:
         found: the entries.
@@ -111,24 +111,24 @@ class Entries:
         self.close()
 
     def close(self) -> None:
-        """`close` of a scandir iterator; all was read at once."""
+        """Do nothing: all entries were read at once."""
 
 
 class FileCalls:
-    """What `os` of a program does with files.
+    """File functions of a program's `os`.
 
     Args:
-        universe: the program's.
-        overlay: the files of its run.
+        universe: universe of the program.
+        overlay: files of its run.
     """
 
     def __init__(self, universe: Universe, overlay: Overlay) -> None:
         self._universe = universe
         self._overlay = overlay
-        self._folders: dict[int, str] = {}  # open ones, by descriptor
+        self._folders: dict[int, str] = {}  # open folders, by descriptor
 
     def names(self) -> dict[str, Any]:
-        """The functions by name."""
+        """Return the functions by name."""
         overlay = self._overlay
         found: dict[str, Any] = {
             "access": self._access,
@@ -170,7 +170,7 @@ class FileCalls:
         return found
 
     def where(self, path: Any, dir_fd: int | None = None) -> str:
-        """The absolute path, as the program has it, of what a function was given."""
+        """Return the absolute path, as the program sees it, of an argument."""
         plain = os.fsdecode(path)
         if not plain:
             raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
@@ -264,7 +264,7 @@ class FileCalls:
     def _kind(self, folder: str, name: str) -> int:
         try:
             return stat.S_IFMT(os.lstat(self._overlay.place(f"{folder.rstrip('/')}/{name}")).st_mode)
-        except OSError:  # it is gone by now, as of /proc/self/fd the one by which the folder was read
+        except OSError:  # it no longer exists, such as the descriptor in /proc/self/fd by which the folder was read
             return 0
 
     # -- changing ----------------------------------------------------------------------------------------------------
@@ -339,7 +339,7 @@ class FileCalls:
             self._overlay.change_mode(where, mode, follow_symlinks)
 
     def _chown(self, path: Any, uid: int, gid: int, *, dir_fd: int | None = None, follow_symlinks: bool = True) -> None:
-        """An ordinary user gives no file away."""
+        """Change the owner; an ordinary user cannot give a file away."""
         with _told(path):
             if isinstance(path, int):
                 self._overlay.stamps.changed(os.fstat(path))
@@ -378,7 +378,7 @@ class FileCalls:
 
 
 class _told:
-    """Around a call: its errors name paths as the program gave them."""
+    """Context of a call in which errors name paths as the program gave them."""
 
     def __init__(self, path: Any, second: Any = None) -> None:
         self._path = path

@@ -1,7 +1,7 @@
-"""`open` of a program, over the files of its run, and the files that it has open.
+"""`open` of a program, working on the files of its run, and the program's open files.
 
-They are written out and closed when the program ends. Left to the garbage collector, the parts of a file would be
-closed in any order, and the rest of its buffer lost.
+They are flushed and closed when the program ends. The garbage collector would close the layers of a file in any order
+and could lose the rest of its buffer.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ _FLAGS = {"r": os.O_RDONLY, "w": os.O_CREAT | os.O_TRUNC, "x": os.O_CREAT | os.O
 
 
 class RunFile(io.FileIO):
-    """A raw file of a run; the run knows when something was written into it.
+    """A raw file of a run; writes to it are reported to the overlay.
 
     Args:
-        descriptor: of the open file.
-        mode: as of `io.FileIO`.
-        closefd: it is closed with the file.
+        descriptor: descriptor of the open file.
+        mode: as for `io.FileIO`.
+        closefd: whether the descriptor is closed with the file.
         name: its path as it was given; None for none.
-        overlay: of the run.
+        overlay: files of the run.
     """
 
     def __init__(self, descriptor: int, mode: str, closefd: bool, name: Any, overlay: Overlay) -> None:
@@ -52,11 +52,11 @@ class RunFile(io.FileIO):
 
 
 class OpenFiles:
-    """The open files of one program.
+    """Open files of one program.
 
     Args:
-        where: makes a path of the program an absolute one.
-        overlay: the files of its run; None for those of the computer.
+        where: makes a path of the program absolute.
+        overlay: files of its run; None for the host's files.
 
     Attributes:
         raw_type: `io.FileIO` of the program.
@@ -70,7 +70,7 @@ class OpenFiles:
         self._numbers = count()
 
     def opener(self) -> Callable[..., IO[Any]]:
-        """The program's `open`, with paths relative to its working directory."""
+        """Return the program's `open`, with paths relative to its working directory."""
 
         def open_file(
             file: Any,
@@ -131,17 +131,17 @@ class OpenFiles:
             raise
 
     def close_all(self) -> None:
-        """The program has ended; a full disk is not its problem any more."""
+        """Close all files at the end of the program; errors such as a full disk are ignored."""
         for opened in list(self._files.values()):
             with suppress(OSError, ValueError):
                 opened.close()
 
 
 def _check(mode: str, buffering: int, closefd: bool, texts: dict[str, str | None]) -> None:
-    """Refuse what `io.open` refuses, before a file is made.
+    """Check the arguments as `io.open` does, before a file is created.
 
     Raises:
-        ValueError: the arguments contradict each other.
+        ValueError: if the arguments contradict each other.
     """
     if not isinstance(mode, str):
         raise TypeError(f"open() argument 'mode' must be str, not {type(mode).__name__}")
@@ -162,7 +162,7 @@ def _check(mode: str, buffering: int, closefd: bool, texts: dict[str, str | None
 
 
 def _layered(raw: io.FileIO, mode: str, buffering: int, texts: dict[str, Any]) -> IO[Any]:
-    """A raw file with its buffer and its text."""
+    """Return a raw file with its buffer and its text."""
     if buffering == 0:
         return raw  # as `io.open` does
     is_line = buffering == 1 or (buffering < 0 and raw.isatty())

@@ -1,10 +1,10 @@
-"""`Overlay`: the files that the programs of one run see: the host's, and over them what the run wrote.
+"""`Overlay`: the files that the programs of one run see: the host's, under a layer with the files written by the run.
 
-What a run writes lies in a temporary folder of its own, at its path below that; a file of the host that is changed is
-copied there first. What it removes is only noted. So descriptors are real ones, and code in C that is given one, or a
-place, works as ever. The folder is made when it is first needed and goes with the mission.
+Files written by a run are stored in a temporary folder, at the same path below it; a host file is copied there before
+it is changed. Removals are only recorded. Descriptors are therefore real, and C code that is given a descriptor or
+place works. The folder is created on first use and removed with the mission.
 
-Paths here are absolute and as programs have them, unless they are called places: where a file really lies.
+Paths here are absolute and as programs see them; a "place" is where a file is really stored.
 """
 
 from __future__ import annotations
@@ -35,21 +35,21 @@ from cfepy.nodes.files.paths import (
 )
 from cfepy.nodes.files.stamps import ASKED, LISTED, MADE, NEEDED, Stamps, asked_by, copy_tree, is_special, key_of
 
-PREFIX = "cfepy-files-"  # of the folders that runs have in the temporary one
-_SYSTEM = ("/proc", "/sys", "/dev")  # no files, but questions to the operating system
+PREFIX = "cfepy-files-"  # of the folders of runs in the temporary folder
+_SYSTEM = ("/proc", "/sys", "/dev")  # not files, but queries to the operating system
 _SHM = "/dev/shm"
 _MOST_LINKS = 40
-_OWNER_S = 6  # bits from the owner's permissions to those of access()
+_OWNER_S = 6  # shift from the owner's permission bits to those of access()
 _CREATES = os.O_CREAT | os.O_TRUNC | getattr(os, "O_TMPFILE", 0)
 _TMPFILE = getattr(os, "O_TMPFILE", -1)
 
 
 class Overlay:
-    """The files of one run.
+    """Files of one run.
 
     Args:
-        now_ns: the run's time of day, ns since 1970.
-        host: the place of a file of the host; that of a replay has the recorded files elsewhere.
+        now_ns: time of day of the run, ns since 1970.
+        host: returns the place of a host file; in a replay, recorded files have other places.
 
     Attributes:
         stamps: numbers and times of files.
@@ -58,21 +58,21 @@ class Overlay:
     def __init__(self, now_ns: Callable[[], int] = lambda: 0, host: Callable[[str], str] = lambda path: path) -> None:
         self.stamps = Stamps(now_ns)
         self._place_of_host = host
-        self._asked: set[str] = set()  # paths of the host that were looked at
+        self._asked: set[str] = set()  # host paths that were looked at
         self._top = ""
-        self._gone: set[str] = set()  # what of the host does not show through, with all below it
-        self._no_links: set[str] = set()  # folders of which this is known, and that they may be searched
-        self._descriptors: dict[int, str] = {}  # places of what was opened last
+        self._gone: set[str] = set()  # host paths that are hidden, with everything below them
+        self._no_links: set[str] = set()  # folders known to have no links in their path and to be searchable
+        self._descriptors: dict[int, str] = {}  # places of recently opened files
         self._remove: Callable[[], object] = bool
         _living().add(self)
 
-    # -- where things are --------------------------------------------------------------------------------------------
+    # -- finding ----------------------------------------------------------------------------------------------------
 
     def real(self, path: str, follow: bool = True) -> str:
-        """A path without links, of the last part too if it is to be followed; what is not there has none.
+        """Return a path with links resolved, the last part only if `follow`; missing parts stay as they are.
 
         Raises:
-            OSError: the links go round in circles, or what ".." is said of is no folder.
+            OSError: if links form a cycle, or ".." follows something that is not a folder.
         """
         if self.is_system(path):
             return path
@@ -104,7 +104,7 @@ class Overlay:
         return with_end(done)
 
     def _refuse_search(self, here: str, path: str, is_searched: bool) -> None:
-        """Raise the OSError of a path that goes on behind what is no folder, or is one that must not be searched."""
+        """Raise the OSError of a path that continues behind something that is not a searchable folder."""
         if not self.is_folder(here):
             if self.exists(here):
                 raise os_error(errno.ENOTDIR, path)
@@ -122,13 +122,13 @@ class Overlay:
             return None
 
     def allows(self, path: str, bits: int) -> bool:
-        """Whether the program may do something with what is at a path without links.
+        """Return whether the program may access the file at a path without links.
 
-        It is the owner of all files, and no root, whoever runs cfepy. What the host does not let cfepy read, it may not
-        read either; what it writes, it writes into a copy.
+        The program owns all files and is not root, whoever runs cfepy. It cannot read files that cfepy cannot read on
+        the host; writes go to a copy.
 
         Args:
-            path: of the file.
+            path: path of the file.
             bits: `os.R_OK`, `os.W_OK`, `os.X_OK`.
         """
         place, own = self.place(path), self.own_place(path)
@@ -142,16 +142,16 @@ class Overlay:
         return mode >> _OWNER_S & bits == bits and (own is not None or not seen or os.access(place, seen))
 
     def _check(self, path: str, bits: int, told: str | None = None) -> None:
-        """Raise the OSError of a file with which the program must not do something."""
+        """Raise an OSError if the program must not access a file."""
         if not self.allows(path, bits):
             raise os_error(errno.EACCES, told or path)
 
     def is_system(self, path: str) -> bool:
-        """Whether the operating system answers at a path, and not a disk."""
+        """Return whether a path is answered by the operating system and not by a disk."""
         return path.startswith(_SYSTEM) and any(is_in(path, each) for each in _SYSTEM) and not is_in(path, _SHM)
 
     def place(self, path: str) -> str:
-        """Where the file at a path without links lies, or would lie if it were there."""
+        """Return the place of a path without links, whether or not the file exists."""
         if self._top:
             own = self._own(path)
             if os.path.lexists(own) or self.is_hidden(path):
@@ -159,7 +159,7 @@ class Overlay:
         return self._host(path)
 
     def _host(self, path: str) -> str:
-        """The place of a file of the host."""
+        """Return the place of a file of the host."""
         place = self._place_of_host(path)
         if path not in self._asked:
             self._asked.add(path)
@@ -167,24 +167,26 @@ class Overlay:
         return place
 
     def own_place(self, path: str) -> str | None:
-        """Where the run's own file at a path without links lies; None when it has none there."""
+        """Return the place of the run's own file at a path without links; None if there is none."""
         if not self._top:
             return None
         own = self._own(path)
         return own if os.path.lexists(own) else None
 
     def _own(self, path: str) -> str:
-        """Where the run's own file at a path without links would lie."""
+        """Return the place that the run's own file at a path without links would have."""
         return place_below(self._top, path) if HAS_DRIVES else self._top + path
 
     def places(self, path: str) -> list[str]:
-        """Where what is in a folder at a path without links lies, the run's own first; what was removed shows there."""
+        """Return the places of a folder at a path without links, the run's own first; removed files are still visible
+        there.
+        """
         own = self.own_place(path)
         hosts = [] if self.is_hidden(path) else [self._host(path)]
         return hosts if own is None else [own, *hosts]
 
     def is_hidden(self, path: str) -> bool:
-        """Whether the host's file at a path was removed, or one of the folders above it was."""
+        """Return whether the host file at a path, or a folder above it, was removed."""
         gone = self._gone
         if not gone:
             return False
@@ -195,27 +197,27 @@ class Overlay:
         return False
 
     def shown(self, place: str) -> str:
-        """The path of a place."""
+        """Return the path of a place."""
         if not self._top:
             return place
         return path_below(self._top, place) if HAS_DRIVES else place.removeprefix(self._top)
 
     def exists(self, path: str) -> bool:
-        """Whether there is something at a path without links, perhaps a link that leads nowhere."""
+        """Return whether a path without links exists; a broken link counts."""
         return os.path.lexists(self.place(path))
 
     def is_folder(self, path: str) -> bool:
-        """Whether there is a folder at a path without links."""
+        """Return whether a path without links is a folder."""
         place = self.place(path)
         return os.path.isdir(place) and not os.path.islink(place)
 
     def check_folder(self, path: str) -> None:
-        """Raise the OSError of a path without links that is no folder."""
+        """Raise an OSError if a path without links is not a folder."""
         if not self.is_folder(path):
             raise os_error(errno.ENOTDIR if self.exists(path) else errno.ENOENT, path)
 
     def check_entry(self, path: str) -> None:
-        """Raise the OSError of a path without links that no program can work in."""
+        """Raise an OSError if a program cannot use a path without links as its working directory."""
         self.check_folder(path)
         self._check(path, os.X_OK)
 
@@ -223,10 +225,10 @@ class Overlay:
         return not self.is_hidden(path) and os.path.lexists(self._host(path))
 
     def names(self, path: str) -> list[str]:
-        """What is in a folder, sorted.
+        """Return the names in a folder, sorted.
 
         Raises:
-            OSError: it is none, or must not be read.
+            OSError: if it is not a folder, or must not be read.
         """
         self.check_folder(path)
         if not self.is_system(path):
@@ -247,10 +249,10 @@ class Overlay:
     # -- changes -----------------------------------------------------------------------------------------------------
 
     def claim(self, path: str, with_data: bool = True) -> str:
-        """The place of what is at a path without links, for a change: a file of the host is copied first.
+        """Return the place to change for a path without links; a host file is copied first.
 
         Raises:
-            OSError: the host would not let it be changed, or there is no folder for it.
+            OSError: if the host would not allow the change, or its folder does not exist.
         """
         own = self.own_place(path)
         if own is not None:
@@ -279,7 +281,7 @@ class Overlay:
             raise os_error(errno.EPERM, own)
         else:
             if with_data:
-                from shutil import copyfile  # a run that writes nothing does without
+                from shutil import copyfile  # loaded only by runs that write
 
                 copyfile(place, own)
             else:
@@ -288,7 +290,7 @@ class Overlay:
         self.stamps.made(os.lstat(own), real)
 
     def _folder_of(self, path: str) -> None:
-        """Have the folder of a path among the run's own."""
+        """Ensure that the run has its own copy of the folder of a path."""
         folder = parent(path)
         self.check_folder(folder)
         if not (self._top and os.path.isdir(self._own(folder))):
@@ -298,7 +300,7 @@ class Overlay:
             self.claim(folder)
 
     def _own_folder_of(self, path: str) -> None:
-        """The same, for something new in it, or for something to go."""
+        """As `_folder_of`, for adding or removing an entry."""
         folder = parent(path)
         self.check_folder(folder)
         self._check(folder, os.W_OK | os.X_OK, path)
@@ -326,7 +328,7 @@ class Overlay:
         """`os.open`.
 
         Raises:
-            OSError: as of `os.open`.
+            OSError: as for `os.open`.
         """
         must_be_new = flags & os.O_CREAT and flags & os.O_EXCL
         path = self.real(path, not (must_be_new or flags & getattr(os, "O_NOFOLLOW", 0)))
@@ -363,7 +365,7 @@ class Overlay:
         descriptor = os.open(own, flags, stat.S_IRUSR | stat.S_IWUSR)
         if is_new:
             if hasattr(os, "fchmod"):
-                os.fchmod(descriptor, stat.S_IRUSR | stat.S_IWUSR)  # whatever the umask of the computer is
+                os.fchmod(descriptor, stat.S_IRUSR | stat.S_IWUSR)  # independent of the host's umask
             self.stamps.made(os.fstat(descriptor), mode=mode)
             self._touch_folder(path)
         elif flags & os.O_TRUNC:
@@ -371,11 +373,11 @@ class Overlay:
         return descriptor
 
     def make(self, path: str, how: Callable[[str], object], mode: int | None = None) -> None:
-        """Make something new at a path, such as a folder or a link.
+        """Create something at a path, such as a folder or a link.
 
         Args:
-            path: where; its last part is no link that is followed.
-            how: makes it at a place.
+            path: path to create; a link as its last part is not followed.
+            how: creates it at a place.
             mode: its permissions; None leaves them.
         """
         path = self.real(path, follow=False)
@@ -414,7 +416,7 @@ class Overlay:
         self._take_away(path, os.unlink)
 
     def _check_taken_away(self, path: str) -> None:
-        """Raise the OSError of what is not there, or whose folder must not be changed."""
+        """Raise an OSError if a path does not exist or its folder must not be changed."""
         if not self.exists(path):
             self.check_folder(parent(path))
             raise os_error(errno.ENOENT, path)
@@ -442,7 +444,7 @@ class Overlay:
         self._touch_folder(path)
 
     def rename(self, source: str, target: str) -> None:
-        """`os.rename`: what is at the target is replaced, a folder only if it is empty."""
+        """`os.rename`: the target is replaced, a folder only if it is empty."""
         source = self.real(source, follow=False)
         self.check_folder(parent(source))
         target = self.real(target, follow=False)
@@ -462,7 +464,7 @@ class Overlay:
         if is_there and self.is_folder(target) != is_folder:
             raise os_error(errno.ENOTDIR if is_folder else errno.EISDIR, target)
         if is_folder and parent(source) != parent(target):
-            self._check(source, os.W_OK)  # what ".." is in it changes
+            self._check(source, os.W_OK)  # its ".." entry changes
         if is_there:
             (self.remove_folder if is_folder else self.remove)(target)
         self._own_folder_of(source)
@@ -478,19 +480,19 @@ class Overlay:
         self._touch_folder(target)
 
     def _claim_all(self, path: str) -> str:
-        own = self.claim(path)  # a folder moves whole, also one in which the program must not look up or change names
+        own = self.claim(path)  # a folder is moved whole, even if the program may not search or change it
         if self.is_folder(path):
             for name in self._names(path):
                 self._claim_all(f"{path}/{name}")
         return own
 
     def change(self, path: str, how: Callable[[str], object], follow: bool = True) -> str:
-        """Change what a file says of itself; returns the place.
+        """Change the metadata of a file; returns its place.
 
         Args:
-            path: of the file.
-            how: does it at a place.
-            follow: a link is followed.
+            path: path of the file.
+            how: makes the change at a place.
+            follow: whether a link is followed.
         """
         path = self.real(path, follow)
         if not self.exists(path):
@@ -501,7 +503,7 @@ class Overlay:
         return own
 
     def change_mode(self, path: str | int, mode: int, follow: bool = True) -> None:
-        """`os.chmod` of a path, or of an open file; the host's own stays as it is."""
+        """`os.chmod` of a path or an open file; the host file is not changed."""
         if isinstance(path, int):
             self.stamps.set_mode(os.fstat(path), mode)
         else:
@@ -534,12 +536,12 @@ class Overlay:
         self.stamps.written(key_of(os.fstat(descriptor)))
 
     def is_own(self, descriptor: int) -> bool:
-        """Whether an open file is one of the run's own."""
+        """Return whether an open file belongs to the run."""
         place = place_of(descriptor) or self._descriptors.get(descriptor, "")
         return bool(self._top) and place.startswith(f"{self._top}/")
 
     def written(self) -> Iterator[tuple[str, str]]:
-        """Path and place of each file that the run wrote, in order."""
+        """Return path and place of each file that the run wrote, in order."""
         for folder, folders, names in os.walk(self._top) if self._top else ():
             folders.sort()
             for name in sorted(names):
@@ -547,17 +549,17 @@ class Overlay:
                 if stat.S_ISREG(os.lstat(place).st_mode):
                     yield self.shown(place), place
 
-    # -- the end, and a second life ----------------------------------------------------------------------------------
+    # -- end and fork -----------------------------------------------------------------------------------------------
 
     def close(self) -> None:
-        """The mission is over: what it wrote is gone."""
+        """Remove the files of the run, at the end of the mission."""
         self._remove()
         self._remove = bool
         self._top = ""
 
     def part(self) -> None:
-        """This process was forked: its run goes on with files of its own, and its own places in open ones."""
-        import fcntl  # only a system that forks has it
+        """Continue in a forked process with a copy of the run's files, and reopen its open files."""
+        import fcntl  # only systems that can fork have it
 
         old = self._top
         if old:
@@ -570,7 +572,7 @@ class Overlay:
                 flags = fcntl.fcntl(descriptor, fcntl.F_GETFL) & ~(_CREATES | os.O_EXCL)
                 moved = self._top + place.removeprefix(old) if old and place.startswith(old + "/") else place
                 again = os.open(moved, flags)
-            except OSError:  # it is closed, or has no name any more
+            except OSError:  # it is closed, or no longer has a name
                 continue
             os.lseek(again, at, os.SEEK_SET)
             os.dup2(again, descriptor, inheritable=False)
@@ -578,7 +580,7 @@ class Overlay:
 
 
 def _remove_tree(top: str, process: int) -> None:
-    if os.getpid() == process:  # a forked one has its own
+    if os.getpid() == process:  # a forked process has its own
         from shutil import rmtree
 
         rmtree(top, ignore_errors=True)
@@ -586,7 +588,7 @@ def _remove_tree(top: str, process: int) -> None:
 
 @cache
 def _living() -> WeakSet[Overlay]:
-    """The overlays of this process: they part from their like when it is forked, and go when a forked one ends."""
+    """Return the overlays of this process: they are copied when it is forked, and removed at the end of a fork."""
     found: WeakSet[Overlay] = WeakSet()
 
     in_forked_process(lambda: list(map(Overlay.part, tuple(found))))

@@ -1,6 +1,6 @@
-"""Paths of a run's files: their parts, where they lie below the run's folder, and, on Windows, their drives.
+"""Paths of a run's files: their parts, their places below the run's folder, and Windows drives.
 
-Between parts is "/", which Windows takes as well. A path begins with it, or there with a drive: C:/a/b, which lies at
+The separator is "/", which Windows accepts too. A path starts with it, or on Windows with a drive: C:/a/b is stored at
 TOP/C/a/b below the folder TOP of a run.
 """
 
@@ -13,25 +13,25 @@ HAS_DRIVES = os.name == "nt"
 
 
 def with_slashes(path: str) -> str:
-    """The path of Windows with "/" between its parts."""
+    """Return the path of Windows with "/" between its parts."""
     return path.replace("\\", "/")
 
 
 def parted(path: str) -> tuple[str, str]:
-    """The drive of a path of Windows, and the rest, which begins with "/"."""
+    """Return the drive of a Windows path, and the rest, which starts with "/"."""
     plain = with_slashes(path)
     drive, colon, rest = plain.partition(":")
     return (f"{drive}:", rest) if colon and len(drive) == 1 else ("", plain)
 
 
 def place_below(top: str, path: str) -> str:
-    """Where a path of Windows lies below a folder."""
+    """Return the place of a Windows path below a folder."""
     drive, rest = parted(path)
     return f"{top}/{drive[:1]}{rest}"
 
 
 def path_below(top: str, place: str) -> str:
-    """The path of Windows that lies at a place; one outside of the folder stays as it is."""
+    """Return the Windows path that is stored at a place; a place outside of the folder stays as it is."""
     plain = with_slashes(place)
     if not plain.startswith(f"{top}/"):
         return place
@@ -40,26 +40,26 @@ def path_below(top: str, place: str) -> str:
 
 
 def with_end(done: str) -> str:
-    """The path of a folder of which all parts are known; a root has a "/" at its end."""
+    """Return the path of a folder from its known parts; a root ends with "/"."""
     return done if "/" in done else f"{done}/"
 
 
 def parent(path: str) -> str:
-    """The folder that a path is in."""
+    """Return the folder that a path is in."""
     return with_end(path.rpartition("/")[0])
 
 
 def is_root(path: str) -> bool:
-    """Whether it is a root, such as / or C:/."""
+    """Return whether it is a root, such as / or C:/."""
     return path.endswith("/")
 
 
 def below_root(root: str, absent: Container[str] = ()) -> Callable[[str], str]:
-    """The places of the host's files, some of which are below a folder that stands for the computer's root.
+    """Return a function for the places of host files, with some of them below a folder that replaces the root.
 
     Args:
         root: the folder; empty for none.
-        absent: paths at which nothing is to be found.
+        absent: paths at which nothing is found.
     """
     if not root:
         return lambda path: path
@@ -67,7 +67,7 @@ def below_root(root: str, absent: Container[str] = ()) -> Callable[[str], str]:
 
 
 def place_of(descriptor: int) -> str:
-    """Where an open file lies; empty where the system does not tell."""
+    """Return the place of an open file; empty if the system does not tell."""
     try:
         return os.readlink(f"/proc/self/fd/{descriptor}")
     except OSError:
@@ -75,10 +75,10 @@ def place_of(descriptor: int) -> str:
 
 
 def is_in(path: str, folder: str) -> bool:
-    """Whether a path is a folder, or one of what is in it."""
+    """Return whether a path is a folder, or inside it."""
     return path == folder or path.startswith(folder + "/")
 
 
 def os_error(number: int, path: str) -> OSError:
-    """The error of the system about a path."""
+    """Return the error of the system about a path."""
     return OSError(number, os.strerror(number), path)

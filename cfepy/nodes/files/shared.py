@@ -1,4 +1,4 @@
-"""Modules of the host that open files themselves, such as those in C: they are given places instead of paths."""
+"""Host modules that open files themselves, such as those in C: they are given places instead of paths."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def codecs_module(universe: Universe) -> ModuleType:
 
 
 def sqlite3_module(universe: Universe) -> ModuleType:
-    """`sqlite3`: its databases are files of the run; one of the host's is copied when it is opened."""
+    """`sqlite3`: its databases are files of the run; a host database is copied when it is opened."""
     import sqlite3
 
     def place(database: Any) -> Any:

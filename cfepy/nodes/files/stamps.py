@@ -1,10 +1,9 @@
-"""What files say of themselves: numbers in the order in which a run first looks at them, and times of the run's clock.
+"""Metadata of files: inode numbers in the order in which a run first looks at files, and times of the run's clock.
 
-A file of the host is as old as it is there, but never younger than the run, whose clock may stand in 1980. All else
-that another computer or user would have otherwise (owner, device, blocks, sizes of folders, links of what is not the
-run's own) is the same for all. Permissions are kept here for files of the run, which lie on the disk such that cfepy
-can work with them; of a file of the host those of its owner count, and the others' follow from them, as the umask of
-who made it is no matter.
+A host file has its real age, but is never younger than the run, whose clock may start in 1980. Everything else that
+depends on the computer or user (owner, device, blocks, sizes of folders, link counts of host files) is the same for
+all. Permissions of the run's files are kept here; on the disk they are always accessible to cfepy. For a host file the
+owner's permissions count and the others follow from them, because the umask of its creator should not matter.
 """
 
 from __future__ import annotations
@@ -16,18 +15,18 @@ from dataclasses import dataclass
 
 from cfepy.units import NS_PER_S
 
-LISTED = "cfepy.listing"  # Python's audit hooks are told of each folder that a node looks into, and what is in it,
-ASKED = "cfepy.look"  # of each path of the host at which it looks for something, once,
-NEEDED = "cfepy.folder"  # of each folder that must be there, since something is written into it,
-MADE = "cfepy.files"  # and of the folder in which a run has its own files
+LISTED = "cfepy.listing"  # raised as Python audit event for each folder that a node lists, with its entries,
+ASKED = "cfepy.look"  # for the first look at each host path,
+NEEDED = "cfepy.folder"  # for each folder that must exist because something is written into it,
+MADE = "cfepy.files"  # and for the folder that contains the run's own files
 DEVICE = 1
 BLOCK = 4096
 USER = GROUP = 1000
-"""The owner of all files: the user that all programs of a run are."""
+"""Owner of all files: the user of all programs of a run."""
 UMASK = 0o022
 _LINK_MODE = 0o777
 _SECTOR = 512
-_MARK_NS = NS_PER_S  # the real time of a file that nobody has written into since it was looked at
+_MARK_NS = NS_PER_S  # real time of a file that has not been written since it was looked at
 
 Key = tuple[int, int]
 """Device and number of a real file."""
@@ -35,7 +34,7 @@ Key = tuple[int, int]
 
 @dataclass(slots=True)
 class Stamp:
-    """The times of a file of the run, in ns since 1970; `is_told`: they are those of the latest change."""
+    """Times of a file of the run, in ns since 1970; `is_told`: they are those of the latest change."""
 
     read_ns: int
     written_ns: int
@@ -47,7 +46,7 @@ class Stamps:
     """Numbers and times of one run's files.
 
     Args:
-        now_ns: the run's time of day, ns since 1970.
+        now_ns: time of day of the run, ns since 1970.
     """
 
     def __init__(self, now_ns: Callable[[], int]) -> None:
@@ -59,12 +58,12 @@ class Stamps:
         self._count = 1
 
     def made(self, real: os.stat_result, like: os.stat_result | None = None, mode: int | None = None) -> None:
-        """The run has a new file of its own.
+        """Register a new file of the run.
 
         Args:
-            real: what the computer says of it.
-            like: it is a copy of this one of the host.
-            mode: its permissions, if the run said them.
+            real: its metadata on the host.
+            like: the host file it is a copy of.
+            mode: its permissions, if the run gave them.
         """
         key, now = key_of(real), self.now_ns()
         if like is not None:
@@ -83,7 +82,7 @@ class Stamps:
             stamp.is_told = True
 
     def changed(self, real: os.stat_result, times: tuple[int, int] | None = None) -> None:
-        """What a file of the run says of itself was changed, its times of reading and writing perhaps (ns)."""
+        """Record a change of a file's metadata, with its access and modification times if given (ns)."""
         stamp = self._stamps.get(key_of(real))
         if stamp is not None:
             stamp.changed_ns = self.now_ns()
@@ -92,14 +91,14 @@ class Stamps:
                 stamp.is_told = True
 
     def forget(self, real: os.stat_result) -> None:
-        """A name of a file of the run is gone; after the last one the system may give its number to another."""
+        """Record that a name of a file is removed; after the last one the system may reuse its number."""
         if real.st_nlink <= 1 or stat.S_ISDIR(real.st_mode):
             self._numbers.pop(key_of(real), None)
             self._stamps.pop(key_of(real), None)
             self._modes.pop(key_of(real), None)
 
     def moved(self, old: Key, new: Key) -> None:
-        """A file of the run is another one of the computer's from now on."""
+        """Record that a file of the run is now a different file on the host."""
         if old in self._numbers:
             self._numbers[new] = self._numbers.pop(old)
         if old in self._stamps:
@@ -108,7 +107,7 @@ class Stamps:
             self._modes[new] = self._modes.pop(old)
 
     def mode(self, real: os.stat_result) -> int:
-        """The permissions of a file."""
+        """Return the permissions of a file."""
         if stat.S_ISLNK(real.st_mode):
             return _LINK_MODE
         mode = self._modes.get(key_of(real))
@@ -118,16 +117,16 @@ class Stamps:
         return mode
 
     def set_mode(self, real: os.stat_result, mode: int) -> None:
-        """The program gives a file other permissions."""
+        """Set the permissions of a file."""
         self._modes[key_of(real)] = stat.S_IMODE(mode)
         self.changed(real)
 
     def dressed(self, real: os.stat_result, own: str | int | None) -> os.stat_result:
-        """What the program gets to know of a file.
+        """Return the metadata of a file as the program sees it.
 
         Args:
-            real: what the computer says.
-            own: place or descriptor of a file of the run's own; None for one of the host's.
+            real: its metadata on the host.
+            own: place or descriptor of the run's own file; None for a host file.
         """
         is_folder = stat.S_ISDIR(real.st_mode)
         size = BLOCK if is_folder else real.st_size
@@ -154,7 +153,7 @@ class Stamps:
             self.made(real)
             stamp = self._stamps[key_of(real)]
         if stat.S_ISREG(real.st_mode) and real.st_mtime_ns != _MARK_NS:
-            if not stamp.is_told:  # written by C code since it was looked at
+            if not stamp.is_told:  # written by C code since it was last looked at
                 stamp.written_ns = stamp.changed_ns = self.now_ns()
             stamp.is_told = False
             os.utime(own, ns=(_MARK_NS, _MARK_NS))
@@ -172,19 +171,19 @@ class Stamps:
 
 
 def key_of(real: os.stat_result) -> Key:
-    """What tells a real file from others."""
+    """Return the identity of a real file."""
     return real.st_dev, real.st_ino
 
 
 def asked_by(flags: int) -> int:
-    """What of a file is asked for by the flags of `os.open`."""
+    """Return the access that the flags of `os.open` need."""
     writes = flags & (os.O_WRONLY | os.O_RDWR | os.O_TRUNC)
     reads = not flags & os.O_WRONLY
     return (os.R_OK if reads else 0) | (os.W_OK if writes else 0)
 
 
 def is_special(place: str) -> bool:
-    """Whether at a place is something else than a file, a folder or a link."""
+    """Return whether a place is something other than a file, folder or link."""
     try:
         mode = os.stat(place).st_mode
     except OSError:
@@ -193,7 +192,7 @@ def is_special(place: str) -> bool:
 
 
 def copy_tree(old: str, new: str, stamps: Stamps) -> None:
-    """Copy what a run wrote to another folder, for one that goes on in a forked process."""
+    """Copy the files of a run to another folder, for a run that continues in a forked process."""
     from shutil import copy2
 
     links: dict[tuple[int, int], str] = {}

@@ -1,7 +1,7 @@
-"""What a node sees of Python's standard library: the modules made for it, and what they stand on.
+"""A node's replacements for modules of Python's standard library.
 
-A module belongs here when it stands for one of the standard library, for numpy.random or psutil, which show the same
-clock, entropy and process, or when it is an object that those modules share (locks, streams, the terminal, sockets).
-`cfepy.nodes.stdlib.replacements` says which name is made by what. How modules are found and executed, and what a
-process is, belongs to `cfepy.nodes`; what refuses its use is in `cfepy.nodes.refused_modules`.
+A module belongs here if it replaces one of the standard library, or numpy.random or psutil, which use the same clock,
+entropy and process, or if those modules share it (locks, streams, the terminal, sockets).
+`cfepy.nodes.stdlib.replacements` lists which function makes which name. Finding and executing modules, and processes,
+belong to `cfepy.nodes`; refused modules are in `cfepy.nodes.refused_modules`.
 """

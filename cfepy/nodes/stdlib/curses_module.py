@@ -1,8 +1,8 @@
-"""`_curses` of a node: the screen library on the node's terminal, below the standard library's own `curses`.
+"""`_curses` of a node: the screen library on the node's terminal, used by the standard library's own `curses`.
 
-Constants are the host's. What a node draws is kept in windows, grids of characters with a cursor; `refresh` prints the
-rows of the screen that changed as lines of the node, so that a log shows what a user at the terminal would have seen.
-Attributes and colours are accepted and not kept. A key is one number, though a terminal sends several bytes for some.
+Constants are the host's. A node draws into windows, grids of characters with a cursor; `refresh` prints the screen rows
+that changed as lines of the node, so a log shows the same as the terminal. Attributes and colours are accepted and
+ignored. A key is one number, although a terminal sends several bytes for some keys.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
 
 _ESCAPE = 0x1B
-_PAUSE_S = 0.025  # after an escape: what follows later is a key of its own
+_PAUSE_S = 0.025  # after an escape: later bytes are a separate key
 _LETTERS = {"A": "KEY_UP", "B": "KEY_DOWN", "C": "KEY_RIGHT", "D": "KEY_LEFT", "H": "KEY_HOME", "F": "KEY_END"}
 _NUMBERS = {"1": "KEY_HOME", "2": "KEY_IC", "3": "KEY_DC", "4": "KEY_END", "5": "KEY_PPAGE", "6": "KEY_NPAGE"}
 _FUNCTION = {"15": 5, "17": 6, "18": 7, "19": 8, "20": 9, "21": 10, "23": 11, "24": 12}
@@ -75,10 +75,10 @@ def key_name(key: int) -> bytes:
 
 
 def read_key(terminal: Terminal, keypad: bool) -> int:
-    """The next key of a terminal that has one ready.
+    """Return the next key of a terminal that has one ready.
 
     Args:
-        terminal: where it is typed.
+        terminal: the terminal.
         keypad: whether the sequences of special keys become one number.
 
     Returns:
@@ -96,7 +96,7 @@ def read_key(terminal: Terminal, keypad: bool) -> int:
 
 
 class Shown(Protocol):
-    """What a window needs of its screen; see `cfepy.nodes.stdlib.curses_module.Screen`."""
+    """Methods of a screen for its windows; see `cfepy.nodes.stdlib.curses_module.Screen`."""
 
     @property
     def terminal(self) -> Terminal: ...
@@ -127,7 +127,7 @@ class CursesWindow:
         self._columns = columns
         self._y = self._x = 0
         self._keypad = False
-        self._wait: float | None = None  # seconds that getch waits, None for ever
+        self._wait: float | None = None  # seconds that getch waits, None without limit
         self.encoding = "utf-8"
 
     def __getattr__(self, name: str) -> Any:
@@ -142,11 +142,11 @@ class CursesWindow:
         return len(self._cells), self._columns
 
     def getbegyx(self) -> tuple[int, int]:
-        """Its first row and column on the screen."""
+        """Return its first row and column on the screen."""
         return self._top, self._left
 
     def getyx(self) -> tuple[int, int]:
-        """Where the cursor is."""
+        """Return where the cursor is."""
         return self._y, self._x
 
     def move(self, y: int, x: int) -> None:
@@ -164,20 +164,20 @@ class CursesWindow:
         self._top, self._left = y, x
 
     def resize(self, lines: int, columns: int) -> None:
-        """Give the window another size; what is in both stays."""
+        """Resize the window; the part in both sizes stays."""
         rows = [[*row[:columns], *[_BLANK] * (columns - len(row))] for row in self._cells[:lines]]
         self._cells = rows + [[_BLANK] * columns for _ in range(lines - len(rows))]
         self._columns = columns
 
     def derwin(self, *place: int) -> CursesWindow:
-        """A window in this one; place is `[lines, columns,] top, left`, seen from this one."""
+        """Return a window inside this one, at `[lines, columns,] top, left` relative to this one."""
         *size, y, x = place
         lines, columns = size or (0, 0)
         inner = (lines or len(self._cells) - y, columns or self._columns - x)
         return CursesWindow(self._screen, *inner, self._top + y, self._left + x)
 
     def subwin(self, *place: int) -> CursesWindow:
-        """As `derwin`, with the place seen from the screen."""
+        """As `derwin`, with the place relative to the screen."""
         *size, y, x = place
         return self.derwin(*size, y - self._top, x - self._left)
 
@@ -187,7 +187,7 @@ class CursesWindow:
         """Write text: `[y, x,] text [, attributes]`.
 
         Raises:
-            _curses.error: it does not fit; what fits is written, as curses does.
+            _curses.error: if the text does not fit; the part that fits is written, as in curses.
         """
         text, _ = self._place(args)
         self._write(text.decode() if isinstance(text, bytes) else str(text))
@@ -205,7 +205,7 @@ class CursesWindow:
     echochar = addch
 
     def insstr(self, *args: Any) -> None:
-        """Write text and push what is there to the right."""
+        """Insert text; the following text moves to the right."""
         text, _ = self._place(args)
         row = self._cells[self._y]
         row[self._x : self._x] = list(str(text))
@@ -261,12 +261,12 @@ class CursesWindow:
         del self._cells[-1]
 
     def inch(self, *place: int) -> int:
-        """The character at `[y, x]`."""
+        """Return the character at `[y, x]`."""
         y, x = place or (self._y, self._x)
         return ord(self._cells[y][x])
 
     def instr(self, *place: int) -> bytes:
-        """What is written from the cursor on: `[y, x] [, n]`."""
+        """Return the text from the cursor on: `[y, x] [, n]`."""
         if len(place) >= 2:
             self.move(place[0], place[1])
         count = place[-1] if len(place) % 2 else self._columns
@@ -282,7 +282,7 @@ class CursesWindow:
         self._screen.put(self._top, self._left, ["".join(row) for row in self._cells])
 
     def _place(self, args: tuple[Any, ...]) -> tuple[Any, tuple[Any, ...]]:
-        """Go to `y, x` if they are given; what is written there, and what follows that."""
+        """Move to `y, x` if they are given; returns the text to write and the remaining arguments."""
         if len(args) >= 3 and isinstance(args[1], int) and isinstance(args[0], int):
             self.move(args[0], args[1])
             args = args[2:]
@@ -307,19 +307,19 @@ class CursesWindow:
     # -- keys --------------------------------------------------------------------------------------------------------
 
     def keypad(self, flag: bool) -> None:
-        """Whether special keys come as one number each."""
+        """Set whether special keys come as one number each."""
         self._keypad = bool(flag)
 
     def nodelay(self, flag: bool) -> None:
-        """Whether `getch` does not wait."""
+        """Set whether `getch` does not wait."""
         self._wait = 0.0 if flag else None
 
     def timeout(self, milliseconds: int) -> None:
-        """How long `getch` waits; negative is for ever."""
+        """Set how long `getch` waits; negative for no limit."""
         self._wait = None if milliseconds < 0 else milliseconds / 1e3
 
     def getch(self, *place: int) -> int:
-        """The next key, -1 when none comes in time. What was written is shown first."""
+        """Return the next key, or -1 if none comes in time. Written text is shown first."""
         screen = self._screen
         self.refresh()
         if screen.pushed_back:
@@ -329,7 +329,7 @@ class CursesWindow:
         return read_key(screen.terminal, self._keypad)
 
     def getkey(self, *place: int) -> str:
-        """The next key's name or character.
+        """Return the next key's name or character.
 
         Raises:
             _curses.error: none came in time.
@@ -340,18 +340,14 @@ class CursesWindow:
         return chr(key) if key < _curses.KEY_MIN else key_name(key).decode()
 
     def get_wch(self, *place: int) -> int | str:
-        """The next character, or a special key's number.
-
-        Raises:
-            _curses.error: none came in time.
-        """
+        """Return the next character, or the number of a special key."""
         key = self.getch(*place)
         if key == _NO_KEY:
             raise _curses.error("no input")
         return chr(key) if key < _curses.KEY_MIN else key
 
     def getstr(self, *args: int) -> bytes:
-        """What is typed up to the end of a line."""
+        """Return the text typed up to the end of a line."""
         typed = bytearray()
         while (key := self.getch()) not in (ord("\n"), ord("\r"), _NO_KEY):
             if key < _curses.KEY_MIN:
@@ -360,18 +356,14 @@ class CursesWindow:
 
 
 def _text_of(char: Any) -> str:
-    """A character, however it is given."""
+    """Return a character, however it is given."""
     if isinstance(char, int):
         return chr(char & _CHAR_BITS)
     return char.decode() if isinstance(char, bytes) else str(char)
 
 
 class Screen:
-    """The screen of one node, and the functions of curses that are not a window's.
-
-    Args:
-        universe: the node's.
-    """
+    """The screen of one node, and the curses functions outside of windows."""
 
     def __init__(self, universe: Universe) -> None:
         self._universe = universe
@@ -416,7 +408,7 @@ class Screen:
                 self._rows[at] = (under[:left] + row + under[left + len(row) :])[:COLUMNS]
 
     def update(self) -> None:
-        """`doupdate`: print the rows that have changed since they were last printed."""
+        """`doupdate`: print the rows that changed since they were last printed."""
         for row, shown in zip(self._rows, self._shown, strict=True):
             if row != shown:
                 self._universe.stdout.write(f"{row.rstrip()}\n")
@@ -424,15 +416,15 @@ class Screen:
         self._universe.charge()
 
     def cbreak(self, flag: bool = True) -> None:
-        """Each key can be read at once; Ctrl-C still is a signal."""
+        """Make each key readable at once; Ctrl-C is still a signal."""
         self._set_mode(not flag, signals=True)
 
     def raw(self, flag: bool = True) -> None:
-        """Each key can be read at once, Ctrl-C as well."""
+        """Make each key readable at once, including Ctrl-C."""
         self._set_mode(not flag, signals=not flag)
 
     def half_delay_of(self, tenths: int) -> None:
-        """`halfdelay`: as `cbreak`, and `getch` gives up after so many tenths of a second."""
+        """`halfdelay`: as `cbreak`, with a limit for `getch` in tenths of a second."""
         self.half_delay = tenths / 10
         self.cbreak()
 
@@ -462,7 +454,7 @@ class Screen:
 
 
 def curses_module(universe: Universe) -> ModuleType:
-    """The module `_curses` of a universe."""
+    """Return the module `_curses` of a universe."""
     screen = Screen(universe)
     names: dict[str, Any] = {name: _nothing for name in _NO_EFFECT if hasattr(_curses, name)}
     names.update({f"ACS_{name}": ord(char) for name, char in _ACS.items()})
@@ -499,4 +491,4 @@ def curses_module(universe: Universe) -> ModuleType:
 
 
 def _nothing(*args: Any, **options: Any) -> None:
-    """What changes nothing that can be seen here."""
+    """Accept the call without visible effect."""

@@ -1,4 +1,4 @@
-"""The sockets of a program, by descriptor. Without a network to be opened on they are refused."""
+"""Sockets of a program, by descriptor. Without a network they are refused."""
 
 from __future__ import annotations
 
@@ -15,15 +15,7 @@ FIRST_DESCRIPTOR = 1000  # above those that the host gives to the files of a nod
 
 
 class SocketTable:
-    """The open sockets of a node, by descriptor.
-
-    Args:
-        universe: the node's.
-        network: the mission's; None where there is none.
-
-    Attributes:
-        default_timeout: `socket.getdefaulttimeout`, in s.
-    """
+    """Open sockets of a node, by descriptor."""
 
     def __init__(self, universe: Universe, network: Network | None) -> None:
         self.default_timeout: float | None = None
@@ -33,20 +25,13 @@ class SocketTable:
         self._next = FIRST_DESCRIPTOR
 
     def network(self, what: str) -> Network:
-        """The network to plug a socket into.
-
-        Args:
-            what: the function that was called.
-
-        Raises:
-            RefusedError: the network is not joined to another one.
-        """
+        """Return the network for a socket."""
         if self._network is None or self._network.dial is None:
             refusal(self._universe, what, NETWORK)()
         return self._network
 
     def find(self, fd: int) -> NodeSocket | None:
-        """The socket with a descriptor."""
+        """Return the socket with a descriptor."""
         return self._open.get(fd)
 
     def add(self, opened: NodeSocket) -> int:
@@ -60,6 +45,6 @@ class SocketTable:
         self._open.pop(fd, None)
 
     def close_all(self) -> None:
-        """The program has ended."""
+        """Close all sockets at the end of the program."""
         for opened in list(self._open.values()):
             opened._real_close()

@@ -1,9 +1,4 @@
-"""Futures of a node, of `concurrent.futures` and `asyncio`: they hash by a serial number instead of their address.
-
-The standard library goes through sets of futures and threads, in the order of their hashes. `asyncio` is the standard
-library's own, with an event loop on the node's `select` and `socket`: it waits in virtual time, and its transports and
-servers have a network when the node's sockets have one.
-"""
+"""Futures of a node, from `concurrent.futures` and `asyncio`: they hash by a serial number instead of their address."""
 
 from __future__ import annotations
 
@@ -15,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def hash_by_serial(universe: Universe, cls: Any) -> None:
-    """Let the objects of a class of the node's hash by a number that counts up as they are first asked for it."""
+    """Make the objects of one of the node's classes hash by a serial number, assigned at the first hash."""
 
     def serial_hash(self: Any) -> int:
         number = self.__dict__.get("_serial_hash")
@@ -28,12 +23,12 @@ def hash_by_serial(universe: Universe, cls: Any) -> None:
 
 
 def fix_futures(universe: Universe, module: ModuleType) -> None:
-    """After `concurrent.futures._base` was loaded: `as_completed` and `wait` make sets of futures."""
+    """Fix `concurrent.futures._base` after loading: `as_completed` and `wait` make sets of futures."""
     hash_by_serial(universe, module.Future)
 
 
 def fix_asyncio(universe: Universe, module: ModuleType) -> None:
-    """After `asyncio` was loaded: its default event loop asks the host for neither processes nor signals."""
+    """Fix `asyncio` after loading: its default event loop must not use the host's processes or signals."""
 
     class KernelEventLoop(module.selector_events.BaseSelectorEventLoop):  # type: ignore[misc, name-defined]
         """The loop of the node's own copy of asyncio."""
@@ -41,6 +36,6 @@ def fix_asyncio(universe: Universe, module: ModuleType) -> None:
     class KernelEventLoopPolicy(module.events.BaseDefaultEventLoopPolicy):  # type: ignore[misc, name-defined]
         _loop_factory = KernelEventLoop
 
-    hash_by_serial(universe, module.Future)  # `asyncio.wait` and `as_completed` make sets of them, and of tasks
+    hash_by_serial(universe, module.Future)  # `asyncio.wait` and `as_completed` make sets of them and of tasks
     vars(module).update(DefaultEventLoopPolicy=KernelEventLoopPolicy, SelectorEventLoop=KernelEventLoop)
     module.set_event_loop_policy(KernelEventLoopPolicy())

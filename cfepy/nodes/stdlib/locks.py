@@ -4,8 +4,8 @@ A free lock is taken and given back without a kernel call. A contended one is ha
 come first within a priority, so that it cannot be snatched in between. Locks hash by serial number, because the
 standard library keeps them in sets and iterates those.
 
-The classes are made per universe: their methods then reach the kernel through a cell, which is what keeps a
-lock-and-release near the price of a native one.
+The classes are made per universe: their methods then reach the kernel through a cell, which keeps a lock-and-release
+near the price of a native one.
 """
 
 from __future__ import annotations
@@ -24,31 +24,28 @@ if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
     from cfepy.rtos import Task
 
-POLLS = 16  # so many calls of an uncontended lock cost one charge: a loop that polls under a lock makes progress
+# number of calls of an uncontended lock that cost one charge, so that a loop that polls under a lock progresses
+POLLS = 16
 MAX_WAIT_S = 1e9
 _TAKING = ("acquire", "acquire_lock", "__enter__")
 _GIVING = ("release", "release_lock", "__exit__", "_release_save")
-_ANY_TASK = False  # holds a lock that is used as a signal
+_ANY_TASK = False  # holder of a lock that is used as a signal
 
 
 class LockTypes(NamedTuple):
-    """The two lock classes of one universe."""
+    """Both lock classes of one universe."""
 
     lock: type
     rlock: type
 
 
 def wait_ns(seconds: float) -> int:
-    """A time to wait in ns, at least 1: a loop over the remaining time must not stand still at a rounding error."""
+    """Return a waiting time in ns, at least 1: a loop over the remaining time must not hang because of rounding."""
     return int(min(seconds, MAX_WAIT_S) * 1e9 + 0.5) or 1
 
 
 def timeout_ns(blocking: bool, timeout: float) -> int:
-    """The wait that the arguments of `acquire` ask for: FOREVER, 0 for not at all, or ns.
-
-    Raises:
-        ValueError: arguments that Python's own locks refuse.
-    """
+    """Return the wait that the arguments of `acquire` request: FOREVER, 0 for none, or ns."""
     if timeout == -1:
         return FOREVER if blocking else 0
     if not blocking:
@@ -59,7 +56,7 @@ def timeout_ns(blocking: bool, timeout: float) -> int:
 
 
 def make_lock_types(universe: Universe) -> LockTypes:
-    """The lock classes of a universe."""
+    """Return the lock classes of a universe."""
     types = LockTypes(_make_lock(universe), _make_rlock(universe))
     if isinstance(universe.kernel, ExploringKernel):
         for each in types:
@@ -68,16 +65,7 @@ def make_lock_types(universe: Universe) -> LockTypes:
 
 
 class LockPoints(NamedTuple):
-    """Where others may get in when a lock is used.
-
-    The locks that the standard library has for itself guard what it keeps; who takes one first makes no difference to
-    the mission. So what it does with them is a part of its caller's step, unless it has to wait.
-
-    Attributes:
-        taking: before it is taken.
-        giving: before it is given back.
-        given: after that, if it, or what was done with it in hand, has made a task ready.
-    """
+    """Where other tasks may run when a lock is used."""
 
     taking: bool
     giving: bool
@@ -85,23 +73,19 @@ class LockPoints(NamedTuple):
 
 
 OWN = LockPoints(taking=True, giving=True, given=True)
-"""Of a lock that the mission made, also within a condition."""
+"""A lock that the mission made, also within a condition."""
 STEP = LockPoints(taking=True, giving=False, given=True)
-"""Of a lock in an event, a semaphore, a queue, a future: each call of their methods is one step."""
+"""A lock in an event, a semaphore, a queue or a future: each call of their methods is one step."""
 INNER = LockPoints(taking=False, giving=False, given=True)
-"""Of one that guards what the standard library keeps for itself."""
+"""A lock that guards the standard library's own state."""
 WAITER = LockPoints(taking=False, giving=False, given=False)
-"""Of one that a condition makes for each that waits: those that are woken have to wait for its own lock first."""
+"""A lock that a condition makes for each waiting task; a woken task must wait for the condition's lock first."""
 END = LockPoints(taking=True, giving=False, given=False)
-"""Of one that a thread holds until it ends, and others take to wait for that."""
+"""A lock that a thread holds until it ends, and that others acquire to wait for its end."""
 
 
 def _points_of(frame: FrameType | None) -> LockPoints:
-    """Where others may get in when a lock is used that is made here: whose lock it is.
-
-    Args:
-        frame: of the function that makes it.
-    """
+    """Return where other tasks may run when a lock created here is used, depending on its creator."""
     outermost = ""
     while frame is not None and (is_standard(file := frame.f_code.co_filename) or not is_shown(file)):
         outermost = frame.f_code.co_qualname
@@ -117,15 +101,14 @@ _MAKERS_OF_OWN = ("", "RLock", "Condition.__init__")
 
 
 def _explore(lock: type, kernel: ExploringKernel) -> None:
-    """Make calls that take or give back a lock scheduling points (`LockPoints`), and note the holder of a plain one.
-
-    The kernel's observer is told of these calls, of the making of a lock, and when a condition looks whose it is.
+    """Make calls that acquire or release a lock scheduling points (`LockPoints`), and record the holder of a
+    plain one.
     """
     methods = vars(lock)
     plain = "holder" in methods
 
     def may_wait(self: Any, points: LockPoints) -> bool:
-        """A thread takes the lock that it holds until its end at once."""
+        """A thread acquires the lock that it holds until its end at once."""
         return points.taking and not (points is END and self.holder is kernel.current)
 
     def observed(name: str, has_point: bool = True) -> Callable[..., Any]:
@@ -167,7 +150,7 @@ def _explore(lock: type, kernel: ExploringKernel) -> None:
 
     changed = {name: observed(name) for name in (*_TAKING, *_GIVING) if name in methods}
     changed |= {name: observed(name, has_point=False) for name in ("__init__", "_is_owned")}
-    if "_acquire_restore" in methods:  # by which a condition takes its lock again
+    if "_acquire_restore" in methods:  # with which a condition acquires its lock again
         changed["_acquire_restore"] = observed("_acquire_restore", has_point=False)
     init = changed["__init__"]
     changed["__init__"] = called_as(made, "__init__")
@@ -176,14 +159,14 @@ def _explore(lock: type, kernel: ExploringKernel) -> None:
 
 
 def as_waiter(lock: Any) -> Any:
-    """A plain lock that is a signal: the task that took it does not stand in the way of those that wait for it."""
+    """Mark a plain lock as a signal: the task that acquired it does not block those that wait for it."""
     lock.holder = _ANY_TASK
     lock.points = WAITER
     return lock
 
 
 def _wait_for(universe: Universe, waits: WaitList, wait: int, give_back: Any) -> bool:
-    """Wait to be handed a lock; a task that is ended at that very moment gives it back."""
+    """Wait to be handed a lock; a task that is ended at that moment releases it again."""
     kernel = universe.kernel
     task = kernel.current
     if task is kernel.host:
@@ -191,7 +174,7 @@ def _wait_for(universe: Universe, waits: WaitList, wait: int, give_back: Any) ->
     task.wake = None
     try:
         return kernel.wait_on(waits, wait) is not TIMEOUT
-    except BaseException:  # its end, or a signal's exception
+    except BaseException:  # the end of the task, or an exception raised by a signal handler
         if task.wake is waits:
             give_back()
         raise
@@ -210,7 +193,7 @@ def _make_lock(universe: Universe) -> type:
             self._locked = False
             self._polls = POLLS
             self._waits: WaitList | None = None
-            self.holder: Any = None  # the task, or `_ANY_TASK`; only known while schedules are explored
+            self.holder: Any = None  # the task, or `_ANY_TASK`; only recorded while schedules are explored
             universe.serial = self._serial = universe.serial + 1
 
         def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
@@ -247,7 +230,7 @@ def _make_lock(universe: Universe) -> type:
         def locked(self) -> bool:
             return self._locked
 
-        _is_owned = locked  # what Condition wants to know of a plain lock, without a failed attempt to take it
+        _is_owned = locked  # needed by Condition for a plain lock, without a failed attempt to acquire it
 
         def __hash__(self) -> int:
             return self._serial
@@ -285,7 +268,7 @@ def _make_rlock(universe: Universe) -> type:
     name = universe.name
 
     class RLock:
-        """A lock that its owner may take again."""
+        """A lock that its owner may acquire again."""
 
         __slots__ = ("__weakref__", "_count", "_owner", "_polls", "_serial", "_waits", "points")
 
@@ -327,7 +310,7 @@ def _make_rlock(universe: Universe) -> type:
             return True
 
         def _hand_on(self) -> None:
-            """No other task may take it between here and the moment its next owner runs: `_owner` is set at once."""
+            """Set `_owner` at once: no other task may acquire the lock before its next owner runs."""
             waits = self._waits
             if waits:
                 self._owner = waits[0]

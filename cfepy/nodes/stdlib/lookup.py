@@ -1,9 +1,4 @@
-"""Standard modules that look a class up by the name of its module, made to look in the node's module table.
-
-`dataclasses` (string annotations), `typing.get_type_hints` and `inspect` read `sys.modules`: their functions are given
-the node's `sys`, while their classes stay the host's, so that dataclasses of a host library and of a node mix. `pickle`
-and `unittest` are loaded afresh and need nothing from here.
-"""
+"""Standard modules that look a class up by its module name, changed to use the node's module table."""
 
 from __future__ import annotations
 
@@ -21,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def dataclasses_module(universe: Universe) -> ModuleType:
-    """`dataclasses` that resolves string annotations in the node's modules."""
+    """Return `dataclasses` that resolves string annotations in the node's modules."""
     import dataclasses
 
     load = universe.importer.load
@@ -29,14 +24,14 @@ def dataclasses_module(universe: Universe) -> ModuleType:
 
 
 def inspect_module(universe: Universe) -> ModuleType:
-    """`inspect` that finds the source of the node's classes."""
+    """Return `inspect` that finds the source of the node's classes."""
     import inspect
 
     return rebind(inspect, sys=universe.importer.load("sys"), os=universe.importer.load("os"), modulesbyfile={})
 
 
 def typing_module(universe: Universe) -> ModuleType:
-    """`typing` that resolves forward references in the node's modules."""
+    """Return `typing` that resolves forward references in the node's modules."""
     import typing
 
     modules = universe.importer.modules
@@ -44,7 +39,7 @@ def typing_module(universe: Universe) -> ModuleType:
     evaluate: Callable[..., Any] = vars(module)["_eval_type"]
 
     def eval_type(value: Any, names: Any, *rest: Any, **options: Any) -> Any:
-        """A TypedDict's references carry a module name, which only the node's table explains."""
+        """A TypedDict's references contain a module name, which only the node's table can resolve."""
         if isinstance(value, typing.ForwardRef) and value.__forward_module__ in modules:
             names = vars(modules[value.__forward_module__])
             value = typing.ForwardRef(value.__forward_arg__, is_class=value.__forward_is_class__)
@@ -55,8 +50,7 @@ def typing_module(universe: Universe) -> ModuleType:
 
 
 def functools_module(universe: Universe) -> ModuleType:
-    """`functools` without the real lock that Python 3.11's `cached_property` holds while the property is computed.
-
-    A task that waits while it holds a real lock would stop the whole simulated computer.
+    """Return `functools` without the real lock that Python 3.11's `cached_property` holds while the property is
+    computed.
     """
     return proxy(functools, cached_property=CachedProperty)

@@ -1,8 +1,4 @@
-"""`os` of a node: its own environment, working directory, process number and entropy, over the files of its run.
-
-Relative paths are relative to the node's working directory. What would start a process, or change the host's
-process, is refused or does nothing.
-"""
+"""`os` of a node: its own environment, working directory, process number and entropy, and the files of its run."""
 
 from __future__ import annotations
 
@@ -56,7 +52,7 @@ class Environ(dict[str, str]):
 
 
 def os_module(universe: Universe) -> ModuleType:
-    """The module `os` of a universe."""
+    """Return the module `os` of a universe."""
     names: dict[str, Any] = {name: refusal(universe, f"os.{name}", PROCESS) for name in _PROCESSES if hasattr(os, name)}
     names.update({name: lambda *args, **options: 0 for name in _NO_EFFECT if hasattr(os, name)})
     names.update(paths(universe))
@@ -71,14 +67,14 @@ def os_module(universe: Universe) -> ModuleType:
 
 
 def paths(universe: Universe) -> dict[str, Any]:
-    """The functions of `os` that take paths or descriptors."""
+    """Return the functions of `os` that take paths or descriptors."""
     names = _host_paths(universe) if universe.overlay is None else FileCalls(universe, universe.overlay).names()
     cwd = {"getcwd": lambda: universe.cwd, "getcwdb": lambda: os.fsencode(universe.cwd)}
     return {**names, **cwd, "chdir": universe.change_directory}
 
 
 def _host_paths(universe: Universe) -> dict[str, Any]:
-    """The functions of a program that works on the computer's own files."""
+    """Return the functions for a program that works on the host's own files."""
     resolve = universe.resolve
 
     def one(function: Callable[..., Any]) -> Callable[..., Any]:

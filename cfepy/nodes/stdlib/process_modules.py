@@ -1,11 +1,4 @@
-"""What a node sees of its process and of the computer: `gc`, `locale`, `resource` and `psutil`.
-
-The kernel collects garbage at fixed virtual times; were a node to switch the collector on, finalizers would run at
-times that depend on the host. Settings that belong to a whole process are remembered for the node that made them, and
-have no effect. `psutil` gives the load of the simulated processor: processor times are those of the kernel's tasks;
-all other numbers are those of an idle computer: its memory is free, disks and networks have no traffic, and there are
-no sensors. It is there whether or not the host has psutil.
-"""
+"""A node's view of its process and of the computer: `gc`, `locale`, `resource` and `psutil`."""
 
 from __future__ import annotations
 
@@ -24,7 +17,7 @@ _S = 1e9
 
 
 def gc_module(universe: Universe) -> ModuleType:
-    """`gc`: `collect` collects, all else is as if it did."""
+    """Return `gc`: `collect` collects, everything else has no effect."""
     state = {"enabled": True, "debug": 0}
     threshold = [700, 10, 10]
 
@@ -53,7 +46,7 @@ def gc_module(universe: Universe) -> ModuleType:
 
 
 def locale_module(universe: Universe) -> ModuleType:
-    """`locale`: numbers and dates are written as in the locale "C", whatever a node sets."""
+    """Return `locale`: numbers and dates are written as in the locale "C", whatever a node sets."""
     chosen: dict[int, str] = {}
 
     def setlocale(category: int, wanted: Any = None) -> str:
@@ -66,7 +59,7 @@ def locale_module(universe: Universe) -> ModuleType:
 
 
 def resource_module(universe: Universe) -> ModuleType:
-    """`resource`: the processor time that the node used; there are no limits, and setting them does nothing."""
+    """Return `resource`: the processor time of the node; there are no limits, and setting them has no effect."""
     import resource
 
     def getrusage(who: int) -> Any:
@@ -131,12 +124,7 @@ class ProcessMemory(NamedTuple):
 
 
 class CpuMeter:
-    """Measures how busy the processor was since it was last asked.
-
-    Args:
-        universe: whose clock and kernel it reads.
-        only_own: count the node's tasks alone.
-    """
+    """Measures how busy the processor was since the last call."""
 
     def __init__(self, universe: Universe, only_own: bool = False) -> None:
         self._universe = universe
@@ -149,14 +137,14 @@ class CpuMeter:
         return kernel.now, busy
 
     def percent(self, interval: float | None = None) -> float:
-        """Busy time in %, over the next `interval` seconds, or since the last call."""
+        """Return the busy time in %, over the next `interval` seconds, or since the last call."""
         if interval:
             self._before = self._read()
             self._universe.clock.sleep(interval)
         self._universe.charge()
         before, self._before = self._before, self._read()
         passed = self._before[0] - before[0]
-        used = max(0, self._before[1] - before[1])  # tasks that have ended take their time with them
+        used = max(0, self._before[1] - before[1])  # the time of tasks that have ended is lost
         return round(100.0 * used / passed, 1) if passed else 0.0
 
 
@@ -176,23 +164,22 @@ class Process:
         self.pid = universe.pid
 
     def name(self) -> str:
-        """What Linux calls a Python program."""
+        """Return the name that Linux gives a Python program."""
         return "python3"
 
     def cmdline(self) -> list[str]:
-        """The program and its arguments."""
+        """Return the program and its arguments."""
         return ["python3", *map(str, self._universe.argv)]
 
     def cpu_percent(self, interval: float | None = None) -> float:
-        """See `CpuMeter.percent`."""
         return self._meter.percent(interval)
 
     def cpu_times(self) -> CpuTimes:
-        """Processor time of the node's tasks."""
+        """Return the processor time of the node's tasks."""
         return CpuTimes(self._universe.cpu_ns / _S, 0.0, 0.0)
 
     def memory_info(self) -> ProcessMemory:
-        """Nothing: memory is not simulated byte by byte."""
+        """Return zeros: memory use is not simulated."""
         return ProcessMemory()
 
     def memory_percent(self) -> float:
@@ -200,21 +187,21 @@ class Process:
         return 0.0
 
     def net_connections(self, kind: str = "inet") -> list[Any]:
-        """None: the network of the simulated computer has no table of them."""
+        """Return an empty list: the simulated network has no table of connections."""
         return []
 
     connections = net_connections
 
     def num_threads(self) -> int:
-        """How many tasks the node has."""
+        """Return how many tasks the node has."""
         return len(self._universe.tasks)
 
     def is_running(self) -> bool:
-        """It is, or it could not ask."""
+        """Return True: the process that calls this is running."""
         return True
 
     def create_time(self) -> float:
-        """When the computer started, with all that runs on it."""
+        """Return when the computer started, with all that runs on it."""
         return self._universe.clock.epoch_ns / _S
 
 
@@ -227,7 +214,7 @@ class NoSuchProcessError(Exception):
 
 
 def psutil_module(universe: Universe) -> ModuleType:
-    """The module `psutil` of a universe."""
+    """Return the module `psutil` of a universe."""
     meter = CpuMeter(universe)
     memory = MemoryUse(MEMORY_BYTES, MEMORY_BYTES, 0.0, 0, MEMORY_BYTES)
 

@@ -1,5 +1,6 @@
 """Random numbers of a node: everything that Python seeds from the operating system comes from the node's own stream,
-derived from the seed of the run and the node's name. NumPy's module-level generator is the node's own too."""
+derived from the seed of the run and the node's name. NumPy's module-level generator is per node too.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ _GENERATORS = ("RandomState", "SeedSequence", "MT19937", "PCG64", "PCG64DXSM", "
 
 
 def fix_random(universe: Universe, module: ModuleType) -> None:
-    """After `random` was loaded: a `Random()` without a seed asks C code for entropy, so give it ours."""
+    """Fix `random` after loading: a `Random()` without a seed asks C code for entropy, so one is given to it."""
     generators: Any = module.Random
     seed = generators.seed
 
@@ -30,13 +31,13 @@ def fix_random(universe: Universe, module: ModuleType) -> None:
 
 
 def numpy_module(universe: Universe) -> ModuleType:
-    """The host's NumPy with a `random` of the node's own."""
+    """Return the host's NumPy with a `random` of the node's own."""
     import numpy
 
     load = universe.importer.load
 
     def lookup(name: str) -> Any:
-        """NumPy imports most of its parts when they are first asked for."""
+        """NumPy loads most of its parts on first use."""
         value = getattr(numpy, name)
         return load(value.__name__) if _is_part(name, value) else value
 
@@ -48,12 +49,12 @@ def numpy_module(universe: Universe) -> ModuleType:
 
 
 def _is_part(name: str, value: object) -> bool:
-    """Whether a name in NumPy is one of its public modules, of which a node has copies."""
+    """Return whether a name in NumPy is a public module that is copied for each node."""
     return isinstance(value, ModuleType) and value.__name__ == f"numpy.{name}" and not name.startswith("_")
 
 
 def numpy_random_module(universe: Universe) -> ModuleType:
-    """`numpy.random`: its functions draw from a generator of this node, and one without a seed gets one of ours."""
+    """Return `numpy.random`: its functions use a generator of this node, and a generator without a seed gets one."""
     host = importlib.import_module("numpy.random")
     state = host.RandomState(universe.rng.getrandbits(32))
     own: dict[str, Any] = {name: getattr(state, name) for name in host.__all__ if hasattr(state, name)}
@@ -67,7 +68,7 @@ def numpy_random_module(universe: Universe) -> ModuleType:
 
 
 def _seeded_class(universe: Universe, generator: Any) -> type:
-    """A generator class that takes its seed from the node's stream when it is given none."""
+    """Return a generator class that takes its seed from the node's stream if none is given."""
 
     def start(self: Any, seed: Any = None, *args: Any, **options: Any) -> None:
         generator.__init__(self, universe.rng.getrandbits(32) if seed is None else seed, *args, **options)

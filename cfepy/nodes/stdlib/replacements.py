@@ -1,7 +1,4 @@
-"""The modules that are made for each node, by name, and the changes to those that are executed afresh.
-
-Modules that few nodes import, or that not every system has, are made by code that is imported when one does.
-"""
+"""Modules that are made for each node, by name, and the changes to those that are executed for it."""
 
 from __future__ import annotations
 
@@ -106,7 +103,7 @@ def _codecs(universe: Universe) -> ModuleType:
 
 
 def _fix_element_tree(universe: Universe, module: ModuleType) -> None:
-    """Its half in C knows comments by the host's functions: what was loaded last must not be it."""
+    """Do not use its C part, which recognizes comments by the functions of the most recently loaded module."""
     import _elementtree  # type: ignore[import-not-found]
     from xml.etree import ElementTree
 
@@ -166,10 +163,10 @@ FIXES: Mapping[str, Callable[[Universe, ModuleType], None]] = {
     "xml.etree.ElementTree": _fix_element_tree,
     "traceback": lambda universe, module: hide_in(module),
 }
-"""What is changed in modules of the standard library after their code has run for a node."""
+"""Changes to standard library modules after their code has run for a node."""
 
 
 @cache
 def for_nodes() -> Provision:
-    """What a node has in place of the host's modules."""
+    """Return a node's replacements for the host's modules."""
     return Provision({**refused_modules(), **MADE}, FIXES)

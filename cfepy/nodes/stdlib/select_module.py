@@ -1,7 +1,4 @@
-"""`select` of a node: waiting for its sockets and its keyboard. Waiting for nothing is sleeping.
-
-Files of the host are refused: a file can always be read, and other descriptors do not exist.
-"""
+"""`select` of a node: waiting for its sockets and keyboard. Without descriptors it sleeps."""
 
 from __future__ import annotations
 
@@ -28,23 +25,13 @@ _MS = 1e-3
 
 
 class Waiter:
-    """Waits for descriptors of one node.
-
-    Args:
-        universe: the node's.
-    """
+    """Waits for descriptors of one node."""
 
     def __init__(self, universe: Universe) -> None:
         self._universe = universe
 
     def events(self, fd: int, mask: int) -> int:
-        """What is true of a descriptor now, of what `mask` asks for; POLLHUP is told unasked.
-
-        Raises:
-            RefusedError: it is a file.
-            ValueError: it is that of a closed socket.
-            OSError: EBADF, it was that of a socket, which is closed now.
-        """
+        """Return which events of `mask` a descriptor has now; POLLHUP is always reported."""
         if fd == STDIN:
             terminal = self._universe.terminal
             return mask & POLLIN if terminal is not None and terminal.ready else 0
@@ -54,13 +41,7 @@ class Waiter:
         return found | (POLLHUP if gone else 0)
 
     def wait(self, fds: Sequence[int], ready: Callable[[], bool], seconds: float | None) -> bool:
-        """Wait until `ready` says so, which is asked again when something happened to a descriptor.
-
-        Args:
-            fds: the descriptors.
-            ready: whether the wait is over.
-            seconds: the longest time; None for ever.
-        """
+        """Wait until `ready` returns true; it is checked again at each event of a descriptor."""
         terminal = self._universe.terminal
         waits = terminal.waits if terminal is not None and STDIN in fds else None
         endpoints = [self._socket(fd).endpoint for fd in fds if fd != STDIN]
@@ -89,21 +70,23 @@ class Poll:
         self._masks: dict[int, int] = {}
 
     def register(self, fd: Any, eventmask: int = _READ | POLLOUT) -> None:
-        """Look at a descriptor from now on."""
+        """Register a descriptor."""
         self._masks[descriptor(fd)] = eventmask
 
     def modify(self, fd: Any, eventmask: int) -> None:
-        """Look for something else."""
+        """Change the requested events."""
         if descriptor(fd) not in self._masks:
             raise failure(errno.ENOENT)
         self._masks[descriptor(fd)] = eventmask
 
     def unregister(self, fd: Any) -> None:
-        """Look at it no more."""
+        """Unregister a descriptor."""
         del self._masks[descriptor(fd)]
 
     def poll(self, timeout: float | None = None) -> list[tuple[int, int]]:
-        """Wait at most so many ms, None or a negative number for ever; descriptors and what is true of them."""
+        """Wait at most so many ms, without limit for None or a negative number; returns descriptors and their
+        events.
+        """
         return self._wait(None if timeout is None or timeout < 0 else timeout * _MS)
 
     def _wait(self, seconds: float | None) -> list[tuple[int, int]]:
@@ -115,7 +98,7 @@ class Poll:
 
 
 class Epoll(Poll):
-    """`select.epoll`; its events have the numbers of those of `poll`."""
+    """`select.epoll`; its events have the numbers of `poll`."""
 
     def __init__(self, waiter: Waiter, sizehint: int = -1, flags: int = 0) -> None:
         super().__init__(waiter)
@@ -128,19 +111,20 @@ class Epoll(Poll):
         self.close()
 
     def close(self) -> None:
-        """Look at nothing any more."""
+        """Close it."""
         self.closed = True
         self._masks.clear()
 
     def poll(self, timeout: float | None = None, maxevents: int = -1) -> list[tuple[int, int]]:
-        """Wait at most so many seconds, None or a negative number for ever."""
+        """Wait at most so many seconds, without limit for None or a negative number."""
         found = self._wait(None if timeout is None or timeout < 0 else timeout)
         return found if maxevents < 0 else found[:maxevents]
 
 
 class _Kind:
-    """A class of one universe's waiter. `selectors` keeps it in a class, where a function would become a method, and a
-    `functools.partial` from Python 3.14 on."""
+    """Return a class with the waiter of one universe. `selectors` stores it as a class attribute, where a function
+    would become a method, as does a `functools.partial` from Python 3.14 on.
+    """
 
     def __init__(self, made: Callable[..., Any], waiter: Waiter) -> None:
         self._made, self._waiter = made, waiter
@@ -150,7 +134,7 @@ class _Kind:
 
 
 def select_module(universe: Universe) -> ModuleType:
-    """The module `select` of a universe."""
+    """Return the module `select` of a universe."""
     waiter = Waiter(universe)
 
     def wait(

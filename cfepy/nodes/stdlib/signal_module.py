@@ -1,5 +1,6 @@
-"""`signal` and `atexit` of a node: handlers and exit hooks that are its own. Signals reach it through `os.kill` of its
-own process number, `signal.raise_signal`, or the universe's owner; never from the host's terminal."""
+"""`signal` and `atexit` of a node, with its own handlers and exit hooks. Signals come from `os.kill` with its own
+process number, `signal.raise_signal`, or the universe's owner, never from the host's terminal.
+"""
 
 from __future__ import annotations
 
@@ -20,21 +21,14 @@ _HARMLESS = frozenset({"SIGCHLD", "SIGCONT", "SIGURG", "SIGWINCH"})
 
 
 class NodeInterrupt(KeyboardInterrupt):
-    """The KeyboardInterrupt of a node that was sent SIGINT, told apart from a Ctrl-C of the host's user.
-
-    A traceback in the node calls it by its Python name.
-    """
+    """KeyboardInterrupt of a node that was sent SIGINT, to distinguish it from a Ctrl-C of the host's user."""
 
     __module__ = "builtins"
     __qualname__ = "KeyboardInterrupt"
 
 
 class SignalTable:
-    """The signal handlers of one node.
-
-    Args:
-        universe: whose handlers they are.
-    """
+    """Signal handlers of one node."""
 
     def __init__(self, universe: Universe) -> None:
         self._universe = universe
@@ -68,7 +62,7 @@ class SignalTable:
 
 
 def signal_module(universe: Universe) -> ModuleType:
-    """The module `signal` of a universe."""
+    """Return the module `signal` of a universe."""
     table = universe.signals
     refused = {name: refusal(universe, f"signal.{name}", SIGNALS) for name in _REFUSED if hasattr(signal, name)}
     ignored: dict[str, Any] = {name: lambda *args: None for name in _NO_EFFECT if hasattr(signal, name)}
@@ -85,7 +79,7 @@ def signal_module(universe: Universe) -> ModuleType:
 
 
 def atexit_module(universe: Universe) -> ModuleType:
-    """The module `atexit` of a universe."""
+    """Return the module `atexit` of a universe."""
     hooks = universe.exit_hooks
 
     def register(function: Callable[..., Any], *args: Any, **options: Any) -> Callable[..., Any]:

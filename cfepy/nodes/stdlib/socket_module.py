@@ -1,9 +1,4 @@
-"""`socket` of a node: sockets on the mission's virtual network (`cfepy.osal.network`), with virtual time-outs.
-
-A connection to a place where no program of the mission listens is asked of the bridge to this computer. In virtual time
-no program outside could answer, so a socket is refused there; `--realtime` joins the networks. The pair of `socketpair`
-needs no network and is always there.
-"""
+"""`socket` of a node: sockets on the mission's virtual network (`cfepy.osal.network`), with virtual timeouts."""
 
 from __future__ import annotations
 
@@ -23,9 +18,9 @@ from cfepy.rtos import FOREVER, TIMEOUT, WaitList
 if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
 
-_NONBLOCK = getattr(socket, "SOCK_NONBLOCK", 0)  # Windows and macOS know it and the next one not
+_NONBLOCK = getattr(socket, "SOCK_NONBLOCK", 0)  # Windows and macOS do not define it
 _OPTIONS_OF_TYPE = _NONBLOCK | getattr(socket, "SOCK_CLOEXEC", 0)
-_DONT_WAIT = getattr(socket, "MSG_DONTWAIT", 0)  # Windows does not
+_DONT_WAIT = getattr(socket, "MSG_DONTWAIT", 0)  # Windows does not define it
 _BUFFER_BYTES = 212_992
 _REFUSED = ("fromfd", "fromshare", "send_fds", "recv_fds", "sethostname")
 _REBOUND = ("create_connection", "create_server", "has_dualstack_ipv6")
@@ -38,18 +33,7 @@ def await_endpoints(
     seconds: float | None,
     waits: WaitList | None = None,
 ) -> bool:
-    """Wait until `ready` says so, which is asked again whenever an endpoint has changed.
-
-    Args:
-        universe: whose task waits.
-        endpoints: what to look at.
-        ready: whether the wait is over.
-        seconds: the longest time; None for ever.
-        waits: where to wait, if something else is to end the wait as well.
-
-    Returns:
-        False when the time was over first.
-    """
+    """Wait until `ready` returns true; it is checked again whenever an endpoint has changed."""
     universe.charge()
     if ready() or (seconds is not None and seconds <= 0):
         return ready()
@@ -70,16 +54,7 @@ def await_endpoints(
 
 
 class NodeSocket:
-    """A socket; the methods are those of `socket.socket`, and so are the errors.
-
-    Subclasses, one for each node, say which `universe` they belong to.
-
-    Args:
-        family: AF_INET or AF_INET6.
-        type: SOCK_STREAM or SOCK_DGRAM.
-        proto: any protocol.
-        fileno: descriptors cannot be passed on; must be None.
-    """
+    """A socket, with the methods and errors of `socket.socket`."""
 
     universe: Universe
 
@@ -108,7 +83,7 @@ class NodeSocket:
 
     @classmethod
     def joined(cls, stream: Stream, network: Network, family: int) -> Self:
-        """The socket of a connection that is there already."""
+        """Return the socket of an existing connection."""
         made = cls.__new__(cls)
         made._network, made._family, made._kind, made.proto = network, family, socket.SOCK_STREAM, 0
         made._timeout = cls.universe.sockets.default_timeout
@@ -124,7 +99,7 @@ class NodeSocket:
         self.close()
 
     def __hash__(self) -> int:
-        return self._serial  # an address would show in the order of a set
+        return self._serial  # an address would make the order of a set vary
 
     def __repr__(self) -> str:
         name = f"{type(self).__module__}.{type(self).__qualname__}"
@@ -135,13 +110,13 @@ class NodeSocket:
     _decref_socketios = socket.socket._decref_socketios  # type: ignore[attr-defined]  # SocketIO calls it
 
     def close(self) -> None:
-        """Close it, once the files made of it are closed too."""
+        """Close it, once the files made from it are closed too."""
         self._closed = True
         if self._io_refs <= 0:
             self._real_close()
 
     def detach(self) -> int:
-        """Give the descriptor away; nothing can be done with it here."""
+        """Give up the descriptor; a detached socket cannot be used here."""
         fd, self._fd = self._fd, -1
         self._closed = True
         return fd
@@ -161,7 +136,7 @@ class NodeSocket:
         endpoint.changed()
 
     def shutdown(self, how: int) -> None:
-        """Read or write no more."""
+        """Stop reading or writing."""
         stream = self._stream()
         if how not in (socket.SHUT_RD, socket.SHUT_WR, socket.SHUT_RDWR):
             raise failure(errno.EINVAL)
@@ -185,34 +160,34 @@ class NodeSocket:
         return self._timeout
 
     def fileno(self) -> int:
-        """The descriptor, for `select`; -1 when it is closed."""
+        """Return the descriptor, for `select`; -1 if it is closed."""
         return self._fd
 
     def gettimeout(self) -> float | None:
-        """Seconds that a call waits; None for ever."""
+        """Return the seconds that a call waits; None for no limit."""
         return self._timeout
 
     def settimeout(self, value: float | None) -> None:
-        """Have calls wait so many seconds, None for ever, 0 not at all."""
+        """Set the seconds that calls wait: None for no limit, 0 for no waiting."""
         if value is not None and value < 0:
             raise ValueError("Timeout value out of range")
         self._timeout = None if value is None else float(value)
 
     def getblocking(self) -> bool:
-        """Whether calls wait at all."""
+        """Return whether calls wait at all."""
         return self._timeout != 0
 
     def setblocking(self, flag: bool) -> None:
-        """Have calls wait for ever, or not at all."""
+        """Make calls wait without limit, or not at all."""
         self._timeout = None if flag else 0.0
 
     def setsockopt(self, level: int, optname: int, value: Any, optlen: int | None = None) -> None:
-        """Options are kept; none has an effect on this network."""
+        """Set an option, which has no effect on this network."""
         self._alive()
         self._options[level, optname] = value
 
     def getsockopt(self, level: int, optname: int, buflen: int = 0) -> Any:
-        """An option as it was set, or as it is at the start."""
+        """Return an option as it was set, or its initial value."""
         self._alive()
         if level == socket.SOL_SOCKET and optname == socket.SO_TYPE:
             return int(self._kind)
@@ -221,15 +196,15 @@ class NodeSocket:
         return value if not buflen or isinstance(value, bytes) else int(value).to_bytes(4, "little")[:buflen]
 
     def getsockname(self) -> tuple[Any, ...]:
-        """Its own address."""
+        """Return its own address."""
         self._alive()
         place = self.endpoint.place or self._listener.place
         if place is not None and isinstance(self.endpoint, Mailbox) and self.endpoint.peer is not None:
-            place = place.reached()  # to be connected is to have chosen a way, and with it an address
+            place = place.reached()  # connecting chooses a route, and thus an address
         return address_of(place or Place("::" if self._family == socket.AF_INET6 else "0.0.0.0", 0))
 
     def getpeername(self) -> tuple[Any, ...]:
-        """The address of the other side."""
+        """Return the address of the other side."""
         endpoint = self.endpoint
         peer = endpoint.peer if isinstance(endpoint, Mailbox) else self._stream().remote
         if peer is None:
@@ -239,7 +214,7 @@ class NodeSocket:
     # -- connections -------------------------------------------------------------------------------------------------
 
     def bind(self, address: Any) -> None:
-        """Take an address."""
+        """Set the own address."""
         self._alive()
         place = place_of(address, self._family, self.universe.host_name, "bind")
         if self.endpoint.place is not None or self._listener.place is not None:
@@ -263,7 +238,7 @@ class NodeSocket:
         return place or self._take(Place(any_host, 0))
 
     def listen(self, backlog: int = 0) -> None:
-        """Take connections."""
+        """Listen for connections."""
         self._alive()
         if isinstance(self.endpoint, (Mailbox, Stream)):
             raise failure(errno.EOPNOTSUPP if isinstance(self.endpoint, Mailbox) else errno.EINVAL)
@@ -272,7 +247,7 @@ class NodeSocket:
         self.endpoint = self._listener
 
     def accept(self) -> tuple[NodeSocket, tuple[Any, ...]]:
-        """Wait for a connection; its socket and the address of the other side."""
+        """Wait for a connection; returns its socket and the address of the other side."""
         self._alive()
         server = self.endpoint
         if not isinstance(server, Listener):
@@ -282,7 +257,7 @@ class NodeSocket:
         return self.joined(stream, self._network, self._family), address_of(stream.remote)
 
     def connect(self, address: Any) -> None:
-        """Connect a stream, or say whom to exchange datagrams with."""
+        """Connect a stream, or set the peer of datagrams."""
         self._alive()
         place = place_of(address, self._family, self.universe.host_name, "connect")
         endpoint = self.endpoint
@@ -309,7 +284,7 @@ class NodeSocket:
         return outside
 
     def connect_ex(self, address: Any) -> int:
-        """As `connect`, with the errno in place of an error."""
+        """As `connect`, returning the errno instead of raising an error."""
         try:
             self.connect(address)
         except socket.gaierror:
@@ -323,11 +298,11 @@ class NodeSocket:
     # -- bytes -------------------------------------------------------------------------------------------------------
 
     def recv(self, bufsize: int, flags: int = 0) -> bytes:
-        """Wait for bytes; b"" at the end of a stream."""
+        """Wait for bytes; returns b"" at the end of a stream."""
         return self.recvfrom(bufsize, flags)[0]
 
     def recvfrom(self, bufsize: int, flags: int = 0) -> tuple[bytes, Any]:
-        """Wait for bytes, and from whom they are."""
+        """Wait for bytes; returns them and the sender's address."""
         self._alive()
         if bufsize < 0:
             raise ValueError("negative buffersize in recvfrom")
@@ -353,7 +328,7 @@ class NodeSocket:
         return data
 
     def recv_into(self, buffer: Any, nbytes: int = 0, flags: int = 0) -> int:
-        """As `recv`, into a buffer; how many bytes."""
+        """As `recv`, into a buffer; returns the number of bytes."""
         return self.recvfrom_into(buffer, nbytes, flags)[0]
 
     def recvfrom_into(self, buffer: Any, nbytes: int = 0, flags: int = 0) -> tuple[int, Any]:
@@ -364,7 +339,7 @@ class NodeSocket:
         return len(data), source
 
     def send(self, data: Any, flags: int = 0) -> int:
-        """Send as much as there is room for; how many bytes."""
+        """Send as much as there is room for; returns the number of bytes."""
         self._alive()
         raw = bytes(memoryview(data).cast("B"))
         if isinstance(self.endpoint, Mailbox):
@@ -386,7 +361,7 @@ class NodeSocket:
             sent += self.send(raw[sent:], flags)
 
     def sendto(self, data: Any, *flags_and_address: Any) -> int:
-        """Send a datagram somewhere."""
+        """Send a datagram to an address."""
         self._alive()
         place = place_of(flags_and_address[-1], self._family, self.universe.host_name, "sendto")
         if not isinstance(self.endpoint, Mailbox):
@@ -402,7 +377,7 @@ class NodeSocket:
         return len(data)
 
     def sendfile(self, file: Any, offset: int = 0, count: int | None = None) -> int:
-        """Send what is in a file."""
+        """Send the contents of a file."""
         file.seek(offset)
         data = file.read() if count is None else file.read(count)
         self.sendall(data)
@@ -428,7 +403,7 @@ class NodeSocket:
 
 
 def socket_module(universe: Universe) -> ModuleType:
-    """The modules `socket` and `_socket` of a universe."""
+    """Return the modules `socket` and `_socket` of a universe."""
     known = universe.importer.modules.get("socket")
     if known is not None:
         return known

@@ -1,4 +1,4 @@
-"""Names and addresses as `socket` knows them, on a network that is one loopback interface."""
+"""Names and addresses for `socket`, on a network with only a loopback interface."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ _KINDS = (
 
 
 def failure(number: int) -> OSError:
-    """The OSError of an errno, of the class that Python has for it."""
+    """Return the OSError of an errno, of the class that Python has for it."""
     return OSError(number, os.strerror(number))
 
 
 def host_of(name: Any, family: int, host_name: str) -> str:
-    """The numeric address of a host.
+    """Return the numeric address of a host.
 
     Args:
         name: as a node gives it.
         family: AF_INET or AF_INET6.
-        host_name: what the simulated computer is called.
+        host_name: name of the simulated computer.
 
     Raises:
         socket.gaierror: there is no such host.
@@ -55,16 +55,16 @@ def host_of(name: Any, family: int, host_name: str) -> str:
 
 
 def place_of(address: Any, family: int, host_name: str, call: str) -> Place:
-    """The place that an address means.
+    """Return the place that an address means.
 
     Args:
         address: a tuple of host and port.
         family: of the socket.
-        host_name: what the simulated computer is called.
+        host_name: name of the simulated computer.
         call: the function that was called, for texts of errors.
 
     Raises:
-        TypeError: it is no such tuple.
+        TypeError: if it is not a such tuple.
         OverflowError: a port that cannot be.
         socket.gaierror: there is no such host.
     """
@@ -79,15 +79,15 @@ def place_of(address: Any, family: int, host_name: str, call: str) -> Place:
 
 
 def address_of(place: Place) -> tuple[Any, ...]:
-    """How a place is shown to a node."""
+    """Return how a place is shown to a node."""
     return (place.host, place.port, 0, 0) if place.is_ip6 else (place.host, place.port)
 
 
 def name_functions(host_name: str) -> dict[str, Callable[..., Any]]:
-    """The functions of the module `socket` that look up names.
+    """Return the functions of the module `socket` that look up names.
 
     Args:
-        host_name: what the simulated computer is called.
+        host_name: name of the simulated computer.
     """
 
     def gethostbyname(name: str) -> str:
@@ -132,5 +132,5 @@ def _port_of(port: Any) -> int:
 
 
 def unreachable() -> OSError:
-    """What a network says that is connected to nothing but this computer."""
+    """Return the answers of a network with only this computer."""
     return failure(errno.ENETUNREACH)

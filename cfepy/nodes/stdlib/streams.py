@@ -1,4 +1,4 @@
-"""`sys.stdout`, `sys.stderr` and `sys.stdin` of a node: lines for the console, and the keys that are typed, if any."""
+"""`sys.stdout`, `sys.stderr` and `sys.stdin` of a node: lines for the console, and typed keys, if any."""
 
 from __future__ import annotations
 
@@ -12,23 +12,17 @@ if TYPE_CHECKING:
 
 STDIN = 0
 ROWS, COLUMNS = 24, 80  # of a terminal
-_PIECE = 4096  # bytes, more than a line of a terminal can have
+_PIECE = 4096  # bytes, longer than any line of a terminal
 
 
 def descriptor(file: Any) -> int:
-    """The number of a file, given as such or as what has a `fileno`."""
+    """Return the number of a file, given as a number or an object with `fileno`."""
     number: int = file if isinstance(file, int) else file.fileno()
     return number
 
 
 class ConsoleStream(io.TextIOBase):
-    """Text that goes to the console line by line.
-
-    Args:
-        name: "<stdout>" or "<stderr>".
-        fd: 1 or 2.
-        write_line: takes each complete line, without its end.
-    """
+    """Text output to the console, line by line."""
 
     encoding = "utf-8"
     errors = "replace"
@@ -62,7 +56,7 @@ class ConsoleStream(io.TextIOBase):
         return len(text)
 
     def finish(self) -> None:
-        """The program has ended: show what it began to write."""
+        """Show the unfinished line at the end of the program."""
         if self._begun:
             begun, self._begun = self._begun, ""
             self._write_line(begun)
@@ -85,7 +79,7 @@ class _Bytes(io.BufferedIOBase):
 
 
 class NoInput(io.TextIOWrapper):
-    """A standard input that is at its end."""
+    """A standard input at its end."""
 
     name = "<stdin>"
     mode = "r"
@@ -98,11 +92,7 @@ class NoInput(io.TextIOWrapper):
 
 
 class TypedInput(io.TextIOBase):
-    """A standard input that is a terminal. It reads no further than it is asked to, so `select` tells the truth.
-
-    Args:
-        terminal: where the keys come from.
-    """
+    """A standard input that is a terminal. It does not read ahead, so `select` is right."""
 
     name = "<stdin>"
     mode = "r"
@@ -128,7 +118,7 @@ class TypedInput(io.TextIOBase):
         return STDIN
 
     def read(self, size: int | None = -1) -> str:
-        """Wait for `size` characters; fewer, and all there are without a size, come at the end of the file."""
+        """Wait for `size` characters, or all if no size is given; the end of the file returns fewer."""
         wanted = -1 if size is None else size
         return self._read_while(lambda text: wanted < 0 or len(text) < wanted)
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def sys_module(universe: Universe) -> ModuleType:
-    """The module `sys` of a universe. Settings of the interpreter are accepted and change nothing."""
+    """Return the module `sys` of a universe. Interpreter settings are accepted without effect."""
 
     def excepthook(kind: type[BaseException], error: BaseException, where: object) -> None:
         universe.print_error(traceback_text(error))
@@ -44,13 +44,13 @@ def sys_module(universe: Universe) -> ModuleType:
 
 
 def io_module(universe: Universe) -> ModuleType:
-    """The module `io` of a universe."""
+    """Return the module `io` of a universe."""
     open_file = universe.builtins.open
     return proxy(io, open=open_file, open_code=lambda path: open_file(path, "rb"), FileIO=universe.files.raw_type)
 
 
 def builtins_module(universe: Universe, ordered_sets: bool) -> ModuleType:
-    """The module `builtins` of a universe; its dictionary is what all code of the node has as `__builtins__`."""
+    """Return the module `builtins` of a universe; its dictionary is the `__builtins__` of the node's code."""
     streams = universe.importer.modules
 
     def print_text(*values: object, file: Any = None, **options: Any) -> None:
@@ -82,7 +82,7 @@ def builtins_module(universe: Universe, ordered_sets: bool) -> ModuleType:
 
 
 def importlib_module(universe: Universe) -> ModuleType:
-    """The module `importlib` of a universe."""
+    """Return the module `importlib` of a universe."""
     importer = universe.importer
     module = proxy(
         importlib,

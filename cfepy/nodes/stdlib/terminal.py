@@ -1,10 +1,4 @@
-"""The terminal that a node is started from, and `termios` and `fcntl`, through which the node sets it.
-
-It stands for the pseudo-terminal that a program has as its file descriptor 0 when a user runs it by hand: keys are
-typed at virtual times; cooked mode collects lines, lets the user correct them and turns Ctrl-C into SIGINT; raw and
-cbreak modes hand on each key. Nothing is echoed, because two writers would be mixed on one console. For a node without
-keys no descriptor is a terminal, and the host's own terminal is never reached.
-"""
+"""Terminal from which a node is started, and `termios` and `fcntl`, with which the node configures it."""
 
 from __future__ import annotations
 
@@ -26,8 +20,8 @@ if TYPE_CHECKING:
     from cfepy.nodes.universe import Universe
 
 Key = str | float
-KEY_GAP_S = 0.1  # between two keys: a quick typist
-IFLAG, OFLAG, CFLAG, LFLAG, ISPEED, OSPEED, CC = range(7)  # places in what `termios.tcgetattr` returns
+KEY_GAP_S = 0.1  # between two keys: a fast typist
+IFLAG, OFLAG, CFLAG, LFLAG, ISPEED, OSPEED, CC = range(7)  # indices in the result of `termios.tcgetattr`
 _SIGNALS = {"VINTR": signal.SIGINT, "VQUIT": signal.SIGQUIT}
 _CONTROLS = {"VINTR": b"\x03", "VQUIT": b"\x1c", "VERASE": b"\x7f", "VKILL": b"\x15", "VEOF": b"\x04", "VMIN": b"\x01"}
 _VTIME_S = 0.1
@@ -36,7 +30,7 @@ _NOT_A_TERMINAL = (25, "Inappropriate ioctl for device")
 
 
 def cooked_attributes() -> list[Any]:
-    """What `termios.tcgetattr` says of a terminal whose settings were never changed."""
+    """Return the default settings of `termios.tcgetattr`."""
     controls: list[Any] = [b"\x00"] * 32
     for name, character in _CONTROLS.items():
         controls[getattr(termios, name)] = character
@@ -47,13 +41,7 @@ def cooked_attributes() -> list[Any]:
 
 
 class Terminal:
-    """One terminal, seen from the node that runs on it.
-
-    Args:
-        universe: the node's.
-        keys: texts that are typed, each at once and 0.1 s after what comes before; numbers are further seconds to wait.
-        on_signal: what Ctrl-C does in cooked mode; gets SIGINT or SIGQUIT.
-    """
+    """A terminal, as seen by the node that runs on it."""
 
     def __init__(self, universe: Universe, keys: Sequence[Key], on_signal: Callable[[int], object]) -> None:
         self.blocking = True
@@ -62,13 +50,13 @@ class Terminal:
         self._keys = keys
         self._on_signal = on_signal
         self._attributes = cooked_attributes()
-        self._chunks: list[bytes] = []  # ready to be read; an empty one is an end of file
+        self._chunks: list[bytes] = []  # ready to be read; an empty one means end of file
         self._line = bytearray()  # begun in cooked mode
 
     # -- the keyboard ------------------------------------------------------------------------------------------------
 
     def start_typing(self) -> None:
-        """Have the keys typed from now on, by a task of the node."""
+        """Have the keys typed from now on by a task of the node."""
         self._universe.start_thread(self._type_all)
 
     def _type_all(self) -> None:
@@ -78,7 +66,7 @@ class Terminal:
                 self.take(key.encode())
 
     def take(self, typed: bytes) -> None:
-        """Bytes arrive from the keyboard, all at once."""
+        """Receive bytes from the keyboard, all at once."""
         for value in typed:
             self._take_one(bytes((value,)))
         if self._chunks:
@@ -128,25 +116,21 @@ class Terminal:
         return sum(map(len, self._chunks))
 
     def wait(self, seconds: float | None) -> bool:
-        """Wait for something to read, at most so many seconds, None for ever; False when there is nothing."""
+        """Wait for input, at most so many seconds, None for no limit; returns False if there is none."""
         universe = self._universe
         if self._chunks or (seconds is not None and seconds <= 0):
             universe.charge()
             return self.ready
         kernel = universe.kernel
         end = FOREVER if seconds is None else kernel.now + wait_ns(seconds)
-        while not self._chunks:  # another thread may read what came
+        while not self._chunks:  # another thread may read it
             left = FOREVER if end == FOREVER else end - kernel.now
             if left == 0 or kernel.wait_on(self.waits, left) is TIMEOUT:
                 break
         return self.ready
 
     def read(self, size: int) -> bytes:
-        """`os.read`: at most `size` bytes, and of one line in cooked mode; b"" is the end of the file.
-
-        Raises:
-            BlockingIOError: nothing is there, and the file is non-blocking.
-        """
+        """`os.read`: at most `size` bytes, of one line in cooked mode; b"" at the end of the file."""
         if not self._wait_to_read():
             return b""
         if self._attributes[LFLAG] & termios.ICANON:
@@ -169,12 +153,12 @@ class Terminal:
         return self.wait(_number(controls[termios.VTIME]) * _VTIME_S if polled else None)
 
     def put_back(self, data: bytes) -> None:
-        """Let the next read begin with bytes that were read before."""
+        """Put back bytes for the next read."""
         if data:
             self._chunks.insert(0, data)
 
     def flush(self) -> None:
-        """`termios.tcflush`: forget what was typed and not read."""
+        """`termios.tcflush`: discard unread input."""
         self._chunks.clear()
         self._line.clear()
 
@@ -183,7 +167,7 @@ class Terminal:
         return [*self._attributes[:CC], list(self._attributes[CC])]
 
     def set_attributes(self, attributes: Sequence[Any]) -> None:
-        """`termios.tcsetattr`. A line that was begun can be read at once when cooked mode ends."""
+        """`termios.tcsetattr`. An unfinished line becomes readable when cooked mode ends."""
         if len(attributes) != CC + 1:
             raise TypeError("tcsetattr, arg 3: must be 7 element list")
         self._attributes = [*attributes[:CC], list(attributes[CC])]
@@ -193,16 +177,12 @@ class Terminal:
 
 
 def _number(control: Any) -> int:
-    """VMIN and VTIME: Python takes them as a byte or as a number."""
+    """Return VMIN and VTIME with bytes or numbers as Python gives them."""
     return control if isinstance(control, int) else ord(control)
 
 
 def terminal_of(universe: Universe, file: Any) -> Terminal:
-    """The terminal that a file is.
-
-    Raises:
-        termios.error: it is none.
-    """
+    """Return the terminal of a file."""
     number = descriptor(file)
     if universe.terminal is None or number not in _STANDARD:
         raise termios.error(*_NOT_A_TERMINAL)
@@ -210,7 +190,7 @@ def terminal_of(universe: Universe, file: Any) -> Terminal:
 
 
 def termios_module(universe: Universe) -> ModuleType:
-    """The module `termios` of a universe."""
+    """Return the module `termios` of a universe."""
 
     def tcgetattr(fd: Any) -> list[Any]:
         return terminal_of(universe, fd).attributes()
@@ -232,7 +212,7 @@ def termios_module(universe: Universe) -> ModuleType:
 
 
 def fcntl_module(universe: Universe) -> ModuleType:
-    """The module `fcntl` of a universe: the host's for files, the terminal's settings for 0, 1 and 2."""
+    """Return the module `fcntl` of a universe: the host's for files, the terminal's settings for 0, 1 and 2."""
 
     def control(fd: Any, command: int, argument: Any = 0) -> Any:
         if descriptor(fd) not in _STANDARD:
@@ -255,7 +235,7 @@ def fcntl_module(universe: Universe) -> ModuleType:
 
 
 def _answer(request: int, argument: Any, terminal: Terminal) -> Any:
-    """What a terminal says to TIOCGWINSZ (its size) and FIONREAD (whether there is something to read)."""
+    """Return the terminal's answer to TIOCGWINSZ (its size) and FIONREAD (whether there is something to read)."""
     if request == termios.TIOCGWINSZ:
         answer = struct.pack("HHHH", ROWS, COLUMNS, 0, 0)
     elif request == termios.FIONREAD:

@@ -1,8 +1,5 @@
-"""`_thread` on the kernel: what the standard library's own `threading`, `queue` and `concurrent.futures` stand on.
-
-A thread is a task at the priority of the thread that starts it. `threading.local` is keyed by task, because greenlet
-tasks share one OS thread, and CPython's own is keyed by that. From Python 3.13 on `threading` is built on joinable
-threads and their handles.
+"""`_thread` on the kernel, on which the standard library's own `threading`, `queue` and `concurrent.futures`
+are based.
 """
 
 from __future__ import annotations
@@ -30,12 +27,12 @@ if TYPE_CHECKING:
 
 
 def make_local(universe: Universe) -> type:
-    """The class `_thread._local` of a universe."""
+    """Return the class `_thread._local` of a universe."""
     kernel = universe.kernel
     get, put = object.__getattribute__, object.__setattr__
 
     def forget_at_end(self: Any, ident: int) -> None:
-        """Values die with their thread, and with the object if that goes first."""
+        """Values are freed with their thread, or with the object if that is freed first."""
         weak = ref(self)
 
         def forget() -> None:
@@ -58,7 +55,7 @@ def make_local(universe: Universe) -> type:
             put(self, "__dict__", names)
 
     class _local:
-        """Attributes that every thread has for itself."""
+        """Attributes with a separate value for each thread."""
 
         __slots__ = ("__dict__", "__weakref__", "_local__state")
 
@@ -94,7 +91,7 @@ class ThreadHandle:
     Args:
         gate: a fresh lock of the universe; it is held until the thread is done.
         ident: of a thread that runs already.
-        kernel: is told who has seen the end.
+        kernel: its observer is told which tasks have observed the end.
     """
 
     def __init__(self, gate: Any, ident: int | None = None, kernel: Kernel | None = None) -> None:
@@ -107,13 +104,13 @@ class ThreadHandle:
         self.held_by(None)
 
     def is_done(self) -> bool:
-        """Whether the thread has ended."""
+        """Return whether the thread has ended."""
         if self._done and self._kernel is not None:
             self._kernel.tell(self._gate, "is_done")
         return self._done
 
     def held_by(self, task: Task | None) -> None:
-        """Those who join wait for this task, and not for the one that made the handle."""
+        """Make those who join wait for this task, not for the one that created the handle."""
         self._gate.holder = task
 
     def _set_done(self) -> None:
@@ -128,7 +125,7 @@ class ThreadHandle:
 
 
 def handle_names(universe: Universe, start: Callable[..., int], lock: Callable[[], Any]) -> dict[str, Any]:
-    """What the module `_thread` has besides from Python 3.13 on."""
+    """Return the names that `_thread` also has from Python 3.13 on."""
     waited_for: list[ThreadHandle] = []
 
     def new_handle() -> ThreadHandle:
@@ -167,7 +164,7 @@ def handle_names(universe: Universe, start: Callable[..., int], lock: Callable[[
 
 
 def thread_module(universe: Universe) -> ModuleType:
-    """The module `_thread` of a universe."""
+    """Return the module `_thread` of a universe."""
     kernel = universe.kernel
     lock, rlock = universe.locks
     sentinels: dict[int, Any] = {}
@@ -176,7 +173,7 @@ def thread_module(universe: Universe) -> ModuleType:
         return kernel.current.ident
 
     def set_sentinel() -> Any:
-        """The lock whose release tells that the calling thread is gone."""
+        """Return the lock whose release signals the end of the calling thread."""
         ident = kernel.current.ident
         sentinel = sentinels[ident] = lock()
         sentinel.holder = kernel.current
@@ -223,7 +220,7 @@ def thread_module(universe: Universe) -> ModuleType:
 def _body(
     universe: Universe, function: Callable[..., object], args: tuple[Any, ...], options: Mapping[str, Any]
 ) -> None:
-    """A thread that was started below `threading`: its error is shown, and the program goes on."""
+    """Run a thread started without `threading`: its error is shown, and the program continues."""
     try:
         Context().run(function, *args, **options)
     except (Exception, NodeInterrupt) as error:
@@ -232,12 +229,7 @@ def _body(
 
 
 def show_thread_error(universe: Universe, args: Any) -> None:
-    """`threading.excepthook`: the error of a thread ends the thread and not the node.
-
-    Args:
-        universe: the node's universe.
-        args: as `threading.excepthook` gets them.
-    """
+    """`threading.excepthook`: an error ends the thread and not the node."""
     if issubclass(args.exc_type, (TaskExit, SystemExit)):
         return
     error = args.exc_value if args.exc_value is not None else args.exc_type()
@@ -249,14 +241,11 @@ def show_thread_error(universe: Universe, args: Any) -> None:
 
 
 def fix_threading(universe: Universe, module: Any) -> None:
-    """After `threading` was loaded: threads hash by serial number, and asking an event takes CPU time.
-
-    `concurrent.futures` iterates a set of threads; a loop on `event.is_set()` would otherwise never let others run.
-    """
+    """Fix `threading` after loading: threads hash by serial number, and checking an event takes CPU time."""
     is_set, make_invoke = module.Event.is_set, module._make_invoke_excepthook
 
     def make_quiet_invoke() -> Callable[[Any], None]:
-        """The end of a task, which is how a daemon thread ends with its program, is no error of the node."""
+        """The end of a task, by which a daemon thread ends with its program, is not an error of the node."""
         invoke: Callable[[Any], None] = make_invoke()
         return lambda thread: None if isinstance(sys.exc_info()[1], TaskExit) else invoke(thread)
 
@@ -268,15 +257,15 @@ def fix_threading(universe: Universe, module: Any) -> None:
             universe.charge()
         result = bool(is_set(event))
         if result and isinstance(kernel, ExploringKernel) and kernel.observer is not None:
-            kernel.observer.returned(event._cond._lock, "is_set", (), result)  # who set it held that lock
+            kernel.observer.returned(event._cond._lock, "is_set", (), result)  # the setter of the event held that lock
         return result
 
     if isinstance(universe.kernel, ExploringKernel):
-        allocate_lock = module._allocate_lock  # which makes the locks by which `Condition` wakes its waiters
+        allocate_lock = module._allocate_lock  # it makes the locks with which `Condition` wakes waiting threads
         module._allocate_lock = lambda: as_waiter(allocate_lock())
-        for name in ("active_count", "enumerate"):  # whose lock is one of threading's own
+        for name in ("active_count", "enumerate"):  # their lock belongs to threading
             setattr(module, name, _after_point(universe.kernel, getattr(module, name)))
-        for name in ("_start_new_thread", "_start_joinable_thread"):  # whichever this version of Python has
+        for name in ("_start_new_thread", "_start_joinable_thread"):  # depends on the Python version
             if hasattr(module, name):
                 setattr(module, name, _in_one_step(universe.kernel, getattr(module, name)))
     module._make_invoke_excepthook = make_quiet_invoke
@@ -286,7 +275,7 @@ def fix_threading(universe: Universe, module: Any) -> None:
 
 
 def _after_point(kernel: ExploringKernel, look: Callable[..., Any]) -> Callable[..., Any]:
-    """A function before which others may get in."""
+    """Return a function before which other tasks may run."""
 
     def looked() -> Any:
         kernel.point()
@@ -296,7 +285,9 @@ def _after_point(kernel: ExploringKernel, look: Callable[..., Any]) -> Callable[
 
 
 def _in_one_step(kernel: ExploringKernel, start: Callable[..., Any]) -> Callable[..., Any]:
-    """How `Thread.start` starts a thread: it waits until that has begun, so others need no chance in between."""
+    """Return `Thread.start`'s way to start a thread: it waits until the thread has started, so no point is needed
+    between.
+    """
 
     def start_thread(*args: Any, **options: Any) -> Any:
         kernel.point()

@@ -1,8 +1,4 @@
-"""`multiprocessing.pool` of a node: `ThreadPool`, which has threads and no processes, over the node's own threads.
-
-It is executed in each node. Processes are refused by `cfepy.nodes.refused_modules`. Semantics are those of Python's
-library reference, "multiprocessing.pool".
-"""
+"""`multiprocessing.pool` of a node: `ThreadPool`, which uses the node's own threads and no processes."""
 
 from __future__ import annotations
 
@@ -20,14 +16,7 @@ Done = Callable[[Any], object] | None
 
 
 class AsyncResult:
-    """A result to come.
-
-    Args:
-        parts: what is computed; several for `map`.
-        single: there is one part, and its result is the whole.
-        callback: takes the result, once it is there.
-        error_callback: takes the exception instead.
-    """
+    """Result of a call that may not have ended."""
 
     def __init__(self, parts: list[Future[Any]], single: bool, callback: Done, error_callback: Done) -> None:
         self._parts, self._single = parts, single
@@ -62,29 +51,21 @@ class AsyncResult:
         return found[0] if self._single else found
 
     def ready(self) -> bool:
-        """Whether it is there."""
+        """Return whether the result is there."""
         return self._event.is_set()
 
     def successful(self) -> bool:
-        """Whether there was no exception.
-
-        Raises:
-            ValueError: it is not there yet.
-        """
+        """Return whether the call ended without an exception."""
         if not self.ready():
             raise ValueError(f"{self!r} not ready")
         return self._error() is None
 
     def wait(self, timeout: float | None = None) -> None:
-        """Wait for it, at most so many s."""
+        """Wait for the result, at most so many s."""
         self._event.wait(timeout)
 
     def get(self, timeout: float | None = None) -> Any:
-        """The result, or the exception that there was.
-
-        Raises:
-            multiprocessing.TimeoutError: it did not come within so many s.
-        """
+        """Return the result, or raise the exception of the call."""
         if not self._event.wait(timeout):
             raise TimeoutError
         error = self._error()
@@ -97,7 +78,7 @@ ApplyResult = MapResult = AsyncResult
 
 
 class _Results(Iterator[Any]):
-    """What `imap` gives: results one by one."""
+    """Iterator returned by `imap`: results one by one."""
 
     def __init__(self, parts: Iterable[Future[Any]]) -> None:
         self._parts = iter(parts)
@@ -106,11 +87,7 @@ class _Results(Iterator[Any]):
         return next(self._parts).result()
 
     def next(self, timeout: float | None = None) -> Any:
-        """The next result, waiting at most so many s.
-
-        Raises:
-            multiprocessing.TimeoutError: it did not come.
-        """
+        """Return the next result, waiting at most so many s."""
         try:
             return next(self._parts).result(timeout)
         except FutureTimeoutError:
@@ -118,12 +95,7 @@ class _Results(Iterator[Any]):
 
 
 class ThreadPool:
-    """A pool of threads.
-
-    Args:
-        processes: threads; None is one, as there is one processor.
-        initializer: called in each thread with `initargs`.
-    """
+    """Pool of threads."""
 
     def __init__(
         self,
@@ -189,19 +161,19 @@ class ThreadPool:
         return list(self.starmap_async(func, iterable).get())
 
     def imap(self, func: Callable[..., Any], iterable: Iterable[Any], chunksize: int = 1) -> _Results:
-        """An iterator over the results, in the order of the items."""
+        """Return an iterator over the results, in the order of the items."""
         return _Results([self._submit(func, (item,), {}) for item in iterable])
 
     def imap_unordered(self, func: Callable[..., Any], iterable: Iterable[Any], chunksize: int = 1) -> _Results:
-        """An iterator over the results; here they keep the order of the items, which is one of the allowed ones."""
+        """Return an iterator over the results, in the order of the items, which is one of the allowed orders."""
         return self.imap(func, iterable)
 
     def close(self) -> None:
-        """Take no more work."""
+        """Accept no more work."""
         self._running = False
 
     def terminate(self) -> None:
-        """Take no more work, and leave undone what has not begun."""
+        """Accept no more work, and drop work that has not started."""
         self._running = False
         self._threads.shutdown(wait=False, cancel_futures=True)
 

@@ -28,8 +28,8 @@ _MONOTONIC = frozenset(
 
 
 def cfepy_module(universe: Universe) -> ModuleType:
-    """The package cfepy of a node, which has the host's and `compute` for the node's own processor."""
-    host = sys.modules[__name__.partition(".")[0]]  # it is loaded, and stands above all others
+    """Return a node's package cfepy: the host's, with `compute` for the node's own processor."""
+    host = sys.modules[__name__.partition(".")[0]]  # it is loaded, and its layer is above all others
 
     def compute(seconds: float) -> None:
         host.compute(seconds)
@@ -39,12 +39,7 @@ def cfepy_module(universe: Universe) -> ModuleType:
 
 
 class VirtualClock:
-    """The clock of a universe. Its functions are methods, because bound methods, like C functions, bind no more.
-
-    Args:
-        universe: whose clock it is.
-        epoch_ns: the time of day (ns since 1970, UTC) when the kernel's clock is 0.
-    """
+    """Clock of a universe. Its functions are methods, because bound methods, like C functions, are not bound again."""
 
     def __init__(self, universe: Universe, epoch_ns: int) -> None:
         self._universe = universe
@@ -53,7 +48,7 @@ class VirtualClock:
         self._for_ever = WaitList(f"nothing, for ever, in {universe.name}")
 
     def wait(self, seconds: float | None) -> None:
-        """Sleep for a time in seconds; None is for ever."""
+        """Sleep for a time in seconds; None for no limit."""
         kernel = self._kernel
         if kernel.current is kernel.host:
             raise RuntimeError("only a task can sleep; the host waits with Kernel.run")
@@ -141,7 +136,7 @@ class VirtualClock:
 
 
 def time_module(universe: Universe) -> ModuleType:
-    """The module `time` of a universe."""
+    """Return the module `time` of a universe."""
     clock = universe.clock
     names = {name: getattr(clock, name) for name in vars(VirtualClock) if hasattr(time, name)}
     return proxy(
@@ -166,14 +161,14 @@ class _Either(type):
 
 
 def datetime_module(universe: Universe) -> ModuleType:
-    """The module `datetime` of a universe."""
+    """Return the module `datetime` of a universe."""
     import datetime as host
 
     clock = universe.clock
     utc = host.UTC
 
     class datetime(host.datetime, metaclass=_Either):
-        """A date and time; naive ones are in UTC."""
+        """A date and time; naive values are in UTC."""
 
         @classmethod
         def now(cls, tz: host.tzinfo | None = None) -> Any:
@@ -205,7 +200,7 @@ def datetime_module(universe: Universe) -> ModuleType:
             return f"datetime.{super().__repr__()}"
 
     class date(host.date, metaclass=_Either):
-        """A date; today's is that of UTC."""
+        """A date; today's date is in UTC."""
 
         @classmethod
         def today(cls) -> Any:

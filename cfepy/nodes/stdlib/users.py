@@ -1,7 +1,4 @@
-"""Who a program is: one ordinary user on every computer, to whom all files belong that it sees.
-
-So a run does not depend on who starts it: root's journal replays for others. `pwd` and `grp` know this user and root.
-"""
+"""User of a program: one ordinary user on every computer, who owns all files that the program sees."""
 
 from __future__ import annotations
 
@@ -22,7 +19,7 @@ ROOT = "root"
 
 
 def identity(universe: Universe) -> dict[str, Any]:
-    """The functions of `os` that ask for ids or set them, as far as the computer has them."""
+    """Return the functions of `os` that get or set ids, as far as the host has them."""
 
     def user_of(*ids: int) -> None:
         _check(ids, USER)
@@ -61,17 +58,13 @@ def identity(universe: Universe) -> dict[str, Any]:
 
 
 def _check(ids: tuple[int, ...], own: int) -> None:
-    """What an ordinary user may set: what it has.
-
-    Raises:
-        PermissionError: another id.
-    """
+    """Check ids that a program sets: an ordinary user may set only its own."""
     if not set(ids) <= {own, KEEP}:
         raise PermissionError(errno.EPERM, os.strerror(errno.EPERM))
 
 
 def user_name(universe: Universe) -> str:
-    """The name of the program's user."""
+    """Return the name of the program's user."""
     return universe.environ.get("USER") or universe.environ.get("LOGNAME") or "node"
 
 
@@ -92,7 +85,7 @@ def pwd_module(universe: Universe) -> ModuleType:
 
 
 def grp_module(universe: Universe) -> ModuleType:
-    """`grp`: the group of the program's user, and that of root."""
+    """`grp`: the groups of the program's user and of root."""
     import grp
 
     name = user_name(universe)

@@ -1,7 +1,7 @@
-"""Everything that is wrong with a mission before it boots: startup script, code, mission file, launch files, board.
+"""Check of a mission before it boots: startup script, code, mission file, launch files, board.
 
-Nothing of the mission is executed. Each problem says file, line, what is wrong and what to do. A check belongs here
-when its answer is certain without a run; what reads a file, for a run as for a check, belongs elsewhere.
+No code of the mission is executed. Each problem has the file, the line, the mistake and the remedy. A check belongs
+here if its result is certain without a run. Readers of files, which runs use too, belong elsewhere.
 """
 
 from __future__ import annotations
@@ -47,28 +47,28 @@ from cfepy.status import UsageError
 CHECK_PROFILES: Hook[Callable[[Path, list[StartupEntry], MissionSections], Iterable[MissionProblem]]] = Hook(
     "check_profiles"
 )
-"""Checks all code of a mission together: the startup script, what it starts, what the mission file says."""
+"""Checks all code of a mission together: the startup script, its entries, the mission file."""
 CHECK_SECTIONS: Hook[Callable[[MissionSections], Iterable[MissionProblem]]] = Hook("check_sections")
-"""Checks what the mission file says."""
+"""Checks the sections of a mission file."""
 __all__ = ["MissionProblem", "check_mission", "problem_of"]
 
 
 def check_mission(
     mission: str, board: str | None = None, args: Mapping[str, str] | None = None, cpp_nodes: str | None = None
 ) -> list[MissionProblem]:
-    """Find everything that is wrong with a mission.
+    """Find all problems of a mission.
 
     Args:
         mission: see `cfepy.mission.find_script`; or the script of a node.
         board: name or file of a board; None takes the mission's own.
         args: arguments for a launch file.
-        cpp_nodes: how nodes in C++ are built, in place of what the mission says; see `cfepy.mission.cpp_nodes_of`.
+        cpp_nodes: how nodes in C++ are built, which overrides the mission; see `cfepy.mission.cpp_nodes_of`.
 
     Returns:
-        What was found, by file and line; nothing but warnings for a mission that can boot.
+        The problems, by file and line; a mission that can boot has only warnings.
 
     Raises:
-        UsageError: there is no such mission, or it takes no arguments; what is said of nodes in C++ is wrong.
+        UsageError: if the mission does not exist or takes no arguments, or the settings for nodes in C++ are wrong.
     """
     config = None if cpp_nodes is None else cpp_nodes_of(cpp_nodes)
     if is_node(mission):
@@ -86,19 +86,19 @@ def _sorted(found: Iterable[MissionProblem]) -> list[MissionProblem]:
 
 
 def _check_launch_file(file: Path, args: Mapping[str, str], config: CppNodesConfig | None) -> list[MissionProblem]:
-    """A launch file by itself, in the user's environment."""
+    """Check a launch file without a startup script, in the user's environment."""
     found, scripts = check_launch(file, args, dict(os.environ), alone=True, config=config)
     return [*found, *check_nodes(scripts), *check_definitions_of(scripts, file)]
 
 
 def _check_node(file: Path) -> list[MissionProblem]:
-    """A node by itself, in the user's environment."""
+    """Check a single node, in the user's environment."""
     scripts = [NodeScript(file, dict(os.environ))]
     return [*check_nodes(scripts), *check_definitions_of(scripts, file)]
 
 
 def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None) -> list[MissionProblem]:
-    """A startup script with all that belongs to it."""
+    """Check a startup script with all its files."""
     data = read_limited(script, STARTUP_BYTES)
     mistakes = Mistakes(keep=True)
     path = mission_file_of(script)
@@ -120,7 +120,7 @@ def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None
         nodes += scripts
     found += check_nodes_said(said, started)
     found += check_deadlines(said, started)
-    if not mistakes.errors:  # what the mission has is known when its file is right
+    if not mistakes.errors:  # the content of the mission is known only if its file is right
         found += check_packets(said, demands, script)
         found += check_bridge(said, script)
     for check_said in CHECK_SECTIONS.all():
@@ -131,7 +131,7 @@ def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None
 
 
 def _nodes_of(folder: Path, started: list[StartupEntry], said: MissionSections) -> list[NodeScript]:
-    """The scripts of the nodes that the startup script itself starts."""
+    """Return the scripts of the nodes in the startup script."""
     nodes = [entry for entry in started if entry.kind == CFE_APP and entry.symbol == NODE_SYMBOL]
     found = ((entry.name, find_node(entry.path, folder)) for entry in nodes if entry.path.startswith("/cf/"))
     return [

@@ -1,8 +1,8 @@
-"""Names that an application asks of its handle `cfe` and that are not there, and calls whose arguments cannot fit.
+"""Checks of an application's use of its handle `cfe`: unknown names, and calls whose arguments cannot fit.
 
-Sources are read, not run. A name counts as the handle only where it cannot be anything else: a parameter annotated
-`Cfe`, the first parameter of the entry point, and what all assignments and all calls of a file make of these. So what
-is told is certain, and a handle whose way cannot be followed is not looked at.
+Sources are read, not run. A name counts as the handle only if it cannot be anything else: a parameter annotated `Cfe`,
+the first parameter of the entry point, and names that all assignments and all calls of a file bind to these. So the
+reports are certain, and a handle that cannot be followed is not checked.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from cfepy.pilot.mission_check.problem import MissionProblem
 from cfepy.reading.suggestions import did_you_mean
 
 HANDLE = "cfe"
-_MOST = 500  # problems of a file that are told
+_MOST = 500  # maximum number of reported problems of a file
 _LONGEST_CHAIN = 20
 GUARDS = ("AttributeError", "TypeError")
 _NEW_WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
@@ -36,39 +36,39 @@ _NOT_PLAIN = ("property", "staticmethod", "classmethod", "cached_property", "fun
 _Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 _Place = _Function | ast.ClassDef | ast.Module
 _Binding = ast.expr | ast.arg | None
-"""What a name is bound to: a value, a parameter, or None for what is not followed."""
+"""The binding of a name: a value, a parameter, or None if it is not followed."""
 
 
 class _Kind(NamedTuple):
-    """What an expression is: the handle (""), a service of it, or an instance of a class of the file."""
+    """The kind of an expression: the handle (""), a service of it, or an instance of a class in the file."""
 
     service: str = ""
     owner: ast.ClassDef | None = None
 
 
 def wrong_names(source: Path, entry_point: str) -> Iterator[MissionProblem]:
-    """What an application asks of `cfe` in vain, as far as its sources can be read.
+    """Yield wrong uses of `cfe` in an application, as far as its sources can be read.
 
     Args:
-        source: its module, or the `__init__.py` of its package.
+        source: file of its module, or the `__init__.py` of its package.
         entry_point: the function that gets the handle.
     """
     trees = {file: sources.tree_of(file) for file in sources.files_of(source)}
     for file, tree in trees.items():
         shared = {name for other, each in trees.items() if other != file for name in _imported(each)}
         yield from _wrong_imports(file, tree)
-        with suppress(RecursionError):  # generated code that is nested so deeply is not looked at
+        with suppress(RecursionError):  # deeply nested generated code is not checked
             yield from islice(_Reader(file, tree, entry_point, shared).problems(), _MOST)
 
 
 def _imported(tree: ast.Module) -> set[str]:
-    """What a file takes from others by name; "*" when it takes all."""
+    """Return the names that a file imports from others; "*" for a star import."""
     froms = (node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom))
     return {alias.name for node in froms for alias in node.names}
 
 
 def _wrong_imports(file: Path, tree: ast.Module) -> Iterator[MissionProblem]:
-    """Names that a file takes from cfepy whatever happens, and that are not there."""
+    """Yield names that a file imports unconditionally from cfepy but that do not exist."""
     for node in tree.body:
         module = node.module if isinstance(node, ast.ImportFrom) and node.level == 0 else None
         if not isinstance(node, ast.ImportFrom) or module is None or module.partition(".")[0] != "cfepy":
@@ -91,20 +91,20 @@ def _is_module(name: str) -> bool:
         return False
 
 
-# -- what is bound where -----------------------------------------------------------------------------------------------
+# -- bindings ----------------------------------------------------------------------------------------------------------
 
 
 class _Bindings(ast.NodeVisitor):
-    """What the names and the attributes of `self` are bound to in a file, and how its functions are called.
+    """The bindings of names and of attributes of `self` in a file, and the calls of its functions.
 
     Attributes:
-        place_of: the scope that each part of the tree stands in.
-        names: what names are bound to, by scope.
-        attributes: what methods bind attributes of `self` to, by class.
+        place_of: the scope of each node of the tree.
+        names: bindings of names, by scope.
+        attributes: bindings of attributes of `self` by methods, by class.
         calls: calls of plain names.
         escaped: names that are used for anything but a call.
         shared: names that `global` and `nonlocal` make too hard to follow.
-        asked: attributes that the file itself sets or asks for.
+        asked: attributes that the file itself sets or tests.
     """
 
     def __init__(self, tree: ast.Module) -> None:
@@ -120,7 +120,7 @@ class _Bindings(ast.NodeVisitor):
         self.visit(tree)
 
     def visit(self, node: ast.AST) -> None:
-        """Note where a part of the tree stands; then as the base class."""
+        """Record the scope of a node, then visit it."""
         self.place_of[node] = self._place
         super().visit(node)
 
@@ -131,7 +131,7 @@ class _Bindings(ast.NodeVisitor):
         self._place = outside
 
     def visit_FunctionDef(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
-        """A function: its name is bound outside, its parameters inside."""
+        """Bind the name of a function outside, and its parameters inside."""
         self._bind(node.name, None)
         self._parameters(node, [*node.decorator_list, *([] if node.returns is None else [node.returns])])
         self._inside(node, node.body)
@@ -139,7 +139,7 @@ class _Bindings(ast.NodeVisitor):
     visit_AsyncFunctionDef = visit_FunctionDef
 
     def visit_Lambda(self, node: ast.Lambda) -> None:
-        """As a function."""
+        """Bind the parameters of a lambda."""
         self._parameters(node, [])
         self._inside(node, [node.body])
 
@@ -151,25 +151,25 @@ class _Bindings(ast.NodeVisitor):
         self._inside(node, [*plain, *filter(None, (arguments.vararg, arguments.kwarg))])
 
     def visit_ClassDef(self, node: ast.ClassDef) -> None:
-        """A class: its body is a scope of its own."""
+        """Open the scope of a class body."""
         self._bind(node.name, None)
         for each in (*node.bases, *node.keywords, *node.decorator_list):
             self.visit(each)
         self._inside(node, node.body)
 
     def visit_arg(self, node: ast.arg) -> None:
-        """A parameter."""
+        """Bind a parameter."""
         self._bind(node.arg, node)
         self.generic_visit(node)
 
     def visit_Assign(self, node: ast.Assign) -> None:
-        """Names and attributes that get a value; parts of a tuple are not followed."""
+        """Bind names and attributes to a value; parts of a tuple are not followed."""
         for target in node.targets:
             self._assign(target, node.value)
         self.generic_visit(node)
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
-        """As an assignment; without a value it is none."""
+        """Bind an annotated name; without a value it is not a binding."""
         if node.value is None:
             self._followed.add(node.target)
         else:
@@ -177,12 +177,12 @@ class _Bindings(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_NamedExpr(self, node: ast.NamedExpr) -> None:
-        """As an assignment."""
+        """Bind the name of an assignment expression."""
         self._assign(node.target, node.value)
         self.generic_visit(node)
 
     def visit_Name(self, node: ast.Name) -> None:
-        """A name that is used, or bound by a loop, a `with`, an unpacking."""
+        """Handle a name that is used, or bound by a loop, a `with` or an unpacking."""
         if isinstance(node.ctx, ast.Load):
             if node not in self._followed:
                 self.escaped.add(node.id)
@@ -190,13 +190,13 @@ class _Bindings(ast.NodeVisitor):
             self._bind(node.id, None)
 
     def visit_Attribute(self, node: ast.Attribute) -> None:
-        """An attribute that is bound so."""
+        """Handle an attribute that is bound by a loop, a `with` or an unpacking."""
         if not isinstance(node.ctx, ast.Load) and node not in self._followed:
             self._store(node, None)
         self.generic_visit(node)
 
     def visit_Call(self, node: ast.Call) -> None:
-        """A call of a plain name."""
+        """Record a call of a plain name."""
         if isinstance(node.func, ast.Name):
             self._followed.add(node.func)
             self.calls.setdefault(node.func.id, []).append(node)
@@ -205,17 +205,17 @@ class _Bindings(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_Global(self, node: ast.Global | ast.Nonlocal) -> None:
-        """Names that are bound from more than one scope."""
+        """Record names that are bound from more than one scope."""
         self.shared |= set(node.names)
 
     visit_Nonlocal = visit_Global
 
     def visit_alias(self, node: ast.alias) -> None:
-        """An import."""
+        """Bind the name of an import."""
         self._bind(node.asname or node.name.partition(".")[0], None)
 
     def visit_ExceptHandler(self, node: ast.ExceptHandler | ast.MatchAs | ast.MatchStar) -> None:
-        """Names that errors and patterns are bound to."""
+        """Bind the names of errors and patterns."""
         if node.name is not None:
             self._bind(node.name, None)
         self.generic_visit(node)
@@ -238,10 +238,10 @@ class _Bindings(ast.NodeVisitor):
         if owner is not None and isinstance(target.value, ast.Name) and target.value.id == _first(self._place):
             self.attributes.setdefault((owner, target.attr), []).append(value)
         else:
-            self.asked.add(target.attr)  # whoever writes an attribute of the handle has it then
+            self.asked.add(target.attr)  # a written attribute of the handle exists afterwards
 
     def owner(self, function: _Place) -> ast.ClassDef | None:
-        """The class that a function is a method of; None for other functions, static and class methods too."""
+        """Return the class of a method; None for other functions, including static and class methods."""
         place = self.place_of.get(function)
         if not isinstance(place, ast.ClassDef) or not isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
             return None
@@ -250,7 +250,7 @@ class _Bindings(ast.NodeVisitor):
 
 
 def _first(function: _Place) -> str | None:
-    """The name of the first parameter of a function."""
+    """Return the name of the first parameter of a function."""
     names = _positional(function) if isinstance(function, _Function) else []
     return names[0] if names else None
 
@@ -259,17 +259,18 @@ def _positional(function: _Function) -> list[str]:
     return [each.arg for each in (*function.args.posonlyargs, *function.args.args)]
 
 
-# -- what is what ------------------------------------------------------------------------------------------------------
+# -- kinds
+# ---------------------------------------------------------------------------------------------------------------
 
 
 class _Reader:
-    """Reads one file.
+    """Checks one file.
 
     Args:
         file: its path.
-        tree: its syntax.
+        tree: its syntax tree.
         entry_point: the function that gets the handle.
-        shared: names that other files of the package take.
+        shared: names that other files of the package import.
     """
 
     def __init__(self, file: Path, tree: ast.Module, entry_point: str, shared: set[str]) -> None:
@@ -283,7 +284,7 @@ class _Reader:
         self._has_cfe = any(alias.name == "Cfe" and not alias.asname for each in froms for alias in each.names)
 
     def problems(self) -> Iterator[MissionProblem]:
-        """What is asked for in vain."""
+        """Yield the wrong uses of the handle."""
         nodes = list(ast.walk(self._tree))
         guarded = {part for node in nodes if _expects_it(node) for part in ast.walk(node)}
         for node in nodes:
@@ -298,7 +299,7 @@ class _Reader:
                     yield MissionProblem(self._file, node.lineno, fault)
 
     def _kind(self, node: ast.expr | None) -> _Kind | None:
-        """What an expression is, when that is certain; that of a long chain of attributes is not."""
+        """Return the kind of an expression if it is certain; long chains of attributes are not followed."""
         if isinstance(node, ast.NamedExpr):
             return self._kind(node.value)
         if _chain(node) > _LONGEST_CHAIN:
@@ -323,8 +324,10 @@ class _Reader:
         return self._agreed((inside, name), self._bindings.names[inside, name])
 
     def _kind_of_attribute(self, owner: ast.ClassDef, name: str) -> _Kind | None:
-        """What `self.name` is: what all methods assign, of classes that may inherit, or a dataclass's annotation."""
-        if (owner, name) in self._bindings.names:  # a method, or a value of the class
+        """Return the kind of `self.name`: of the assignments in all methods, also of related classes, or of a dataclass
+        field.
+        """
+        if (owner, name) in self._bindings.names:  # a method or a value of the class
             return None
         if (owner, name) in self._bindings.attributes:
             stored = self._bindings.attributes.items()
@@ -335,9 +338,9 @@ class _Reader:
         return _Kind() if annotations and all(map(self._is_cfe, annotations)) else None
 
     def _agreed(self, key: tuple[_Place, str], bound: Sequence[_Binding]) -> _Kind | None:
-        """What all values of a name are, but for the constant None; None where they differ."""
+        """Return the kind that all values of a name share, except the constant None; None if they differ."""
         if key not in self._kinds:
-            self._kinds[key] = None  # while it is looked for
+            self._kinds[key] = None  # during the search
             values = [each for each in bound if not (isinstance(each, ast.Constant) and each.value is None)]
             self._kinds[key] = _the_same(
                 self._kind_of_parameter(each) if isinstance(each, ast.arg) else self._kind(each) for each in values
@@ -361,20 +364,22 @@ class _Reader:
         return None
 
     def _passed(self, callee: str, name: str, at: int) -> _Kind | None:
-        """What all calls of a function give it for a parameter; None for one that is used in another way, too."""
+        """Return the kind of a parameter in all calls of a function; None if the function is also used in
+        another way.
+        """
         known = self._bindings
         if callee in known.escaped or self._shared & {callee, "*"} or len(known.names[self._tree, callee]) > 1:
             return None
         return _the_same(self._kind(_given(call, name, at)) for call in known.calls.get(callee, ()))
 
     def _is_cfe(self, annotation: ast.expr) -> bool:
-        """Whether an annotation is the class of the handle, taken from cfepy."""
+        """Return whether an annotation is the class of the handle, imported from cfepy."""
         text = annotation.value if isinstance(annotation, ast.Constant) else ast.unparse(annotation)
         return self._has_cfe and text == "Cfe"
 
 
 def _chain(node: ast.expr | None) -> int:
-    """How many attributes of attributes an expression asks for; of long chains one more than the most."""
+    """Return the number of chained attributes in an expression, up to one more than the maximum."""
     count = 0
     while isinstance(node, ast.Attribute) and count <= _LONGEST_CHAIN:
         node, count = node.value, count + 1
@@ -382,13 +387,13 @@ def _chain(node: ast.expr | None) -> int:
 
 
 def _the_same(kinds: Iterable[_Kind | None]) -> _Kind | None:
-    """The kind that all are; None where they differ or there is none."""
+    """Return the kind that all have; None if they differ or there is none."""
     first, *others = [*kinds] or [None]
     return first if all(each == first for each in others) else None
 
 
 def _given(call: ast.Call, name: str, at: int) -> ast.expr | None:
-    """What a call gives for a parameter; None when that cannot be told."""
+    """Return the argument of a call for a parameter; None if it cannot be determined."""
     by_name = [each.value for each in call.keywords if each.arg == name]
     if by_name or any(isinstance(each, ast.Starred) for each in call.args[: at + 1]):
         return by_name[0] if by_name else None
@@ -396,23 +401,24 @@ def _given(call: ast.Call, name: str, at: int) -> ast.expr | None:
 
 
 def _expects_it(node: ast.AST) -> bool:
-    """Whether code is ready for a name that is not there: a `try` with a handler for that."""
+    """Return whether code handles a missing name: a `try` with a handler for it."""
     handlers = node.handlers if isinstance(node, ast.Try) else []
     return any(guard in ast.unparse(each.type) for each in handlers if each.type is not None for guard in GUARDS)
 
 
-# -- what there is -----------------------------------------------------------------------------------------------------
+# -- existing names
+# ------------------------------------------------------------------------------------------------------
 
 
 @cache
 def _services() -> Mapping[str, Any]:
-    """The classes of the services, and the module `msg`, by their names in the handle."""
+    """Return the classes of the services, and the module `msg`, by their names in the handle."""
     return {**get_type_hints(Cfe), "msg": msg}
 
 
 @cache
 def _names(service: str) -> frozenset[str]:
-    """What the class of a service says it has; with the empty name, that of the handle."""
+    """Return the names that the class of a service has; the empty name means the handle."""
     kind = _services()[service] if service else Cfe
     classes = () if isinstance(kind, ModuleType) else inspect.getmro(kind)
     return frozenset(dir(kind)).union(*(vars(each).get("__annotations__", ()) for each in classes))
@@ -420,7 +426,7 @@ def _names(service: str) -> frozenset[str]:
 
 @cache
 def _tree(module: str) -> ast.Module:
-    """The source of a module of cfepy's, also of one that was compiled."""
+    """Return the syntax tree of a module of cfepy, compiled or not."""
     spec = importlib.util.find_spec(module)
     assert spec is not None
     assert spec.origin is not None
@@ -430,14 +436,14 @@ def _tree(module: str) -> ast.Module:
 
 @cache
 def _body(owner: type) -> list[ast.stmt]:
-    """What the source says of a class."""
+    """Return the body of a class in its source."""
     tree = _tree(owner.__module__)
     return next(node.body for node in tree.body if isinstance(node, ast.ClassDef) and node.name == owner.__name__)
 
 
 @cache
 def _set_by_methods(service: str) -> frozenset[str]:
-    """Attributes that the methods of a service give to `self`."""
+    """Return the attributes that methods of a service assign to `self`."""
     classes = inspect.getmro(_services()[service])[:-1]
     nodes = (node for each in classes for statement in _body(each) for node in ast.walk(statement))
     return frozenset(node.attr for node in nodes if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store))
@@ -460,12 +466,12 @@ def _absence(service: str, name: str) -> str:
 
 
 def _pythonic(name: str) -> str:
-    """CFE_SB_TransmitMsg and TransmitMsg as cfepy would call them."""
+    """Return the name of CFE_SB_TransmitMsg or TransmitMsg in cfepy."""
     return _NEW_WORD.sub("_", name.rpartition("_")[2] if name.startswith(("CFE_", "OS_")) else name).lower()
 
 
 def _misfit(service: str, call: ast.Call) -> str | None:
-    """Why a call cannot go well whatever its arguments are; None when it may."""
+    """Return why a call must fail with any argument values; None if it may succeed."""
     assert isinstance(call.func, ast.Attribute)
     if any(isinstance(each, ast.Starred) for each in call.args) or None in _keywords(call):
         return None
@@ -483,9 +489,9 @@ def _misfit(service: str, call: ast.Call) -> str | None:
 
 @cache
 def _signature(service: str, name: str) -> inspect.Signature | None:
-    """How a function of a service is called, without annotations; None for what is no plain function or method.
+    """Return the signature of a service's function without annotations; None if it is not a plain function or method.
 
-    It is read off the source, since compiled functions do not tell it.
+    It is read from the source, because compiled functions have none.
     """
     kind = _services()[service]
     found = inspect.getattr_static(kind, name, None)
@@ -502,7 +508,7 @@ def _signature(service: str, name: str) -> inspect.Signature | None:
 
 
 class _Written(str):
-    """A default as it is written."""
+    """A default value as written in the source."""
 
     __repr__ = str.__str__
 
@@ -530,5 +536,5 @@ def _parameter(argument: ast.arg, kind: inspect._ParameterKind, default: ast.exp
 
 
 def _keywords(call: ast.Call) -> list[str | None]:
-    """Names of keyword arguments; None stands for `**`."""
+    """Return the names of keyword arguments, with None for `**`."""
     return [each.arg for each in call.keywords]

@@ -1,4 +1,4 @@
-"""What a mission file says, held against the rest of the mission: nodes, deadlines, packets, MsgIds, the board."""
+"""Checks of a mission file against the rest of the mission: nodes, deadlines, packets, MsgIds, the board."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from cfepy.status import UsageError
 
 
 def check_nodes_said(said: MissionSections, entries: list[StartupEntry]) -> Iterator[MissionProblem]:
-    """Entries under `nodes:` that belong to no node of the startup script, and node names given twice."""
+    """Yield entries under `nodes:` that match no node of the startup script, and duplicate node names."""
     symbols = {entry.name: entry.symbol for entry in entries if entry.kind == CFE_APP}
     names: dict[str, str] = {}
     section = said.places.get("nodes")
@@ -48,7 +48,7 @@ def check_nodes_said(said: MissionSections, entries: list[StartupEntry]) -> Iter
 
 
 def check_lock(folder: Path, said: MissionSections) -> Iterator[MissionProblem]:
-    """What is wrong with the lock file of a mission, if it has one: a MsgId that is given twice, or by nobody."""
+    """Yield the errors in the lock file of a mission, if it has one: a duplicate or invalid MsgId."""
     path = folder / LOCK_FILE
     if not os.path.isfile(path):
         return
@@ -59,12 +59,12 @@ def check_lock(folder: Path, said: MissionSections) -> Iterator[MissionProblem]:
 
 
 def check_deadlines(said: MissionSections, entries: list[StartupEntry]) -> Iterator[MissionProblem]:
-    """Deadlines of applications that are not there."""
+    """Yield deadlines of applications that do not exist."""
     apps = [*(entry.name for entry in entries if entry.kind == CFE_APP), *CORE_APPS, "ROS"]
     section = said.demands.get("deadlines")
     if section is None or "launch" in said.places:
         return
-    unread = Mistakes(keep=True)  # they were told of before
+    unread = Mistakes(keep=True)  # they were reported before
     of_apps = unread.mapping(section).get("apps")
     for app, place in ({} if of_apps is None else unread.mapping(of_apps)).items():
         if app not in apps:
@@ -72,14 +72,14 @@ def check_deadlines(said: MissionSections, entries: list[StartupEntry]) -> Itera
 
 
 def check_packets(said: MissionSections, demands: Demands, script: Path) -> Iterator[MissionProblem]:
-    """Packets that invariants and results name, and that the mission does not have."""
+    """Yield packets in invariants and results that the mission does not have."""
     named = [(packet, "invariants", each.name) for each in demands.invariants for packet in each.packets]
     named += [(each.name, "results", each.name) for each in demands.results if each.is_of_packet]
     if not named:
         return
     try:
         dictionary = dictionary_of(read_mission(str(script)))
-    except UsageError:  # of a launch file or the lock file, and told there
+    except UsageError:  # an error of a launch file or the lock file, which is reported there
         return
     for name, section, key in named:
         place = said.demands[section].mapping()[key]
@@ -91,7 +91,7 @@ def check_packets(said: MissionSections, demands: Demands, script: Path) -> Iter
 
 
 def check_bridge(said: MissionSections, script: Path) -> Iterator[MissionProblem]:
-    """Packets that ROS outside is to see and that the mission does not have, and heard topics without a MsgId."""
+    """Yield packets of the ROS bridge that the mission does not have, and subscribed topics without a MsgId."""
     section = said.places.get("ros_bridge")
     if section is None:
         return
@@ -104,7 +104,7 @@ def check_bridge(said: MissionSections, script: Path) -> Iterator[MissionProblem
         return
     try:
         dictionary = dictionary_of(read_mission(str(script)))
-    except UsageError:  # of something else, and told there
+    except UsageError:  # an error of another file, which is reported there
         return
     places = Mistakes(keep=True).mapping(parts["publish"])
     for topic, bridged in said.ros_bridge.publish.items():
@@ -123,14 +123,14 @@ def _unknown_app(field: str, app: str, place: Marked, apps: Collection[str]) -> 
 def check_board(
     script: Path, entries: list[StartupEntry], said: MissionSections, board: str | None, folder: Path
 ) -> Iterator[MissionProblem]:
-    """A board that is none, limits that it does not allow, and applications and stacks that it has no room for.
+    """Yield an unknown board, limits that it does not allow, and applications and stacks that do not fit.
 
     Args:
         script: the startup script.
-        entries: what it starts.
-        said: what the mission file says.
-        board: another board than the mission's own; None for that one.
-        folder: of the mission.
+        entries: its entries.
+        said: the sections of the mission file.
+        board: a board that overrides the mission's; None for the mission's.
+        folder: folder of the mission.
     """
     try:
         profile = load_profile(board or said.board_in(folder))
@@ -171,7 +171,7 @@ def _check_limits(
 def _check_stacks(
     script: Path, entries: list[StartupEntry], profile: BoardProfile, config: PlatformConfig
 ) -> Iterator[MissionProblem]:
-    """Stacks and task control blocks against the RAM; pools, queues and tables come on top of them when it runs."""
+    """Check stacks and task control blocks against the RAM; at run time, pools, queues and tables also take memory."""
     if not profile.sram_size:
         return
     block = profile.memory_costs.task_control_block

@@ -1,4 +1,4 @@
-"""`MissionProblem`: something wrong with a mission, as all that check one tell it."""
+"""`MissionProblem`: a problem of a mission, in the form that all checks use."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from cfepy.status import UsageError
 
 
 class MissionProblem(NamedTuple):
-    """Something wrong with a mission.
+    """A problem of a mission.
 
     Attributes:
-        file: where it is.
-        line: in the file, from 1; 0 stands for the whole file.
-        text: what is wrong and what to do.
-        is_warning: the mission runs as it is, but hardly as its author means it to.
+        file: the file.
+        line: the line in the file, from 1; 0 for the whole file.
+        text: the mistake and the remedy.
+        is_warning: whether the mission runs anyway, but probably not as its author intended.
     """
 
     file: Path
@@ -25,16 +25,16 @@ class MissionProblem(NamedTuple):
 
 
 def problem_of(error: UsageError, file: Path, is_warning: bool = False) -> MissionProblem:
-    """An error as a problem.
+    """Return an error as a problem.
 
     Args:
         error: the error.
-        file: what was read, for an error that names none.
-        is_warning: as of `MissionProblem`.
+        file: the file that was read, for an error without one.
+        is_warning: see `MissionProblem`.
     """
     return MissionProblem(Path(error.file or file), error.line or 0, with_field(error), is_warning)
 
 
 def with_field(error: UsageError) -> str:
-    """The text of an error, with the field that is wrong."""
+    """Return the text of an error, with the wrong field."""
     return f"{error.field}: {error.text}" if error.field else error.text

@@ -1,6 +1,6 @@
-"""Launch files read to the end, scripts of nodes, and the message definitions that they use.
+"""Checks of launch files, of node scripts, and of the message definitions that they use.
 
-Packages and definitions are looked for as the node would: near its script, then along its ROS_PACKAGE_PATH.
+Packages and definitions are searched like the node does: near its script, then along its ROS_PACKAGE_PATH.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _KINDS = ("msg", "srv")
 
 
 class NodeScript(NamedTuple):
-    """A node's script, and the environment that it runs in."""
+    """A node's script and its environment."""
 
     file: Path
     environ: Mapping[str, str]
@@ -43,13 +43,13 @@ def check_launch(
     alone: bool,
     config: CppNodesConfig | None = None,
 ) -> tuple[list[MissionProblem], list[NodeScript]]:
-    """What is wrong with a launch file and all that it includes.
+    """Check a launch file and all included files.
 
     Args:
         file: the launch file.
         args: values of its arguments.
-        environ: what it sees of the environment.
-        alone: it is the mission, so it needs a node or a test.
+        environ: its environment variables.
+        alone: whether it is the whole mission, and so needs a node or a test.
         config: how the mission's nodes in C++ are built; None without a mission file.
 
     Returns:
@@ -73,17 +73,17 @@ def check_launch(
 
 
 def _tests_of(plan: LaunchPlan) -> list[CppNode]:
-    """The tests in C++."""
+    """Return the tests in C++."""
     return [test.compiled for test in plan.tests if test.compiled is not None]
 
 
 def _built(plan: LaunchPlan, config: CppNodesConfig) -> Iterator[MissionProblem]:
-    """Build the nodes in C++; one that cannot be built is left out of a run, unless it is required."""
+    """Build the nodes in C++; a run omits a node that cannot be built, unless it is required."""
     for node in (*plan.compiled.values(), *_tests_of(plan)):
         try:
             built_node(node, plan.params, (), config)
         except CppNodesError:
-            return  # which is told of the mission file
+            return  # an error of the mission file, which is reported there
         except UsageError as error:
             text = f"node {node.full_name} is left out: it cannot be built: {error}"
             yield MissionProblem(node.near, node.line, text, not node.required)
@@ -95,10 +95,10 @@ def _scripts_of(plan: LaunchPlan) -> list[NodeScript]:
 
 
 def check_nodes(scripts: Iterable[NodeScript]) -> Iterator[MissionProblem]:
-    """What is wrong with scripts of nodes: their syntax, and the messages that they import.
+    """Check node scripts: their syntax, and the messages that they import.
 
     Args:
-        scripts: the scripts, in any order; one that is there twice is read twice.
+        scripts: the scripts, in any order.
     """
     for script in scripts:
         error = sources.syntax_error(script.file)
@@ -109,11 +109,11 @@ def check_nodes(scripts: Iterable[NodeScript]) -> Iterator[MissionProblem]:
 
 
 def check_definitions_of(scripts: Iterable[NodeScript], near: Path) -> Iterator[MissionProblem]:
-    """What is wrong with the definitions of messages of the packages that nodes use or lie in.
+    """Check the message definitions of the packages that nodes use or belong to.
 
     Args:
         scripts: the nodes.
-        near: the startup script, launch file or node that is the mission; definitions below its folder count too.
+        near: the startup script, launch file or node of the mission; definitions below its folder are checked too.
     """
     from rospy_shim.types.msgs import Packages, check_definitions
 
@@ -134,7 +134,7 @@ def _is_below(folders: list[Path], top: Path) -> bool:
 
 
 def _message_imports(file: Path) -> Iterator[tuple[str, str, list[str], int]]:
-    """Messages and services that a script takes whatever happens: (package, "msg" or "srv", names, line)."""
+    """Yield the messages and services that a script imports unconditionally: (package, "msg" or "srv", names, line)."""
     for node in sources.tree_of(file).body:
         if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module is not None:
             package, _, kind = node.module.partition(".")
@@ -148,7 +148,7 @@ def _message_imports(file: Path) -> Iterator[tuple[str, str, list[str], int]]:
 
 
 def _check_imports(script: NodeScript) -> Iterator[MissionProblem]:
-    """Packages of messages, and types in them, that a script imports and that are not there."""
+    """Yield message packages, and types in them, that a script imports but that do not exist."""
     from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 
     imports = list(_message_imports(script.file))
@@ -173,7 +173,7 @@ def _check_imports(script: NodeScript) -> Iterator[MissionProblem]:
 
 
 def _is_code(package: str, script: NodeScript, packages: Packages) -> bool:
-    """Whether there is Python code that may bring messages under this name."""
+    """Return whether there is Python code that may provide messages under this name."""
     paths = [Path(each) for each in script.environ.get("PYTHONPATH", "").split(os.pathsep) if each]
     if any(os.path.isfile(folder / package / "__init__.py") for folder in (script.file.parent, *paths)):
         return True

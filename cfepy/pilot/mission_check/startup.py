@@ -1,4 +1,4 @@
-"""A startup script and the code that it names: entries, names, sources, entry points, the ABI of compiled code."""
+"""Checks of a startup script and its code: entries, names, sources, entry points, the ABI of compiled code."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ FILES = "/cf/"
 C_SOURCES = "fsw/src"
 CheckCompiled = Callable[[Path, Sequence[StartupEntry], StartupEntry, Path], Iterator[MissionProblem]]
 CHECK_COMPILED: Hook[CheckCompiled] = Hook("check_compiled")
-"""Finds what is wrong with compiled code: startup script, what it starts, the line that names the file, the file."""
+"""Checks compiled code: startup script, its entries, the entry of the file, the file."""
 
 
 def check_startup(script: Path, data: bytes, entries: list[StartupEntry], longest: int) -> Iterator[MissionProblem]:
-    """What is wrong with a startup script, and with the code of the applications that it starts.
+    """Check a startup script, and the code of its applications.
 
     Args:
-        script: its path; code is looked for in its folder.
+        script: its path; code is searched in its folder.
         data: its contents.
-        entries: what it starts.
-        longest: characters of an entry that the mission's release of cFE reads.
+        entries: its entries.
+        longest: maximum number of characters in an entry for the mission's release of cFE.
     """
     for note in startup_script.check(data, longest):
         yield MissionProblem(script, note.line, note.explanation, note.is_warning)
@@ -39,11 +39,11 @@ def check_startup(script: Path, data: bytes, entries: list[StartupEntry], longes
 
 
 def app_sources(folder: Path, entries: list[StartupEntry]) -> Iterator[tuple[Path, str]]:
-    """The sources of applications and libraries, each with its entry point; nodes have none.
+    """Yield the sources of applications and libraries, each with its entry point; nodes have none.
 
     Args:
-        folder: of the mission.
-        entries: what its startup script starts.
+        folder: folder of the mission.
+        entries: the entries of its startup script.
     """
     for entry in entries:
         code = find_code(entry.path, folder) if entry.path.startswith(FILES) else None
@@ -53,11 +53,11 @@ def app_sources(folder: Path, entries: list[StartupEntry]) -> Iterator[tuple[Pat
 
 
 def _check_names(script: Path, entries: list[StartupEntry]) -> Iterator[MissionProblem]:
-    """Names that are taken; applications and libraries have a name space each."""
+    """Yield duplicate names; applications and libraries have separate name spaces."""
     taken = {(CFE_APP, name): "the core application" for name in CORE_APPS}
     for entry in entries:
         if not entry.name:
-            continue  # the reader of the script has told it
+            continue  # the check of the script has reported it
         key = (entry.kind, entry.name)
         if key in taken:
             text = f"the name {entry.name!r} is taken by {taken[key]}; give this one another name"
@@ -110,7 +110,7 @@ def _check_syntax(source: Path) -> Iterator[MissionProblem]:
 
 def _check_symbol(script: Path, entry: StartupEntry, source: Path) -> Iterator[MissionProblem]:
     if entry.symbol in ("", NO_SYMBOL):
-        return  # what becomes of an application without one, the reader of the script has told
+        return  # the check of the script has reported an application without one
     if not sources.defines(source, entry.symbol):
         functions = [name for file in sources.files_of(source) for name in sources.functions_of(file)]
         add = f"write {NODE_SYMBOL} if it is a ROS node, or add the function"
@@ -123,7 +123,7 @@ def _check_symbol(script: Path, entry: StartupEntry, source: Path) -> Iterator[M
 
 
 def _check_entry_point(entry: StartupEntry, source: Path) -> Iterator[MissionProblem]:
-    """A function that cannot be an entry point, though it has the name, as far as its source tells."""
+    """Yield an entry point with the right name that cannot be called as one, according to its source."""
     functions = [each for each in sources.tree_of(source).body if getattr(each, "name", None) == entry.symbol]
     if len(functions) != 1 or not isinstance(functions[0], ast.FunctionDef | ast.AsyncFunctionDef):
         return
@@ -140,7 +140,7 @@ def _check_entry_point(entry: StartupEntry, source: Path) -> Iterator[MissionPro
 
 
 def _takes_one(arguments: ast.arguments) -> bool:
-    """Whether a function can be called with one positional argument."""
+    """Return whether a function can be called with one positional argument."""
     positional = len(arguments.posonlyargs) + len(arguments.args)
     needed = positional - len(arguments.defaults)
     by_name = any(default is None for default in arguments.kw_defaults)
