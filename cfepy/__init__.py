@@ -105,7 +105,7 @@ def compute(seconds: float) -> None:
         ValueError: it is negative.
     """
     if seconds < 0:
-        raise ValueError(f"nothing takes {seconds:g} s; give 0 or more")
+        raise ValueError(f"invalid time {seconds:g} s; expected 0 or more")
 
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others

@@ -36,7 +36,7 @@ def test_every_problem_is_a_line(
 
 def test_no_such_mission(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", str(tmp_path / "nothing")]) == 2
-    assert "no startup script" in capsys.readouterr().err
+    assert "unknown mission" in capsys.readouterr().err
 
 
 def test_warnings_stand_apart_and_do_not_fail(

@@ -191,8 +191,8 @@ def test_a_node_is_explored_by_itself(tmp_path: Path, capsys: pytest.CaptureFixt
 @pytest.mark.parametrize(
     ("words", "error"),
     [
-        (["/no/such/mission"], "no startup script"),
-        (["{late}", "lab"], "one mission at a time; 'lab' is one too many"),
+        (["/no/such/mission"], "unknown mission"),
+        (["{late}", "lab"], "unexpected 'lab'; expected one mission"),
         (["{late}", "--script", "/no/script"], "/no/script"),
         (["{late}", "--for", "0.7", "--jobs", "2", "--cluster", "tcp://127.0.0.1:1"], "--jobs"),
     ],

@@ -133,8 +133,8 @@ def test_a_text_a_truth_and_bytes_in_csv(tmp_path: Path, capsys: pytest.CaptureF
         (["csv", *CAPTURE, "CFE_ES_HK_TIM"], "no telemetry packet is called CFE_ES_HK_TIM"),
         (["csv", *CAPTURE, "CFE_ES_MEMSTATS_TLM"], "CFE_ES_MEMSTATS_TLM: nothing was sent there"),
         (["csv", *CAPTURE, "/phase", "-o", "/no/such/file.csv"], "/no/such/file.csv: --output: cannot be written"),
-        (["csv", *CAPTURE, "/phase", "--from-disk"], "--from-disk: is for the replay of a journal"),
-        (["parquet", *CAPTURE, "/phase", "-o", "-"], "--output: Parquet is no text"),
+        (["csv", *CAPTURE, "/phase", "--from-disk"], "--from-disk: only valid for a journal"),
+        (["parquet", *CAPTURE, "/phase", "-o", "-"], "--output: Parquet cannot be written to standard output"),
     ],
 )
 def test_bad_usage(words: list[str], why: str, capsys: pytest.CaptureFixture[str]) -> None:

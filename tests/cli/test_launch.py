@@ -164,7 +164,7 @@ def test_hints_at_what_was_meant(write_launch: Launch, demo: Path, capsys: pytes
     assert "'n=3' is no argument for it; write NAME:=VALUE" in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main(["node", str(demo / "scripts/talker.py"), "--xyzzy"])
-    assert "unrecognized arguments: --xyzzy; what the node itself is to get comes after --" in capsys.readouterr().err
+    assert "unrecognized arguments: --xyzzy; put the options of the node itself after --" in capsys.readouterr().err
 
 
 @pytest.mark.slow

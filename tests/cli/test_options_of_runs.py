@@ -269,12 +269,15 @@ def test_a_script_with_a_mistake(
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (["topic", "list", "drive.bag"], "--seed: drive.bag is a bag, which is not flown"),
-        (["cmd", "127.0.0.1", "CFE_ES_NOOP"], "--seed: 127.0.0.1:1234 is a computer, which is not flown"),
-        (["tlm", "127.0.0.1"], "--seed: is for a mission, and none is named"),
-        (["console", "--udp", "127.0.0.1"], "--seed: 127.0.0.1 is a computer, which is not flown"),
-        (["param", "list", "capture"], "--seed: is for a mission that flies; say how long"),
-        (["trace", "run.cfepy"], "--seed: run.cfepy is a journal, which says that itself"),
+        (["topic", "list", "drive.bag"], "--seed: only valid for a mission, and drive.bag is a bag"),
+        (
+            ["cmd", "127.0.0.1", "CFE_ES_NOOP"],
+            "--seed: only valid for a mission, and 127.0.0.1:1234 is a remote target",
+        ),
+        (["tlm", "127.0.0.1"], "--seed: requires a mission, and none is named"),
+        (["console", "--udp", "127.0.0.1"], "--seed: only valid for a mission, and 127.0.0.1 is a remote target"),
+        (["param", "list", "capture"], "--seed: requires a mission that runs; say how long"),
+        (["trace", "run.cfepy"], "--seed: only valid for a mission; the journal run.cfepy contains this setting"),
     ],
 )
 def test_what_is_not_flown_takes_no_option_of_a_run(

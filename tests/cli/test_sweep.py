@@ -47,8 +47,8 @@ def test_a_sweep_writes_what_it_found(tmp_path: Path, capsys: pytest.CaptureFixt
             ["--rate", "50", "--set", "/left/rate=10"],
             "--set: /left/rate is what the rate sets; leave --rate or this out",
         ),
-        (["--picture", "a.txt"], "--picture: is no picture"),
-        (["--jobs", "1", "--cluster", "local:1"], "--jobs: says how many processes run here"),
+        (["--picture", "a.txt"], "--picture: must be a picture"),
+        (["--jobs", "1", "--cluster", "local:1"], "--jobs: cannot be combined with --cluster"),
     ],
 )
 def test_what_cannot_be_swept(words: list[str], told: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -222,7 +222,7 @@ def test_no_mark_when_the_yaml_says_so(tmp_path: Path) -> None:
         (["show", "nowhere.tbl"], "nowhere.tbl: cannot be read: No such file"),
         (["show", str(DATA / "cfe_evs.log")], "is no table file: subtype is 16"),
         (["build", "nowhere.yaml"], "nowhere.yaml: cannot be read"),
-        (["show", str(SAMPLE), "--mission", "nowhere"], "no startup script"),
+        (["show", str(SAMPLE), "--mission", "nowhere"], "unknown mission"),
         (["show", str(SAMPLE), "--layout", "nowhere.yaml"], "nowhere.yaml: cannot be read"),
     ],
 )
@@ -242,7 +242,7 @@ def test_layout_file_without_layout(tmp_path: Path, capsys: pytest.CaptureFixtur
     source = tmp_path / "rows.yaml"
     source.write_text("table: A.B\nrows: []\n", encoding="utf-8")
     assert main(["tbl", "show", str(SAMPLE), "--layout", str(source)]) == 2
-    assert f"{source}:1: gives no layout" in capsys.readouterr().err
+    assert f"{source}:1: missing layout" in capsys.readouterr().err
 
 
 def test_the_yaml_of_the_documentation_is_good(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -117,7 +117,7 @@ def test_the_command_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert "--spacecraft-id: is -1; give a number from 0 to 4294967295" in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main(["run", "lab", "--processor-id", "two"])
-    assert "--processor-id: 'two' is no number; give one such as 67 or 0x43" in capsys.readouterr().err
+    assert "--processor-id: invalid number 'two'; expected a whole number such as 67 or 0x43" in capsys.readouterr().err
 
 
 def test_two_spacecraft_in_one_process_are_two_runs() -> None:

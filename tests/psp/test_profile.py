@@ -106,7 +106,7 @@ def test_wrong_files_say_where(tmp_path: Path, text: str, message: str) -> None:
 
 def test_unknown_boards() -> None:
     with pytest.raises(
-        UsageError, match="there is no board 'vax'; there are gr716, linux, rx64m, scobc_a1, workstation"
+        UsageError, match="unknown board 'vax'; expected one of gr716, linux, rx64m, scobc_a1, workstation"
     ):
         load_profile("vax")
     with pytest.raises(UsageError, match=r"nowhere\.yaml: cannot be read"):

@@ -141,7 +141,7 @@ def test_the_run_goes_on_after_a_failure_unless_it_shall_not(folder: Path) -> No
     assert verdicts(fly(folder, text)) == [(False, 2.0), (True, 3.0), (True, 3.0)]
     stopped = fly(folder, text, stop_on_failure=True)
     assert verdicts(stopped) == [(False, 2.0)] * 3
-    assert stopped.verdicts[1].detail == "the run was over before"
+    assert stopped.verdicts[1].detail == "the run ended earlier"
 
 
 def test_what_must_not_come_is_watched_while_the_script_goes_on(folder: Path) -> None:

@@ -290,8 +290,8 @@ TRICKS = (
             "x.launch", '<launch><include file="$(dirname)/x.launch"/><include file="$(dirname)/x.launch"/></launch>'
         ),
     ),
-    parameters("an object", "has the tag", "a: !!python/object/apply:os.system ['touch @/canary']"),
-    parameters("a date without a date", "is no timestamp", "a: !!timestamp soon"),
+    parameters("an object", "unknown tag", "a: !!python/object/apply:os.system ['touch @/canary']"),
+    parameters("a date without a date", "invalid timestamp", "a: !!timestamp soon"),
     parameters("billion laughs", "values when its aliases", f"x0: &x0 [1]\n{NESTED}"),
     parameters("a number of a million digits", "digits", f"a: {'1:' * 500_000}1"),
     mission("an application outside of the mission", "", "nodes: {}\n"),

@@ -196,7 +196,7 @@ def test_several_missions_have_the_schedule_all(suite: Suite) -> None:
 
 
 def test_wrong_arguments() -> None:
-    with pytest.raises(UsageError, match="'fancy' is no policy; there are all, random, pct"):
+    with pytest.raises(UsageError, match="unknown policy 'fancy'; expected one of all, random, pct"):
         explore(policy="fancy")
     with pytest.raises(UsageError, match="seeds"):
         explore(seeds=0)

@@ -28,7 +28,10 @@ def run(arguments: argparse.Namespace) -> int:
     check_json(arguments)
     plan, spec = survey_plan(arguments)
     if arguments.lock and spec.ros.spread:
-        text = "has no topics.lock: its topics get free MsgIds by themselves; a mission with `launch:` has one"
+        text = (
+            "topics.lock is missing: topics of a launch file get free MsgIds automatically; "
+            "only a mission with `launch:` has a topics.lock"
+        )
         raise UsageError(text, file=arguments.mission)
     if arguments.lock:
         return _lock(plan, spec)

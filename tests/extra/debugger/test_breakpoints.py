@@ -108,10 +108,10 @@ def test_a_command_is_told_from_others_with_its_msg_id() -> None:
     ("text", "why"),
     [
         ("CFE_EVS_LONG_EVENT_MSGG", "did you mean CFE_EVS_LONG_EVENT_MSG?"),
-        ("nonsense", "is no packet of this mission; write APP:ID"),
-        ("HK:FOO", "FOO is no type of event; there are DEBUG, INFORMATION, ERROR, CRITICAL"),
-        ("msg.x >", "'msg.x >' is no Python expression"),
-        ("message.x > 3", "names 'message', which is not known here"),
+        ("nonsense", "; expected APP:ID"),
+        ("HK:FOO", "invalid event type FOO; expected one of DEBUG, INFORMATION, ERROR, CRITICAL"),
+        ("msg.x >", "invalid Python expression 'msg.x >'"),
+        ("message.x > 3", "unknown name 'message'"),
     ],
 )
 def test_what_cannot_be_meant_is_told(text: str, why: str) -> None:

@@ -258,10 +258,10 @@ def test_what_cfe_reads_otherwise_is_a_warning(tmp_path: Path, line: str, said: 
 @pytest.mark.parametrize(
     ("head", "said"),
     [
-        ("async def Main(cfe):", "the entry point Main of A is async"),
-        ("def Main():", "the entry point Main of A does not take one argument"),
-        ("def Main(cfe, more):", "the entry point Main of A does not take one argument"),
-        ("def Main(*, cfe):", "the entry point Main of A does not take one argument"),
+        ("async def Main(cfe):", "the entry point Main of A must not be async"),
+        ("def Main():", "the entry point Main of A must take one argument"),
+        ("def Main(cfe, more):", "the entry point Main of A must take one argument"),
+        ("def Main(*, cfe):", "the entry point Main of A must take one argument"),
         ("def Main(cfe, more=1, *, name=''):", ""),
         ("def Main(*args):", ""),
         ("@wrapped\ndef Main():", ""),

@@ -30,12 +30,12 @@ def read_file(file: Path, args: Mapping[str, str] | None = None, environ: Mappin
 @pytest.mark.parametrize(
     ("tag", "said"),
     [
-        ('<param name="a" value="x" type="int"/>', "x.launch:3: <param value>: is 'x', which is no number of type int"),
+        ('<param name="a" value="x" type="int"/>', "x.launch:3: <param value>: must be a number of type int, not 'x'"),
         ('<arg name="x"/><param name="a" value="$(arg x)"/>', "<param value>: the argument 'x' has no value; give x:="),
-        ('<node pkg="p" name="n"/>', "x.launch:3: <node>: has no 'type'; write type="),
-        ('<group ns="">\n</group>', "x.launch:3: <group ns>: is ''; write a namespace such as arm"),
-        ('<param name="a" command="ls -l"/>', "would start the program 'ls', which cfepy does not do"),
-        ('<param name="a" value="$(eval 1 / 0)"/>', "has no value: ZeroDivisionError"),
+        ('<node pkg="p" name="n"/>', "x.launch:3: <node>: missing 'type'; write type="),
+        ('<group ns="">\n</group>', "x.launch:3: <group ns>: invalid namespace ''; expected a name such as arm"),
+        ('<param name="a" command="ls -l"/>', "cannot start the program 'ls'"),
+        ('<param name="a" value="$(eval 1 / 0)"/>', "cannot evaluate $(eval 1 / 0): ZeroDivisionError"),
         ('<param name="a" value="$(eval open(1))"/>', "NameError: name 'open' is not defined"),
         ('<param name="a" value="$(find nothing)"/>', "there is no package 'nothing'; put it beside"),
         ('<include file="none.launch"/>', "x.launch:3: <include file>: none.launch cannot be read: No such file"),
