@@ -124,7 +124,9 @@ def test_a_hook_that_nothing_fills_says_which_add_on_does(monkeypatch: pytest.Mo
     assert callable(hook.need("--perfetto"))
     without(monkeypatch, "reports")
     assert hook.first() is None
-    with pytest.raises(UsageError, match="--perfetto needs the add-on reports, which this installation lacks"):
+    with pytest.raises(
+        UsageError, match="--perfetto requires the add-on reports, which is missing in this installation"
+    ):
         hook.need("--perfetto")
 
 

@@ -42,7 +42,7 @@ class Stage:
         root: folder that stands for the root of the recorded computer; empty for this computer's own.
         absent: paths at which there was nothing.
         notes: what the user should know before.
-        reasons: why the run may be another one.
+        reasons: why the run may differ.
     """
 
     plan: RunPlan
@@ -91,7 +91,7 @@ def _on_tasks_here(plan: RunPlan) -> tuple[RunPlan, tuple[str, ...]]:
     """The plan with tasks that this Python has, since all kinds make the same run; what to say of the change."""
     if plan.tasks != GREENLET or has_greenlets():
         return plan, ()
-    note = "recorded on greenlets, and greenlet is not installed here: replayed on threads, which make the same run"
+    note = "recorded on greenlets, but greenlet is not installed: replayed on threads, which give the same run"
     return replace(plan, tasks=THREAD), (note,)
 
 
@@ -116,7 +116,9 @@ def _unpacked(journal: Journal) -> Iterator[tuple[str, Collection[str]]]:
         try:
             carried = sum(each.size for each in journal.files.values() if each.packed is not None)
             if carried > JOURNAL_FILES_BYTES:
-                raise UsageError(f"they have {carried:,} bytes, more than {JOURNAL_FILES_BYTES:,}; use --from-disk")
+                raise UsageError(
+                    f"they have {carried:,} bytes, more than the limit of {JOURNAL_FILES_BYTES:,}; use --from-disk"
+                )
             for each in journal.files.values():
                 _unpack(each, Path(root))
             for path, names in journal.folders.items():
@@ -188,11 +190,11 @@ def _warnings(journal: Journal) -> Iterator[str]:
     then, now = journal.header.versions, versions()
     for name in ("cfepy", "cfe"):
         if then.get(name) != now[name]:
-            yield f"recorded with {name} {then.get(name)}, this is {now[name]}: the run may be another one"
+            yield f"recorded with {name} {then.get(name)}, this is {now[name]}: the run may differ"
     if then.get("cfepy") == now["cfepy"] and then.get("source") != now["source"]:
-        yield "recorded with another state of cfepy's own source: the run may be another one"
+        yield "recorded with another state of cfepy's own source: the run may differ"
     if _minor(then.get("python", "")) != _minor(now["python"]):
-        yield f"recorded with Python {then.get('python')}, this is {now['python']}: the run may be another one"
+        yield f"recorded with Python {then.get('python')}, this is {now['python']}: the run may differ"
 
 
 def _minor(version: str) -> str:
@@ -208,7 +210,7 @@ def _host_changes(journal: Journal) -> Iterator[str]:
     now = host_facts()
     for name, value in journal.header.host.items():
         if now.get(name, value) != value:
-            yield f"another computer: {name} was {value}, is {now[name]}"
+            yield f"recorded on another computer: {name} was {value}, is {now[name]}"
 
 
 def moved_plan(header: Header, root: str) -> RunPlan:

@@ -22,7 +22,7 @@ from cfepy.script.conditions import Collected, Condition, ResetCondition, Scene,
 from cfepy.script.text import Script, Step, read_script
 from cfepy.units import NS_PER_MS, NS_PER_S
 
-OVER = "the run was over before"
+OVER = "the run ended earlier"
 LOOK_NS = 10 * NS_PER_MS  # how often an expectation looks
 
 
@@ -38,7 +38,7 @@ class StepVerdict:
 
     @property
     def follows(self) -> bool:
-        """Whether it failed only because the run was over before it was reached."""
+        """Whether it failed only because the run ended before the step was reached."""
         return not self.ok and self.detail == OVER
 
     @classmethod

@@ -173,8 +173,8 @@ def test_ordered_sets_are_true_or_false(tmp_path: Path, capsys: pytest.CaptureFi
     folder = write_mission(tmp_path, "!\n", mission_yaml="ordered_sets: 3\nnodes: {A: {ordered_sets: maybe}}\n")
     assert main(["check", folder]) == 1
     shown = "".join(capsys.readouterr())
-    assert "mission.yaml:1: ordered_sets: is 3; write true or false" in shown
-    assert "mission.yaml:2: nodes.A.ordered_sets: is 'maybe'; write true or false" in shown
+    assert "mission.yaml:1: ordered_sets: must be true or false, not 3" in shown
+    assert "mission.yaml:2: nodes.A.ordered_sets: must be true or false, not 'maybe'" in shown
 
 
 def test_impossible_numbers_of_runs(capsys: pytest.CaptureFixture[str]) -> None:

@@ -182,8 +182,8 @@ def test_a_computer_elsewhere(console: Console, monkeypatch: pytest.MonkeyPatch,
     assert "APP 3 INFORMATION: all is well" in output
     assert "expect event APP 3 within 60\n" in output
     assert "0x0999  n=1" in output
-    assert output.count("a computer elsewhere shows its packets alone") == 2
-    assert "a computer elsewhere does not stand still" in output
+    assert output.count("a remote target can only be checked by its packets") == 2
+    assert "a remote target cannot be paused" in output
     assert " send CFE_ES_NOOP\n" in script.read_text(encoding="utf-8")
 
 

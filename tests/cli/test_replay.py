@@ -269,9 +269,9 @@ def test_a_replay_that_ends_before_the_boot_does_says_why(tmp_path: Path, capsys
         if kind in ("header", "file"):
             writer.write(kind, body)
     writer.close()
-    assert said_of("a.cfepy") == "0.1 virtual seconds; there the recorded run ended"
+    assert said_of("a.cfepy") == "0.1 virtual seconds; the recorded run ended there"
     assert said_of("a.cfepy", "--until", "0.05") == "0.05 virtual seconds; the replay ended there"
-    assert said_of("cut.cfepy") == "0 virtual seconds; there the journal ends, --until SECONDS goes on"
+    assert said_of("cut.cfepy") == "0 virtual seconds; the journal ends there; continue with --until SECONDS"
 
 
 def test_a_replay_of_a_node_that_still_runs_says_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -279,4 +279,4 @@ def test_a_replay_of_a_node_that_still_runs_says_why(tmp_path: Path, capsys: pyt
     main(["node", "--for", "1", "--record", "a.cfepy", "spin.py"])
     assert "the node still runs after 1 virtual seconds; --for runs longer" in capsys.readouterr().err
     main(["replay", "a.cfepy"])
-    assert "the node still runs after 1 virtual seconds; there the recorded run ended" in capsys.readouterr().err
+    assert "the node still runs after 1 virtual seconds; the recorded run ended there" in capsys.readouterr().err

@@ -39,7 +39,9 @@ def test_a_mission_raises_and_lowers() -> None:
 
 def test_a_board_is_the_most_that_there_is() -> None:
     assert MissionLimits({"os_max_tasks": 20}).config(RX64M, has_nodes=True).os_max_tasks == 20
-    with pytest.raises(UsageError, match=r"limits.os_max_tasks: is 33, the board rx64m has 32; lower it"):
+    with pytest.raises(
+        UsageError, match=r"limits.os_max_tasks: must be at most 32 on the board rx64m, not 33; lower it"
+    ):
         MissionLimits({"os_max_tasks": 33}).config(RX64M, has_nodes=True)
     with pytest.raises(UsageError, match=r"limits.nodes: is 5, which takes es_max_applications: 38; the board"):
         MissionLimits(nodes=5).config(RX64M, has_nodes=True)
@@ -90,7 +92,9 @@ def test_check_says_which_line_asks_for_too_much_and_which_limit_to_raise(tmp_pa
 
 def test_a_wrong_limit_stops_a_run_with_file_and_line(tmp_path: Path) -> None:
     mission = write_mission(tmp_path, "!\n", mission_yaml="board: rx64m\nlimits:\n  sb_max_pipes: 99\n")
-    with pytest.raises(UsageError, match=r"mission.yaml:3: limits.sb_max_pipes: is 99, the board rx64m has 32"):
+    with pytest.raises(
+        UsageError, match=r"mission.yaml:3: limits.sb_max_pipes: must be at most 32 on the board rx64m, not 99"
+    ):
         Mission(read_mission(mission), console=Console(quiet=True))
 
 

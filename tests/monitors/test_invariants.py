@@ -218,8 +218,8 @@ def test_the_run_is_that_without_invariants_as_long_as_they_hold(folder: Path) -
             "{x: {file: checks.py, function: nobody}}",
             "no such function or class, it has Twice, fine, broken, asserts, bare, denies",
         ),
-        ("{x: {function: fine}}", "names a function but not the file"),
-        ('{x: {topic: /count, holds: "True", whne: "True"}}', "is not known here; known are"),
+        ("{x: {function: fine}}", "`function` requires `file`"),
+        ('{x: {topic: /count, holds: "True", whne: "True"}}', "unknown field; known fields are"),
     ],
 )
 def test_mistakes_are_told_with_their_place(folder: Path, text: str, error: str) -> None:

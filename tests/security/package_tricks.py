@@ -184,7 +184,9 @@ PACKAGE_TRICKS = (
         f"add_definitions({'-Da ' * 999})\n" + "add_library(a)\n" * 999,
     ),
     with_(cmake("a pattern", "look at more than", f"file(GLOB x {'*/' * 30}*.cpp)"), "goes round", _circles),
-    with_(cmake("its file", "more than 1,048,576 bytes", ""), "of a terabyte", holes("evil/CMakeLists.txt")),
+    with_(
+        cmake("its file", "more than the limit of 1,048,576 bytes", ""), "of a terabyte", holes("evil/CMakeLists.txt")
+    ),
     with_(cmake("its file", HARMLESS, ""), "is a device", link("evil/CMakeLists.txt", "/dev/zero")),
     with_(cmake("its file", "", ""), "is a pipe", pipe("evil/CMakeLists.txt")),
     with_(package("a manifest", HARMLESS, words="check {}/src"), "is a pipe", pipe("evil/package.xml")),

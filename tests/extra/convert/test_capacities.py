@@ -50,7 +50,7 @@ def test_all_kinds_of_fields(tmp_path: Path) -> None:
             "std_srvs/SetBool: {message: 9}",
             "std_srvs/SetBool.message: is the service std_srvs/SetBool; name one of its",
         ),
-        ("sensor_msgs/BatteryState: {location: 0}", "sensor_msgs/BatteryState.location: is 0, it must be"),
+        ("sensor_msgs/BatteryState: {location: 0}", "sensor_msgs/BatteryState.location: must be a whole"),
         (
             "visualization_msgs/InteractiveMarkerFeedback: {mouse_point: 3}",
             "visualization_msgs/InteractiveMarkerFeedback.mouse_point: cannot have a capacity",

@@ -41,7 +41,7 @@ def read_file(file: Path, args: Mapping[str, str] | None = None, environ: Mappin
         ('<include file="none.launch"/>', "x.launch:3: <include file>: none.launch cannot be read: No such file"),
         (
             "<rosparam>a: rad(two)</rosparam>",
-            "has 'rad(two)', which is no angle: name 'two' is not defined",
+            "has an invalid angle 'rad(two)': name 'two' is not defined",
         ),
         ("<rosparam>a: 2001-01-01</rosparam>", "<rosparam>: /a is datetime.date(2001, 1, 1), which no"),
         ('<param name="a" value="4294967296"/>', "<param>: /a is 4294967296, which no parameter can be: int exceeds"),
@@ -68,7 +68,7 @@ def test_an_error_in_an_included_file_names_that_file(tmp_path: Path) -> None:
 
 
 def test_a_file_that_includes_itself_ends(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="does a file include itself"):
+    with pytest.raises(UsageError, match="check for a file that includes itself"):
         launch(tmp_path, '<include file="$(dirname)/x.launch"/>')
 
 
@@ -76,7 +76,7 @@ def test_a_file_that_includes_itself_ends(tmp_path: Path) -> None:
     ("tag", "said"),
     [
         ('<machine name="m" address="a"/>', "<machine> is ignored"),
-        ("<frob/>", "<frob> is not known"),
+        ("<frob/>", "unknown tag <frob>"),
         ('<node pkg="p" type="t" name="n" frob="1"/>', "<node> has no attribute 'frob'"),
         ('<node pkg="p" type="t" name="n" launch-prefix="gdb"/>', "launch-prefix='gdb' is ignored"),
         ('<rosparam command="delete" param="x"/>', '<rosparam command="delete"> is left out'),
@@ -169,8 +169,8 @@ def test_a_file_is_read_to_the_end(tmp_path: Path) -> None:
     for said in (
         "mismatched tag, column 3; the <group> of line 2 is open there",
         "the argument 'rate' has no value; pass it in the <include> of ",
-        "<node respawn>: is 'perhaps'; write true or false",
-        "<node>: has no 'name'",
+        "<node respawn>: must be true or false, not 'perhaps'",
+        "<node>: missing 'name'",
         "<node> has no attribute 'nme'; it is ignored, did you mean name?",
         "<nod> is not known; it is ignored, did you mean <node>?",
         "<include file>: passes rat, which",
@@ -225,7 +225,7 @@ def test_arguments_that_nothing_uses(tmp_path: Path, body: str, unused: list[str
 
 
 def test_tags_that_are_nested_too_deeply(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"x\.launch:2: <group>: is inside 100 other tags"):
+    with pytest.raises(UsageError, match=r"x\.launch:2: <group>: is nested more than 100 tags deep"):
         launch(tmp_path, "<group>" * 2000 + "</group>" * 2000)
 
 
