@@ -67,7 +67,7 @@ def test_bad_plans_are_bad_usage(tmp_path: Path, capsys: pytest.CaptureFixture[s
     path = tmp_path / "bad.yaml"
     path.write_text("- drop: /a\n  cuont: 3\n", encoding="utf-8")
     assert main(["run", "lab", "--faults", str(path)]) == 2
-    assert f"{path}:2: [0].cuont: is no option of drop; did you mean count?" in capsys.readouterr().err
+    assert f"{path}:2: [0].cuont: unknown option of drop; did you mean count?" in capsys.readouterr().err
     assert main(["run", "lab", "--faults", "seed:x"]) == 2
     assert "--faults: is 'seed:x'" in capsys.readouterr().err
     assert main(["run", "lab", "--faults", str(tmp_path / "none.yaml")]) == 2

@@ -98,7 +98,7 @@ def test_what_a_word_means(recorded: Recorded, word: str, name: str, field: str)
 def test_a_pattern_means_several_topics(recorded: Recorded) -> None:
     assert len(recorded.of_run.matching("/arm_health/*")) == 4
     assert [field for _, field in recorded.of_run.matching("/phase.data")] == ["data"]
-    with pytest.raises(UsageError, match="there is no such topic"):
+    with pytest.raises(UsageError, match="unknown topic"):
         recorded.of_run.matching("/leg/*")
 
 

@@ -207,7 +207,7 @@ def test_wrong_arguments() -> None:
 
 def test_a_decorator_without_parentheses_is_told() -> None:
     bare: Any = explore
-    with pytest.raises(UsageError, match=r"@explore: needs parentheses: write @explore\(\)"):
+    with pytest.raises(UsageError, match=r"@explore: requires parentheses: write @explore\(\)"):
         bare(lambda mission: None)
 
 

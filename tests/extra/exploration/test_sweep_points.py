@@ -62,5 +62,5 @@ def test_points_change_the_plan() -> None:
 
 
 def test_a_rate_that_sets_nothing() -> None:
-    with pytest.raises(UsageError, match="does not say what a rate sets"):
+    with pytest.raises(UsageError, match="missing target of --rate"):
         points_of(read_mission("lab"), [None], [50], [], [0])

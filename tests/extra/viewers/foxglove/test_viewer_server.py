@@ -169,7 +169,7 @@ def test_a_service_that_nobody_can_describe_is_not_offered_and_may_end(
         client.services["/short"] = {"id": 0}
         client.call("/short", 1, b"")
         client.wait_for(lambda: client.told("serviceCallFailure"))
-        assert client.told("serviceCallFailure")[0]["message"] == "there is no such service"
+        assert client.told("serviceCallFailure")[0]["message"] == "unknown service"
         run.viewer._look_at_s = 0.0
         run.go_on()  # it has been looked at
         run.until(2)

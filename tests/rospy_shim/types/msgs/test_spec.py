@@ -96,7 +96,7 @@ def test_unknown_and_endless_types(tmp_path: Path) -> None:
         library.message_class("bad/C")
     with pytest.raises(UsageError, match="no message type 'bad/D'"):
         library.message_class("bad/D")
-    with pytest.raises(UsageError, match="no service type 'bad/E'"):
+    with pytest.raises(UsageError, match="unknown service type 'bad/E'"):
         library.service_class("bad/E")
 
 
