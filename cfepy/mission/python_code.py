@@ -429,7 +429,7 @@ def _fault_of(function: Callable[..., Any]) -> str | None:
     try:
         inspect.signature(function).bind(None)
     except TypeError:
-        return f"does not take one argument, the handle of the services; write `def {function.__name__}(cfe):`"
+        return f"must take one argument, the handle of the services; write `def {function.__name__}(cfe):`"
     except ValueError:
         return None  # a function of C that does not tell
     return None

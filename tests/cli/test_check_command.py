@@ -30,7 +30,7 @@ def test_every_problem_is_a_line(
     first, second, count = capsys.readouterr().out.splitlines()
     assert first.startswith("startup.scr:2: ")
     assert "has no function Quite; did you mean Quiet?" in first
-    assert second == "startup.scr:3: the name 'QUIET' is taken by line 1; give this one another name"
+    assert second == "startup.scr:3: the name 'QUIET' is already taken by line 1; choose another name"
     assert count == "2 problems found"
 
 

@@ -66,8 +66,8 @@ def test_what_cannot_run_is_left_out_with_a_note(write_launch: Launch, capsys: p
     ("body", "said"),
     [
         ('<node pkg="demo" type="driver" name="driver" required="true"/>', "/driver is required, but package 'demo'"),
-        ('<node pkg="demo" type="driver" name="driver"/>', "has no node that can run here: "),
-        ("", "has no node that can run here: it has no <node>"),
+        ('<node pkg="demo" type="driver" name="driver"/>', "has no node that cfepy can run: "),
+        ("", "has no node that cfepy can run: it has no <node>"),
         ('<node pkg="demo" type="talker.py" name="t" args="\'"/>', '<node>: args="\'": No closing quotation'),
     ],
 )
@@ -144,10 +144,10 @@ def test_even_a_short_run_is_one_of_the_nodes(write_launch: Launch, capsys: pyte
 @pytest.mark.parametrize(
     ("file", "text", "said"),
     [
-        ("node.py", "import rospy\n", "is a program and no mission; `cfepy node` runs"),
-        ("node", "#!/usr/bin/env python\n", "is a program and no mission"),
-        ("mission.yaml", "board: linux\n", "is neither a startup script nor a launch file"),
-        ("run.bag", "#ROSBAG V2.0\n!\0\0", "is neither a startup script nor a launch file"),
+        ("node.py", "import rospy\n", "is a program, not a mission; use `cfepy node`"),
+        ("node", "#!/usr/bin/env python\n", "is a program, not a mission"),
+        ("mission.yaml", "board: linux\n", "is not a startup script or a launch file"),
+        ("run.bag", "#ROSBAG V2.0\n!\0\0", "is not a startup script or a launch file"),
     ],
 )
 def test_what_is_no_mission(
@@ -161,7 +161,7 @@ def test_what_is_no_mission(
 
 def test_hints_at_what_was_meant(write_launch: Launch, demo: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", write_launch(TALKER.format("", "")), "n=3"]) == 2
-    assert "'n=3' is no argument for it; write NAME:=VALUE" in capsys.readouterr().err
+    assert "invalid argument 'n=3'; expected NAME:=VALUE" in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main(["node", str(demo / "scripts/talker.py"), "--xyzzy"])
     assert "unrecognized arguments: --xyzzy; put the options of the node itself after --" in capsys.readouterr().err

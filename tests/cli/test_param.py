@@ -76,7 +76,10 @@ def test_files_for_the_ground(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 @pytest.mark.parametrize(
     ("arguments", "error"),
     [
-        (("set", "p/params01.tbl", "/a", "2001-01-01"), "value: is a date, which is no value of a ROS parameter"),
+        (
+            ("set", "p/params01.tbl", "/a", "2001-01-01"),
+            "value: must be a value that ROS parameters can have, not a date",
+        ),
         (("set", "p/params01.tbl", "/a", "[1"), "is not YAML"),
         (("delete", "p/params01.tbl", "/none"), "params01.tbl: unknown parameter /none"),
         (

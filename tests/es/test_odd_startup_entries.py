@@ -78,5 +78,5 @@ def test_check_tells_of_entries_without_names() -> None:
     assert [note.explanation.split(":")[0].split(";")[0] for note in notes] == [
         "the application has no name",
         "the symbol is ''",
-        "the library has no name",
+        "the name of the library is missing",
     ]

@@ -104,7 +104,7 @@ def test_fifo_has_none(tmp_path: Path, kind: str) -> None:
     flown = fly(plan)
     (row,) = flown.mission.record.rows("faults")
     assert (row["times"], row["explored"]) == (0, True)
-    assert row["never"] == "no schedule asked for it; cfepy explore tries those that do"
+    assert row["never"] == "no schedule selected it; cfepy explore tries schedules that do"
     without = fly(replace(plan, faults=None))
     assert flown.trace == without.trace
 

@@ -86,7 +86,7 @@ def test_a_field_of_a_ros_message(tmp_path: Path) -> None:
     assert numbers(mission)[:4] == [0, 77, 2, 3]
     nevers = [each["never"] for each in mission.record.rows("faults")]
     assert nevers[0] is None
-    assert "no field date" in nevers[1]
+    assert "cannot set date" in nevers[1]
     assert "/numbers: " in nevers[2]
 
 

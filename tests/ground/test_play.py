@@ -149,7 +149,7 @@ def test_packets_of_a_raw_topic_are_played_as_they_were_recorded(tmp_path: Path)
 
 def test_options_need_a_bag(tmp_path: Path) -> None:
     (tmp_path / "hears.py").write_text(HEARS, encoding="utf-8")
-    with pytest.raises(UsageError, match="give the bag, too"):
+    with pytest.raises(UsageError, match="requires --play FILE"):
         RunPlan((str(tmp_path / "hears.py"),), NODE, play_options="--rate 2").spec()
 
 

@@ -164,7 +164,7 @@ def test_a_layout_in_the_file(tmp_path: Path) -> None:
         ("table: APP.Plan\ndescription: " + "x" * 32, 2, "description", "31 characters"),
         ("table: APP.Plan\nrows:\n- {MsgId: 1}\n- MsgId: 2\n  Bits: 3", 5, "rows[1].Bits", "no such field"),
         ("table: APP.Plan\nrows:\n- MsgId: 70000", 3, "rows[0].MsgId", "does not fit u16"),
-        ("table: APP.Plan\nrows:\n- Points:\n  - {X: 1}\n  - {X: high}", 5, "rows[0].Points[1].X", "not a number"),
+        ("table: APP.Plan\nrows:\n- Points:\n  - {X: 1}\n  - {X: high}", 5, "rows[0].Points[1].X", "must be a number"),
         ("table: APP.Plan\nrows:\n- {row: 3}\n- {row: 2}", 4, "rows[1].row", "sort the rows"),
         ("table: APP.Plan\nrows:\n- {row: 8}", 3, "rows[0]", "APP.Plan has 8"),
         ("table: APP.Plan\nbytes: 500", 2, "bytes", "past the end"),

@@ -50,10 +50,14 @@ def test_what_is_said(tmp_path: Path) -> None:
         (
             "name: 7",
             "name: 16777216",
-            "7: cpp_nodes.capacities.sensor_msgs/JointState.name: is 16777216, it must be at",
+            "7: cpp_nodes.capacities.sensor_msgs/JointState.name: must be at most ",
         ),
-        ("sensor_msgs/J", "J", "7: cpp_nodes.capacities.JointState: is no message type; write it with its package"),
-        ("  capacities", "  capacity", "5: cpp_nodes.capacity: is not known here; known are profile, arena_bytes, cap"),
+        ("sensor_msgs/J", "J", "7: cpp_nodes.capacities.JointState: is not a message type; write it with its package"),
+        (
+            "  capacities",
+            "  capacity",
+            "5: cpp_nodes.capacity: unknown field; known fields are profile, arena_bytes, cap",
+        ),
     ],
 )
 def test_errors_say_where(tmp_path: Path, old: str, new: str, error: str) -> None:

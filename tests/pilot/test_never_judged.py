@@ -25,22 +25,22 @@ TALKER = """
 """
 DEMANDS = {
     "invariants: {few: {topic: /enrgy, holds: msg.data < 3}}": "invariant 'few' (mission.yaml:1) was never judged: "
-    "nothing came of /enrgy; did you mean /energy?",
+    "no message of /enrgy was sent; did you mean /energy?",
     "invariants: {few: {topic: /energy, holds: msg.data < 3, when: msg.data > 9}}": "invariant 'few' (mission.yaml:1) "
     "was never judged",
     "deadlines: {topics: {/enrgy: {latency: 1 ms}}}": "the deadline latency of /enrgy was never measured: "
-    "nothing came of /enrgy; did you mean /energy?",
+    "no message of /enrgy was sent; did you mean /energy?",
     "deadlines: {topics: {/energy: {latency: 1 ms}}}": "the deadline latency of /energy was never measured",
     "deadlines: {topics: {'0x0895': {at_most_every: 1 Hz}}}": "the deadline at_most_every of 0x0895 was never "
-    "measured: nothing came of 0x0895",
+    "measured: no message of 0x0895 was sent",
     "deadlines: {apps: {TALKR: {response: 1 ms}}}": "the deadline response of TALKR was never measured: "
-    "there is no application TALKR; did you mean TALKER?",
-    "results: {/enrgy: last}": "the result /enrgy (last) never came: nothing came of /enrgy; did you mean /energy?",
-    "results: {/ram/x.txt: file}": "the result /ram/x.txt (file) never came: there is no such file",
-    "results: {TALKR: output}": "the result TALKR (output) never came: there is no application TALKR; "
-    "did you mean TALKER?",
+    "unknown application TALKR; did you mean TALKER?",
+    "results: {/enrgy: last}": "the result /enrgy (last) never came: no message of /enrgy "
+    "was sent; did you mean /energy?",
+    "results: {/ram/x.txt: file}": "the result /ram/x.txt (file) never came: the file does not exist",
+    "results: {TALKR: output}": "the result TALKR (output) never came: unknown application TALKR; did you mean TALKER?",
     "results: {/energy: last}": "",
-    "results: {/silent: last}": "the result /silent (last) never came: nothing came of /silent",
+    "results: {/silent: last}": "the result /silent (last) never came: no message of /silent was sent",
     "invariants: {few: {topic: /energy, holds: msg.data < 3}}": "",
 }
 

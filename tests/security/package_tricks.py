@@ -293,7 +293,7 @@ PACKAGE_TRICKS = (
     Trick(
         "mission: parameters of a device",
         "check {}",
-        "there is no file",
+        "file not found",
         files_of({"startup.scr": "!\n", "mission.yaml": "params_from: [/dev/stdin]\n"}),
     ),
     Trick(

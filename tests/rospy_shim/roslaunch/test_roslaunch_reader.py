@@ -176,7 +176,7 @@ def test_a_file_is_read_to_the_end(tmp_path: Path) -> None:
         "<include file>: passes rat, which",
         "/broken.yaml is not YAML",
         "/twice is also the name of the node at",
-        "<test time-limit>: is 'soon'; write a number",
+        "<test time-limit>: must be a number",
     ):
         assert said in texts
 
