@@ -46,7 +46,7 @@ class MessageDecoder:
         except UsageError:
             raise
         except Exception as error:  # whatever the generated code raises for bytes that are no such message
-            raise UsageError(f"no {header['type']}: {error}", file=message.topic) from None
+            raise UsageError(f"invalid {header['type']}: {error}", file=message.topic) from None
 
 
 # -- one message -------------------------------------------------------------------------------------------------------

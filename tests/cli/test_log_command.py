@@ -97,7 +97,7 @@ def test_a_bad_file_does_not_hide_the_good_ones(tmp_path: Path, capsys: pytest.C
     assert "CFE_TBL.CritReg" in out
     cannot_be_read, cut_off, table = err.splitlines()
     assert "nowhere: cannot be read" in cannot_be_read
-    assert "is cut off: record 40 has 5 of 8 bytes" in cut_off
+    assert "is truncated: record 40 has 5 of 8 bytes" in cut_off
     assert "cfepy tbl show" in table
 
 

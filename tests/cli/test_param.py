@@ -86,8 +86,8 @@ def test_files_for_the_ground(tmp_path: Path, capsys: pytest.CaptureFixture[str]
             ("set", "p/params01.tbl", "/a", "x" * 20000),
             "the parameter tables are full: /a takes more than all 127 rows",
         ),
-        (("set", "robot.yaml", "/a", "1"), "robot.yaml: is no table file"),
-        (("list", "empty"), "empty: there is no file of a parameter table in it"),
+        (("set", "robot.yaml", "/a", "1"), "robot.yaml: is not a table file"),
+        (("list", "empty"), "empty: contains no file of a parameter table"),
         (("get", "no_such_mission", "/a"), "no_such_mission"),
     ],
 )

@@ -29,7 +29,7 @@ def test_a_picture(kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
         (["/joint_state.position", "-o", "{}/x.png"], "did you mean /joint_states?"),
         (["/joint_states.name", "-o", "{}/x.png"], "/joint_states: name: cannot be drawn: neither numbers nor a text"),
         (["/phase.data", "-o", "/no/such/x.png"], "/no/such/x.png: --output: cannot be written"),
-        (["/phase.data", "-o", "{}/x.png", "--from", "9s"], "nothing was sent from 9 s on"),
+        (["/phase.data", "-o", "{}/x.png", "--from", "9s"], "no message was sent after 9 s"),
     ],
 )
 def test_bad_usage(words: list[str], why: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

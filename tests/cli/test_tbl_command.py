@@ -93,7 +93,7 @@ def test_tables_of_a_missions_own_apps(tmp_path: Path, capsys: pytest.CaptureFix
     assert main(["tbl", "build", str(source)]) == 2
     assert main(["tbl", "build", str(source), "--mission", str(tmp_path)]) == 0
     assert read((tmp_path / "points.tbl").read_bytes()).data == bytes.fromhex("ffff0100") + bytes(12)
-    assert "nobody declares a table LIMITS.Points" in capsys.readouterr().err
+    assert "unknown table LIMITS.Points" in capsys.readouterr().err
 
 
 def test_an_app_that_cannot_be_read_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

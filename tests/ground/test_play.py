@@ -123,7 +123,7 @@ def test_a_recording_whose_name_looks_like_an_option_is_played(tmp_path: Path, m
         ("--rate 0", "must be more than 0"),
         ("--rate", "expected one argument"),
         ("--no-such", "unrecognized arguments: --no-such"),
-        ("more.bag", "more.bag is no option; --play names the bag"),
+        ("more.bag", "unexpected more.bag; name the bag with --play"),
         ("--topics '/a", "No closing quotation"),
     ],
 )

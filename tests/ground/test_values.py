@@ -73,9 +73,9 @@ def test_the_packet_is_the_commands_own() -> None:
 @pytest.mark.parametrize(
     ("word", "said"),
     [
-        ("Cuont=1", "Cuont: no such field; did you mean Count? APP_SET has Count, Signed, "),
-        ("Inner=1", "Inner: no such field; did you mean Inner.Id? "),
-        ("Inner", "'Inner' is no value of a field; write field=value"),
+        ("Cuont=1", "Cuont: unknown field; did you mean Count? APP_SET has Count, Signed, "),
+        ("Inner=1", "Inner: unknown field; did you mean Inner.Id? "),
+        ("Inner", "invalid field value 'Inner'; expected FIELD=VALUE"),
         ("Count=300", "Count: 300 does not fit u8"),
         ("Count=-1", "Count: -1 does not fit u8"),
         ("Count=1.5", "Count: must be an integer, not '1.5'"),

@@ -102,7 +102,7 @@ def test_a_mistake_in_the_mission_file_ends_the_run(mission: Path, capfd: pytest
     file = mission / "mission.yaml"
     file.write_text(file.read_text(encoding="utf-8").replace("word:", "wort:"), encoding="utf-8")
     assert main(["run", str(mission), "--for", "1"]) == 2
-    error = "mission.yaml:6: cpp_nodes.capacities.ping/Beat.wort: is no field of ping/Beat; did you mean word?"
+    error = "mission.yaml:6: cpp_nodes.capacities.ping/Beat.wort: unknown field of ping/Beat; did you mean word?"
     assert error in capfd.readouterr().err
     assert main(["check", str(mission)]) == 1
     assert capfd.readouterr().out.count(error) == 1
