@@ -33,7 +33,7 @@ def test_nodes_get_what_roslaunch_gives_them(write_launch: Launch, capsys: pytes
     assert printed(shown, "arm/talker") == [f"argv {argv} cwd scripts namespace /arm"]
     heard = [line.rpartition(": ")[2] for line in printed(shown, "arm/listener")]
     assert heard == ["heard hello 1", "heard hello 2"]
-    assert "launch: arm/talker has ended with exit status 0; it is required, so the run is over" in shown
+    assert "launch: arm/talker ended with exit status 0; it is required, so the run ends" in shown
     assert "/talk " in shown
 
 
@@ -50,7 +50,7 @@ def test_a_node_that_respawns(write_launch: Launch, capsys: pytest.CaptureFixtur
     assert main(["launch", file, "--for", "4"]) == 0
     shown = capsys.readouterr().out
     assert len(printed(shown, "talker")) == 4  # at 0.5 s, then every 1.1 s
-    assert shown.count("launch: talker has ended with exit status 0 and is started again") == 4
+    assert shown.count("launch: talker ended with exit status 0 and is restarted") == 4
 
 
 def test_what_cannot_run_is_left_out_with_a_note(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
@@ -58,8 +58,10 @@ def test_what_cannot_run_is_left_out_with_a_note(write_launch: Launch, capsys: p
     file = write_launch(f"{TALKER.format('', COUNT.format(1))}{missing}")
     assert main(["launch", file, "--quiet"]) == 0
     said = capsys.readouterr().err
-    assert f"{file}:1: node /driver is left out: package 'demo' has no file 'driver': a C++ node, or one" in said
-    assert f"{file}:2: node /other is left out: there is no package 'absent'" in said
+    assert (
+        f"{file}:1: node /driver is left out: package 'demo' has no file 'driver': a C++ node, or a missing one" in said
+    )
+    assert f"{file}:2: node /other is left out: unknown package 'absent'" in said
 
 
 @pytest.mark.parametrize(
@@ -90,7 +92,7 @@ def test_a_launch_file_by_its_package(
     assert main(["launch", "demo", "other.launch"]) == 2
     assert "demo other.launch: package 'demo' has no file 'other.launch'" in capsys.readouterr().err
     assert main(["launch", "dmo", "demo.launch"]) == 2
-    assert "dmo demo.launch: there is no package 'dmo'; did you mean demo?" in capsys.readouterr().err
+    assert "dmo demo.launch: unknown package 'dmo'; did you mean demo?" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("here", ["", "src", "src/stack/demo/scripts", "src/other"])
@@ -196,7 +198,7 @@ def test_a_launch_file_where_a_mission_is_meant(write_launch: Launch, capsys: py
     assert main(["run", "lab", "--arg", "n:=1"]) == 2
     other = write_launch('<node pkg="demo" type="talker.py" name="a"/>\n<node pkg="none" type="x" name="b"/>')
     assert main(["check", other]) == 1
-    assert f"{other}:2: node /b is left out: there is no package 'none'" in capsys.readouterr().out
+    assert f"{other}:2: node /b is left out: unknown package 'none'" in capsys.readouterr().out
     assert main(["check", write_launch("<nod")]) == 1
     assert f"{other}:1: " in capsys.readouterr().out
 
@@ -250,8 +252,8 @@ URDF = """
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ('xyz="1 0 x"', "joint turn: xyz='1 0 x': give three numbers"),
-        ('xyz="1 0"', "joint turn: xyz='1 0': give three numbers"),
+        ('xyz="1 0 x"', "joint turn: xyz must be three numbers, not '1 0 x'"),
+        ('xyz="1 0"', "joint turn: xyz must be three numbers, not '1 0'"),
         ("<", "not well-formed"),
     ],
 )
@@ -265,7 +267,7 @@ def test_a_robot_description_with_a_mistake(
     )
     assert main(["launch", file]) == 1
     (line,) = printed(capsys.readouterr().out, "state")
-    assert "robot_description is no URDF: " in line
+    assert "robot_description is not a URDF: " in line
     assert said in line
 
 

@@ -63,7 +63,7 @@ def test_files_for_the_ground(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert "params01.tbl" in said(capsys, "set", out, "/robot/rate", "2.5")
     assert "params02.tbl" in said(capsys, "set", out, "/new", "{a: true}")
     said(capsys, "delete", out, "/robot/axes")
-    assert said(capsys, "delete", out / "params01.tbl", "/text", status=2).endswith("with the files of all\n")
+    assert said(capsys, "delete", out / "params01.tbl", "/text", status=2).endswith("with the files of all tables\n")
     assert said(capsys, "set", out, "/new/a", "true") == "nothing changes\n"
     assert said(capsys, "dump", out, "/robot") == "rate: 2.5\n"
     assert said(capsys, "get", out, "/new") == "a: true\n"
@@ -84,7 +84,7 @@ def test_files_for_the_ground(tmp_path: Path, capsys: pytest.CaptureFixture[str]
         (("delete", "p/params01.tbl", "/none"), "params01.tbl: unknown parameter /none"),
         (
             ("set", "p/params01.tbl", "/a", "x" * 20000),
-            "the parameter tables are full: /a takes more than all 127 rows",
+            "the parameter tables are full: /a needs more than all 127 rows",
         ),
         (("set", "robot.yaml", "/a", "1"), "robot.yaml: is not a table file"),
         (("list", "empty"), "empty: contains no file of a parameter table"),

@@ -138,7 +138,7 @@ def test_publishing(tmp_path: Path, capsys: Capture) -> None:
     found = json.loads(said(capsys, *words, "go", "-r", "2", "--at", "1", "--for", "2.9", "--json", "-"))
     assert found == {"topic": "/orders", "published": 4, "printed": ["[robot] got go"] * 4, "problems": []}
     assert main(["topic", "pub", mission, "/orders", "std_msgs/None", "x"]) == 1
-    assert "there is no message type std_msgs/None" in capsys.readouterr().err
+    assert "unknown message type std_msgs/None" in capsys.readouterr().err
     assert main(["topic", *words, "{no: 1}"]) == 1
     assert "/orders: " in capsys.readouterr().err
 

@@ -169,4 +169,4 @@ def test_a_node_of_a_launch_file_comes_back(tmp_path: Path) -> None:
         mission.run_for(4)
         lines = mission.console.lines
         assert sum("begins" in line for line in lines) == 2
-        assert any("exit status 139 and is started again" in line for line in lines)
+        assert any("exit status 139 and is restarted" in line for line in lines)

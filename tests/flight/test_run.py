@@ -111,4 +111,4 @@ def test_a_node_s_file_that_fails(tmp_path: Path) -> None:
     (tmp_path / "broken.py").write_text("import sys\nsys.exit(3)\n", encoding="utf-8")
     run = cfepy.run(tmp_path / "broken.py", seconds=1, tasks="greenlet")
     assert run.problems == ["BROKEN ended with exit status 3 (node /BROKEN)"]
-    assert [line for line in run.console if "BROKEN has ended with exit status 3" in line]
+    assert [line for line in run.console if "BROKEN ended with exit status 3" in line]

@@ -123,7 +123,7 @@ def _doubled(first: str, again: str, times: int = 60) -> str:
 
 CHAIN = "".join(f"add_library(l{n} src/n.cpp)\ntarget_link_libraries(l{n} l{n + 1})\n" for n in range(8000))
 ROUND = '#include "../src/n.h"\n#include "../src/../src/n.h"\n#include "../src/m.h"\n'
-NAMED = "is not the name of a package"
+NAMED = "invalid package name"
 LINKED = "through a symbolic link"
 PIPE = "a device or a pipe"
 

@@ -45,8 +45,9 @@ def test_all_kinds_of_fields(tmp_path: Path) -> None:
         ),
         (
             "sensor_msgs/Imu: {header: 9}",
-            "sensor_msgs/Imu.header: cannot have a capacity: header is std_msgs/Header, which has a fixed size; give "
-            "those of std_msgs/Header; fields of sensor_msgs/Imu with a capacity: none",
+            "sensor_msgs/Imu.header: cannot have a capacity: header is std_msgs/Header, "
+            "which has a fixed size; give the "
+            "capacities of std_msgs/Header instead; fields of sensor_msgs/Imu with a capacity: none",
         ),
         ('sensor_msgs/JointState: {"position[]": 9}', "sensor_msgs/JointState.position[]: cannot have a capacity: pos"),
         (

@@ -126,7 +126,7 @@ def test_a_capacity_is_a_number(tmp_path: Path, wrong: int) -> None:
 
 
 def test_a_type_that_is_unknown(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="no message type 'demo/Nothing'"):
+    with pytest.raises(UsageError, match="unknown message type 'demo/Nothing'"):
         header(tmp_path, "Nothing", library(All="string a"))
 
 

@@ -406,7 +406,7 @@ def test_calls_of_a_service_that_wait_are_bounded(tmp_path: Path, monkeypatch: p
         late.header()
         late.frames.has_status = True
         late.socket.sendall(b"\x01\0\0\0\x01")
-        assert b"4 calls of /switch wait for their answers" in late.frame()
+        assert b"the limit of 4 pending calls of /switch is reached" in late.frame()
         for each in (*left, late):
             each.socket.close()
         run.mission.outside.act("publish", "/go", text("now"))

@@ -107,7 +107,7 @@ def test_a_launch_file_with_many_problems(demo: Path) -> None:
         (11, True),
     ]
     texts = [problem.text for problem in found]
-    assert texts[0] == "has no argument 'other'; other:=1 is ignored"
+    assert texts[0] == "unknown argument 'other'; other:=1 is ignored"
     assert "did you mean good.py?" in texts[2]
     assert "did you mean demo?" in texts[3]
     assert "/d is required, but package 'demo' has no file 'driver'" in texts[5]
