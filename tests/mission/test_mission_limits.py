@@ -78,8 +78,8 @@ def test_check_says_which_line_asks_for_too_much_and_which_limit_to_raise(tmp_pa
     startup = "".join(f"CFE_APP, n, __main__, N{number}, 100, 4096, 0, 0;\n" for number in range(27)) + "!\n"
     mission = write_mission(tmp_path, startup, n="import rospy\n")
     assert [(found.line, found.text) for found in check_mission(mission)] == [
-        (27, "N26 is one application too many, linux takes 26; start fewer, or raise limits.es_max_applications in "
-         "the mission file")
+        (27, "N26 exceeds the limit: linux allows 26 application entries; start fewer, "
+         "or raise limits.es_max_applications in the mission file")
     ]  # fmt: skip
     (tmp_path / "mission.yaml").write_text(
         "limits:\n  os_max_tasks: 40\n  os_max_pipes: 3\n  sb_max_pipes: 70000\n", encoding="utf-8"

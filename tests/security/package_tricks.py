@@ -143,7 +143,7 @@ PACKAGE_TRICKS = (
     with_(package("the list of files", "is not a file"), "is a pipe", pipe("out/.cfepy-convert.json")),
     package(
         "a source that ends CMake's list",
-        "CMake does not take",
+        "CMake does not allow",
         BUILT.replace("src/n.cpp", f'"src/n.cpp;execute_process(COMMAND touch {CANARY}).cpp"'),
         **{f"evil/src/n.cpp;execute_process(COMMAND touch {CANARY}).cpp": SOURCE},
     ),

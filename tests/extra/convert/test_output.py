@@ -101,5 +101,5 @@ def test_a_word_means_itself_to_cmake(word: str, tmp_path: Path) -> None:
     "word", ["a;b", "a\nb", "a\0b", "[a", "a]", "$<1:a>", "a\\", ")\nexecute_process(COMMAND x", "a\x1b"]
 )
 def test_a_word_that_cmake_takes_apart_is_refused(word: str) -> None:
-    with pytest.raises(UsageError, match="CMake does not take"):
+    with pytest.raises(UsageError, match="CMake does not allow"):
         cmake_word(word, PACKAGE)

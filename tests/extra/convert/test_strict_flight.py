@@ -147,7 +147,7 @@ def test_a_launch_file_by_itself_is_built_as_the_command_line_says(
     assert main(["launch", launch, *said, "--for", "3", "--console", "--record", journal]) == 1
     assert "12 at most, 16 wanted" in capfd.readouterr().out
     assert main(["check", launch, "--cpp-nodes", "tight"]) == 2
-    assert "no startup script" in capfd.readouterr().err
+    assert "unknown mission" in capfd.readouterr().err
     (mission / "mission.yaml").unlink()
     monkeypatch.chdir(mission)
     assert main(["replay", journal]) == 1  # the same run, which has a problem
