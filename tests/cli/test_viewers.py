@@ -102,7 +102,7 @@ def test_one_token_is_made_for_all_servers(
     monkeypatch.delenv("CFEPY_VIEWER_TOKEN", raising=False)
     assert main(["run", mission, "--for", "1", "--quiet", "--foxglove", "0.0.0.0:0", "--rosbridge", "0.0.0.0:0"]) == 0
     shown = capsys.readouterr()
-    assert len(re.findall(r"viewers need the token \S{24} ", shown.err)) == 1
+    assert len(re.findall(r"viewers require the token \S{24} ", shown.err)) == 1
     assert "token" not in shown.out
 
 

@@ -90,7 +90,7 @@ def test_commands_tell_of_an_invariant_that_was_never_judged(
 def test_explore_tells_of_a_measure_that_measured_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = str(mission(tmp_path, ""))
     main(["explore", folder, "--for", "1.5", "--seeds", "1", "--jobs", "1", "--quiet", "--worst", "age:/enrgy"])
-    told = "nothing was measured of age:/enrgy: nothing came of /enrgy; did you mean /energy?"
+    told = "no value of age:/enrgy was measured: no message of /enrgy was sent; did you mean /energy?"
     assert told in capsys.readouterr().out
 
 
@@ -99,7 +99,10 @@ def test_sweep_is_not_clean_when_its_topic_never_came(tmp_path: Path, capsys: py
     folder = str(mission(tmp_path, ""))
     words = ["--for", "1.5", "--board", "linux", "--measure", "/enrgy", "--jobs", "1", "--quiet", "--csv", "-"]
     main(["sweep", folder, *words])
-    assert "no message was measured of /enrgy: nothing came of /enrgy; did you mean /energy?" in capsys.readouterr().out
+    assert (
+        "no message of /enrgy was measured: no message of /enrgy was sent; did you mean /energy?"
+        in capsys.readouterr().out
+    )
 
 
 def test_page_tells_of_an_invariant_that_was_never_judged(tmp_path: Path) -> None:

@@ -178,7 +178,7 @@ def test_a_test_that_explores_nothing_is_told(suite: Suite) -> None:
         """
     )
     result.assert_outcomes(failed=1, passed=1)
-    result.stdout.fnmatch_lines(["*@explore: the test boots no mission under the schedules*"])
+    result.stdout.fnmatch_lines(["*@explore: the test must boot a mission under the schedules*"])
 
 
 def test_several_missions_have_the_schedule_all(suite: Suite) -> None:

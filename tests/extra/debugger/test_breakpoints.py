@@ -45,9 +45,9 @@ def hits(plan: RunPlan, *texts: str) -> list[str]:
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("/nombers", "--break '/nombers' stopped nowhere"),
-        ("CFE_TIME:99", "--break 'CFE_TIME:99' stopped nowhere"),
-        ("msg.data == 77", "--break 'msg.data == 77' stopped nowhere"),
+        ("/nombers", "--break '/nombers' never matched"),
+        ("CFE_TIME:99", "--break 'CFE_TIME:99' never matched"),
+        ("msg.data == 77", "--break 'msg.data == 77' never matched"),
         ("/words", None),
     ],
 )
@@ -62,7 +62,7 @@ def test_a_field_that_no_message_has_is_told(plan: RunPlan) -> None:
     spec = plan.spec()
     (point,) = breakpoints(["msg.dat > 2"], spec, lambda what: None)
     fly(plan, attachments=[point], spec=spec)
-    assert "applies to no message: /" in str(point.missed)
+    assert "does not apply to any message: /" in str(point.missed)
     assert "'dat'" in str(point.missed)
 
 

@@ -118,12 +118,12 @@ def test_an_origin_is_found_as_browsers_say_it(said: str, by_browser: str) -> No
 @pytest.mark.parametrize(
     ("text", "hint"),
     [
-        ("foo", "'foo' is no origin of a page, such as https://example.org or http://robot:8000$"),
-        ("", "'' is no origin"),
+        ("foo", "invalid origin 'foo'; expected an origin such as https://example.org or http://robot:8000$"),
+        ("", "invalid origin ''"),
         ("example.org", "did you mean https://example.org?"),
         ("https://example.org/page.html", "did you mean https://example.org?"),
-        ("https://example.org:99999", "is no origin"),
-        ("https://me@example.org", "is no origin"),
+        ("https://example.org:99999", "invalid origin"),
+        ("https://me@example.org", "invalid origin"),
         ("file:///home/me/page.html", "pages that are files have the origin null"),
     ],
 )

@@ -177,11 +177,11 @@ def test_a_client_publishes(run: ShownRun) -> None:
     ("topic", "kind", "encoding", "why"),
     [
         ("/orders", "std_msgs/Int32", "ros1", "it is std_msgs/Int32"),
-        ("/orders", "std_msgs/String", "cdr", "its encoding is 'cdr'"),
+        ("/orders", "std_msgs/String", "cdr", "unknown encoding 'cdr'"),
         ("/new", "no_such/Type", "ros1", "cannot be published: "),
         ("/new", "", "ros1", "cannot be published: "),
-        ("not a topic", "std_msgs/String", "ros1", "that is no name of a topic"),
-        ("/cfe/CFE_ES_NOOP", "std_msgs/String", "ros1", "a command is json"),
+        ("not a topic", "std_msgs/String", "ros1", "invalid topic name"),
+        ("/cfe/CFE_ES_NOOP", "std_msgs/String", "ros1", "a command must have the encoding json"),
     ],
 )
 def test_what_cannot_be_published_is_told(run: ShownRun, topic: str, kind: str, encoding: str, why: str) -> None:
