@@ -73,7 +73,7 @@ class SystemLog:
     def set_mode(self, mode: int) -> None:
         """OVERWRITE or DISCARD; CFE_ES_BAD_ARGUMENT for anything else (CFE_ES_SysLogSetMode)."""
         if mode not in (OVERWRITE, DISCARD):
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"system log mode {mode}")
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"invalid system log mode {mode}")
         self.data.mode = mode
 
     def clear(self) -> None:

@@ -15,7 +15,7 @@ from typing import Any
 CHUNK = 1 << 16
 MOST_AT_ONCE = 1 << 20  # bytes that are taken between two pieces of a run; the rest waits in the other program
 MOST_WAITING = 1000  # messages
-ENDED = "the other side has closed the connection"
+ENDED = "the peer closed the connection"
 MOST_BYTES = 1 << 26  # that wait; one message may be longer
 
 

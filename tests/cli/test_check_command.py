@@ -49,7 +49,9 @@ def test_warnings_stand_apart_and_do_not_fail(
     monkeypatch.chdir(folder)
     script.write_text(f"{first}\n!", encoding="utf-8")
     assert main(["check", "."]) == 0
-    warning = "startup.scr:1: warning: the priority 'high' is read as 0; write a number, such as 60 or 0x3C"
+    warning = (
+        "startup.scr:1: warning: invalid priority 'high', which cFE reads as 0; write a number, such as 60 or 0x3C"
+    )
     assert capsys.readouterr().out.splitlines() == [warning, "1 warning found"]
     script.write_text(f"{first}\n{second}\n{second}\n!", encoding="utf-8")
     assert main(["check", "."]) == 1

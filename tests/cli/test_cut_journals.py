@@ -90,4 +90,4 @@ def test_diff_tells_of_runs_with_one_trace_and_other_numbers(
     assert main(["diff", "0.cfepy", "1.cfepy"]) == 1
     out = capsys.readouterr().out
     assert "the same trace" in out
-    assert "the numbers of the report are others" in out
+    assert "but the numbers of the report differ" in out

@@ -77,7 +77,7 @@ def test_an_unknown_application_is_told_before_the_run(tmp_path: Path, capsys: p
     path = tmp_path / "plan.yaml"
     path.write_text("- crash: SAMPLE_AP\n  at: 1\n", encoding="utf-8")
     assert main(["run", "lab", "--for", "1", "--quiet", "--faults", str(path)]) == 0
-    assert "no application is called SAMPLE_AP; did you mean SAMPLE_APP?" in capsys.readouterr().err
+    assert "unknown application SAMPLE_AP; did you mean SAMPLE_APP?" in capsys.readouterr().err
 
 
 def test_a_command_of_a_script_gets_lost(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

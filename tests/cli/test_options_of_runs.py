@@ -214,7 +214,7 @@ def test_greenlet_that_is_not_installed(
 ) -> None:
     monkeypatch.setitem(sys.modules, "greenlet", None)
     assert main([*words[command], "--tasks", "greenlet"]) == 2
-    assert "--tasks: greenlet tasks need the library greenlet: pip install 'cfepy[fast]'" in capsys.readouterr().err
+    assert "--tasks: greenlet tasks require the library greenlet: pip install 'cfepy[fast]'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("way", LIBRARY)
@@ -222,7 +222,7 @@ def test_greenlet_that_is_not_installed_in_the_library(
     way: str, words: dict[str, list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "greenlet", None)
-    with pytest.raises(pilot.UsageError, match="greenlet tasks need the library greenlet"):
+    with pytest.raises(pilot.UsageError, match="greenlet tasks require the library greenlet"):
         LIBRARY[way](RunPlan((str(tmp_path),), tasks="greenlet"))
 
 
@@ -242,7 +242,7 @@ def test_faults_that_do_not_fit_or_never_strike(
     quick = ["--seeds", "1", "--jobs", "1", "--no-stuck"] if command == "explore" else []
     main([*words[command], *short, *quick, "--faults", str(plan)])
     said = capsys.readouterr().err
-    assert "no application is called NOBODY" in said
+    assert "unknown application NOBODY" in said
     assert "fault lost (" in said
     assert ") never happened: " in said
 

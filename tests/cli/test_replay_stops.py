@@ -98,7 +98,7 @@ def test_an_application_that_there_is_not(
     journal: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert replayed(journal, "--pdb", "countre", typed="", monkeypatch=monkeypatch) == 2
-    assert "--pdb: the mission has no application 'countre'; did you mean COUNTER?" in capsys.readouterr().err
+    assert "--pdb: unknown application 'countre'; did you mean COUNTER?" in capsys.readouterr().err
 
 
 @pytest.fixture

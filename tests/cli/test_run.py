@@ -73,7 +73,7 @@ def test_a_bad_line_of_the_startup_script(make_mission: Write, capsys: pytest.Ca
     script = folder / "startup.scr"
     script.write_text(script.read_text(encoding="utf-8").replace("!", "CFE_APP, apps, Quiet;\n!"), encoding="utf-8")
     assert run(folder, "--quiet") == 1
-    assert f"{script}:2: the entry has 3 of 8 fields" in capsys.readouterr().err
+    assert f"{script}:2: the entry must have 8 fields, not 3" in capsys.readouterr().err
 
 
 def test_a_mission_that_is_not_there(capsys: pytest.CaptureFixture[str]) -> None:
@@ -293,7 +293,7 @@ def test_ctrl_c_ends_a_run_with_its_report(make_mission: Write, options: tuple[s
         ),
         pytest.param(
             "    import time\n    time.sleep(1000)\n",
-            "task QUIET has waited for something outside of the simulation",
+            "task QUIET has been waiting for something outside the simulation",
             marks=pytest.mark.slow,
         ),
     ],

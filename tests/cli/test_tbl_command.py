@@ -220,7 +220,7 @@ def test_no_mark_when_the_yaml_says_so(tmp_path: Path) -> None:
     ("arguments", "words"),
     [
         (["show", "nowhere.tbl"], "nowhere.tbl: cannot be read: No such file"),
-        (["show", str(DATA / "cfe_evs.log")], "is no table file: subtype is 16"),
+        (["show", str(DATA / "cfe_evs.log")], "is not a table file: the subtype of a table file must be 8, not 16"),
         (["build", "nowhere.yaml"], "nowhere.yaml: cannot be read"),
         (["show", str(SAMPLE), "--mission", "nowhere"], "unknown mission"),
         (["show", str(SAMPLE), "--layout", "nowhere.yaml"], "nowhere.yaml: cannot be read"),

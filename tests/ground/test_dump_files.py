@@ -112,7 +112,7 @@ def test_a_cut_file_gives_its_whole_records_and_says_so() -> None:
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        (b"cFE1", "is no file of cFE: a cFE file header has 64 bytes"),
+        (b"cFE1", "is not a cFE file: a cFE file must have a header of 64 bytes"),
         (b"\x7fELF" + bytes(60), 'begins with 7f 45 4c 46, not with "cFE1"'),
         (FileHeader("x", 99).pack(), "unknown subtype 99"),
         (FileHeader("x", SUBTYPE_TBL_IMG).pack(), "cfepy tbl show some.log"),

@@ -173,9 +173,9 @@ def test_a_layout_in_the_file(tmp_path: Path) -> None:
         ("table: APP.Plan\nmark: 1", 2, "mark", "true or false"),
         ("table: APP.Plan\ncount: 2", 2, "count", "requires a `layout`"),
         ("table: X.Y\nlayout: {}", 2, "layout", "no fields"),
-        ("table: X.Y\nlayout:\n  A: u8\n  B: u24", 4, "layout.B", "is no type"),
-        ("table: X.Y\nlayout: {A: [{B: u8}]}", 2, "layout.A", "two things"),
-        ("table: APP.Plan\noffset: 500", 1, "table", "without data"),
+        ("table: X.Y\nlayout:\n  A: u8\n  B: u24", 4, "layout.B", "invalid type"),
+        ("table: X.Y\nlayout: {A: [{B: u8}]}", 2, "layout.A", "a list of two items"),
+        ("table: APP.Plan\noffset: 500", 1, "table", "has no data"),
     ],
 )
 def test_errors_say_where(text: str, line: int, field: str | None, words: str, tmp_path: Path) -> None:

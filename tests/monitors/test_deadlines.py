@@ -136,7 +136,7 @@ def test_check_finds_applications_that_are_not_there(tmp_path: Path) -> None:
     text = "deadlines:\n  apps:\n    WORKR: {response: 1 ms}\n    CFE_ES: {response: 1 ms}\n"
     (finding,) = check_mission(mission(tmp_path, text))
     assert finding.line == 3
-    assert finding.text == "deadlines.apps.WORKR: no application is called WORKR; did you mean WORKER?"
+    assert finding.text == "deadlines.apps.WORKR: unknown application WORKR; did you mean WORKER?"
 
 
 @pytest.mark.parametrize(

@@ -148,10 +148,10 @@ PACKAGE_TRICKS = (
         **{f"evil/src/n.cpp;execute_process(COMMAND touch {CANARY}).cpp": SOURCE},
     ),
     c_app(
-        "a name that leads out", "names the application", {"CMakeLists.txt": f"add_cfe_app(../{CANARY} fsw/src/a.c)"}
+        "a name that leads out", "invalid application name", {"CMakeLists.txt": f"add_cfe_app(../{CANARY} fsw/src/a.c)"}
     ),
-    c_app("a name with a NUL", "names the application", {"CMakeLists.txt": 'add_cfe_app("a\0b" fsw/src/a.c)'}),
-    c_app("a source elsewhere", "which is not there", {"CMakeLists.txt": "add_cfe_app(a /none/a.c)"}),
+    c_app("a name with a NUL", "invalid application name", {"CMakeLists.txt": 'add_cfe_app("a\0b" fsw/src/a.c)'}),
+    c_app("a source elsewhere", "names a missing file", {"CMakeLists.txt": "add_cfe_app(a /none/a.c)"}),
     # -- CMakeLists.txt
     cmake("a word without an end", HARMLESS, "a" * 50_000),
     cmake("words that are no commands", HARMLESS, "a (" * 20_000),
@@ -162,13 +162,11 @@ PACKAGE_TRICKS = (
     cmake("a text that doubles", "words of more than", _doubled("set(a x)", 'set(a "${a}${a}")')),
     cmake("a text of many of itself", "words of more than", _doubled("set(a x)", f'set(a "{"${a}" * 900}")', 3)),
     cmake("a list that is added to itself", "words of more than", _doubled("set(a x)", "list(APPEND a ${a})")),
-    cmake("a function that calls itself", "inside each other", "function(f)\nf()\nendfunction()\nf()"),
-    cmake(
-        "macros that call each other", "inside each other", "macro(f)\ng()\nendmacro()\nmacro(g)\nf()\nendmacro()\ng()"
-    ),
-    cmake("a folder inside itself", "inside each other", "add_subdirectory(.)"),
-    cmake("conditions 20,000 deep", "inside each other", "if(UNIX)\n" * 20_000 + "endif()\n" * 20_000),
-    cmake("brackets 20,000 deep", "inside each other", f"if({'(' * 20_000}UNIX{')' * 20_000})\nendif()"),
+    cmake("a function that calls itself", "nested", "function(f)\nf()\nendfunction()\nf()"),
+    cmake("macros that call each other", "nested", "macro(f)\ng()\nendmacro()\nmacro(g)\nf()\nendmacro()\ng()"),
+    cmake("a folder inside itself", "nested", "add_subdirectory(.)"),
+    cmake("conditions 20,000 deep", "nested", "if(UNIX)\n" * 20_000 + "endif()\n" * 20_000),
+    cmake("brackets 20,000 deep", "nested", f"if({'(' * 20_000}UNIX{')' * 20_000})\nendif()"),
     cmake("NOT again and again", HARMLESS, f"if({'NOT ' * 20_000}UNIX)\nendif()"),
     cmake("a version of 10,000 digits", HARMLESS, f"if({'1' * 10_000} VERSION_LESS {'2' * 10_000})\nendif()"),
     cmake("an empty component", HARMLESS, 'find_package(catkin REQUIRED "")\nproject("")\nset("")'),

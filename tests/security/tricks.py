@@ -234,9 +234,9 @@ TRICKS = (
     expression("a factorial", "combinations of more than", "factorial(10**7)"),
     expression("loops in loops", "steps", "[0 for a in range(999) for b in range(999) for c in range(999)]"),
     expression("brackets in brackets", "inside each other", "-" * 5000 + "1"),
-    launch("rosparam: !radians runs code", "is no angle", "<rosparam>a: !radians open('@/canary', 'w')</rosparam>"),
+    launch("rosparam: !radians runs code", "invalid angle", "<rosparam>a: !radians open('@/canary', 'w')</rosparam>"),
     launch("rosparam: an object", "is not YAML", "<rosparam>a: !!python/object/apply:os.system [x]</rosparam>"),
-    launch("rosparam: rad of 9**9**9", "is no angle", "<rosparam>a: rad(9**9**9)</rosparam>"),
+    launch("rosparam: rad of 9**9**9", "invalid angle", "<rosparam>a: rad(9**9**9)</rosparam>"),
     launch(
         "rosparam: billion laughs",
         "values when its aliases",
@@ -244,7 +244,7 @@ TRICKS = (
     ),
     launch(
         "rosparam: an alias inside itself",
-        "inside itself",
+        "contains itself",
         "<rosparam>a: &amp;a [*a]</rosparam>",
     ),
     launch("rosparam: 5,000 lists", "nested too deeply", f"<rosparam>a: {'[' * 5000}</rosparam>"),
@@ -264,7 +264,7 @@ TRICKS = (
     launch("a test that is tried without end", "to 1e+09", '<test test-name="t" pkg="p" type="t" retry="1e999"/>'),
     launch(
         "a node that is awaited without end",
-        "at most 1e+09",
+        "to 1e+09",
         '<node name="n" pkg="p" type="t" respawn="true" respawn_delay="inf"/>',
     ),
     launch("yaml again and again", "becomes too large", f"<rosparam>a: {'x' * 20_000}</rosparam>" * 60),
@@ -285,7 +285,7 @@ TRICKS = (
     Trick(
         "launch: a file that includes itself twice",
         "check {}/x.launch",
-        "include itself",
+        "includes itself",
         _file(
             "x.launch", '<launch><include file="$(dirname)/x.launch"/><include file="$(dirname)/x.launch"/></launch>'
         ),
@@ -320,7 +320,7 @@ TRICKS = (
             **{"cfg/Thing__cfg": f"#!/usr/bin/env python\n{WRITE}\n"},
         ),
     ),
-    definition("50,000 fields", "more than 5,000 fields", MANY),
+    definition("50,000 fields", "at most 5,000 fields", MANY),
     definition("an array of terabytes", "values in fixed arrays", "uint8[999999999999] a"),
     definition("a type inside itself", "contains itself", "a_type_inside_itself/Bomb b"),
     definition("a name that is code", "is not a field name", "int32 a;import_os\nint32 b):__import__('os')#"),

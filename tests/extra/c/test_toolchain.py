@@ -300,8 +300,8 @@ def test_addresses_in_a_table_are_told(app: Path) -> None:
             "extern int Other; CFE_TBL_FILEDEF(Other,",
             "is not an object in this file",
         ),
-        ("sample_app_tbl.tbl", "/cf/x.tbl", "which is no name of a file"),
-        ("SAMPLE_APP.ExampleTable", "ExampleTable", "is no full table name"),
+        ("sample_app_tbl.tbl", "/cf/x.tbl", "is not a valid file name"),
+        ("SAMPLE_APP.ExampleTable", "ExampleTable", "invalid table name"),
     ],
 )
 def test_what_is_no_table(old: str, new: str, wrong: str, app: Path) -> None:
@@ -333,7 +333,7 @@ def test_a_compiler_is_held_to_bounds(tmp_path: Path, monkeypatch: pytest.Monkey
 @pytest.mark.parametrize("name", ["../victim", "/victim", "a/b", "..", "a b", "-o"])
 def test_a_name_that_leads_out_is_refused(name: str, app: Path) -> None:
     write(app, {"CMakeLists.txt": f'add_cfe_app("{name}" fsw/src/probe.c)\n'})
-    with pytest.raises(UsageError, match="names the application"):
+    with pytest.raises(UsageError, match="invalid application name"):
         build(app)
 
 

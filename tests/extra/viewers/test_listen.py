@@ -70,7 +70,7 @@ def test_a_token_that_was_given_holds_everywhere_and_is_not_told() -> None:
 
 @pytest.mark.parametrize("token", ["short", "with a space", "caf\u00e9-caf\u00e9"])
 def test_a_token_that_is_none(token: str) -> None:
-    with pytest.raises(UsageError, match="a token has at least 8"):
+    with pytest.raises(UsageError, match="a token must have at least 8"):
         admission_to(HERE, token)
 
 

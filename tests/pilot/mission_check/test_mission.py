@@ -38,21 +38,27 @@ def test_a_good_mission(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0;", "the entry has 7 of 8 fields"),
-        ("CFE_APP, nothere, X_Main, X, 60, 16384, 0, 0;", "no code for /cf/nothere.so"),
+        ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0;", "the entry must have 8 fields, not 7"),
+        ("CFE_APP, nothere, X_Main, X, 60, 16384, 0, 0;", "missing code for /cf/nothere.so"),
         ("CFE_APP, hk, HK_AppMian, HK2, 60, 16384, 0, 0;", "has no function HK_AppMian; did you mean HK_AppMain?"),
         ("CFE_APP, hk, , HK2, 60, 16384, 0, 0;", "the application never runs, and the start waits for it; write"),
         (
             "CFE_APP, hk, HK_AppMain, , 60, 16384, 0, 0;",
-            "has no name: cFE starts it, and no command can name it; write",
+            "is missing: cFE starts it, but no command can address it; write",
         ),
-        ("CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 0;", "the name 'HK' is taken by line 1"),
-        ("CFE_APP, hk, HK_AppMain, CFE_ES, 60, 16384, 0, 0;", "the name 'CFE_ES' is taken by the core application"),
-        ("CFE_APP, hk, HK_AppMain, TWENTY_CHARACTERS_XX, 60, 1, 0, 0;", "at most 19 fit"),
-        ("CFE_APP, twenty_characters.py, A, HK2, 60, 16384, 0, 0;", "twenty_characters.py has 20 characters or more"),
-        ("CFE_APP, /ram/hk, HK_AppMain, HK2, 60, 16384, 0, 0;", "/ram/hk.so is not below /cf"),
+        ("CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 0;", "the name 'HK' is already taken by line 1"),
+        (
+            "CFE_APP, hk, HK_AppMain, CFE_ES, 60, 16384, 0, 0;",
+            "the name 'CFE_ES' is already taken by the core application",
+        ),
+        ("CFE_APP, hk, HK_AppMain, TWENTY_CHARACTERS_XX, 60, 1, 0, 0;", "at most 19 characters"),
+        (
+            "CFE_APP, twenty_characters.py, A, HK2, 60, 16384, 0, 0;",
+            "twenty_characters.py must have fewer than 20 characters",
+        ),
+        ("CFE_APP, /ram/hk, HK_AppMain, HK2, 60, 16384, 0, 0;", "/ram/hk.so must be below /cf"),
         ("CFE_LIB, hk, HK_LibInit, LIB, 0, 0, 0, 0;", "has no function HK_LibInit"),
-        ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0, 0", "the last entry has no ';' and is lost"),
+        ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0, 0", "the last entry is ignored, because its ';' is missing"),
     ],
 )
 def test_a_bad_line(tmp_path: Path, line: str, said: str) -> None:
@@ -201,8 +207,8 @@ def test_more_applications_than_the_board_takes(tmp_path: Path) -> None:
     script = "".join(HK.replace(" HK,", f" HK{number},") for number in range(13)) + "!"
     found = check(tmp_path, script, board="rx64m")
     assert [(line, text.split(";")[0]) for _, line, text in found] == [
-        (12, "HK11 is one application too many, rx64m takes 11"),
-        (13, "HK12 is one application too many, rx64m takes 11"),
+        (12, "HK11 exceeds the limit: rx64m allows 11 application entries"),
+        (13, "HK12 exceeds the limit: rx64m allows 11 application entries"),
     ]
 
 
@@ -216,7 +222,7 @@ def test_stacks_beyond_the_memory(tmp_path: Path) -> None:
 
 def test_a_board_given_by_hand(tmp_path: Path) -> None:
     ((_, _, text),) = check(tmp_path, HK + "!", board="abacus")
-    assert "there is no board 'abacus'" in text
+    assert "unknown board 'abacus'" in text
 
 
 def test_no_mission(tmp_path: Path) -> None:
@@ -240,10 +246,13 @@ def test_the_example_in_the_documentation(tmp_path: Path, document: str, read: C
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("CFE_APP, hk, HK_AppMain, HK, high, 16384, 0, 0;", "the priority 'high' is read as 0; write a number"),
-        ("CFE_APP, hk, HK_AppMain, HK, 60, 16k, 0, 0;", "the stack size '16k' is read as 16; write a number"),
-        ("CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, restart;", "the exception action 'restart' is read as 0"),
-        ("CFE_APP, hk, HK_AppMain, HK, 017, 16384, 0, 0;", "the priority '017' is read as 15"),
+        ("CFE_APP, hk, HK_AppMain, HK, high, 16384, 0, 0;", "invalid priority 'high', which cFE reads as 0"),
+        ("CFE_APP, hk, HK_AppMain, HK, 60, 16k, 0, 0;", "invalid stack size '16k', which cFE reads as 16"),
+        (
+            "CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, restart;",
+            "invalid exception action 'restart', which cFE reads as 0",
+        ),
+        ("CFE_APP, hk, HK_AppMain, HK, 017, 16384, 0, 0;", "invalid priority '017', which cFE reads as 15"),
         ("CFE_APP, hk, HK_AppMain, HK, 256, 16384, 0, 0;", "the priority 256 is cut to 255"),
         ("CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 2;", "the exception action 2 is taken as 1"),
     ],

@@ -88,4 +88,4 @@ def test_what_cfepy_takes_and_ros_may_not_is_a_warning(
 def test_a_file_whose_name_is_no_type(tmp_path: Path) -> None:
     ((file, _, text, _),) = faults(tmp_path, **{"my-type_msg": "int32 x\n"})
     assert file == "my-type.msg"
-    assert "'my-type' is no name for a type" in text
+    assert "invalid type name 'my-type'" in text
