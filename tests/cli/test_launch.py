@@ -185,7 +185,7 @@ def test_a_launch_file_where_a_mission_is_meant(write_launch: Launch, capsys: py
         row.split()[1:] for row in capsys.readouterr().out.splitlines()
     ]
     assert main(["mids", file, "--lock"]) == 2
-    assert "has no topics.lock" in capsys.readouterr().err
+    assert "cannot have a topics.lock" in capsys.readouterr().err
     assert main(["check", file]) == 0
     with_argument = write_launch(f'<arg name="n"/>{TALKER.format("", COUNT.format("$(arg n)"))}')
     capsys.readouterr()

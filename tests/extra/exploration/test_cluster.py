@@ -137,7 +137,8 @@ def test_a_lost_scheduler_keeps_what_was_found(cluster: LoopbackCluster, tmp_pat
     path = tmp_path / "results"
     crew = Cluster(cluster.address)
     with pytest.raises(
-        UsageError, match=f"--cluster: the scheduler at {cluster.address} has stopped; what was found is kept"
+        UsageError,
+        match=f"--cluster: the scheduler at {cluster.address} has stopped; a results file keeps the findings",
     ):
         Campaign(FakeTrial(), Seeds(), 1_000_000, crew, ResultsFile(path, IDENTITY)).run(lose_it)
     assert told == list(range(len(told)))
