@@ -48,7 +48,7 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     unknown = set(options.names) - suites.keys()
     if unknown:
-        parser.error(f"no benchmark is called {', '.join(sorted(unknown))}")
+        parser.error(f"unknown benchmark {', '.join(sorted(unknown))}")
     results: dict[str, object] = {"machine": machine()}
     for name in options.names or suites:
         print(f"measuring {name} ...", file=sys.stderr)

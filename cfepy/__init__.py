@@ -106,7 +106,7 @@ def compute(seconds: float) -> None:
         ValueError: if `seconds` is negative.
     """
     if seconds < 0:
-        raise ValueError(f"nothing takes {seconds:g} s; give 0 or more")
+        raise ValueError(f"invalid time {seconds:g} s; expected 0 or more")
 
 
 if not TYPE_CHECKING:  # type checkers see only the names above

@@ -161,7 +161,7 @@ class IdTable(Generic[Record]):
 
     def __init__(self, base: int, capacity: int, full: int | None = None, invalid: int | None = None) -> None:
         if not 0 < base <= SERIAL_MAX or not 0 < capacity < SERIAL_MAX:
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"id table of base 0x{base:x} with {capacity} slots")
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"invalid capacity of the id table of base 0x{base:x}: {capacity}")
         is_osal = base < OS_USER_BASE
         self.base = base
         self.capacity = capacity
@@ -211,7 +211,7 @@ class IdTable(Generic[Record]):
         """
         record = self.records.get(resource_id)
         if record is None:
-            raise self._error(self._invalid, f"no such id: 0x{resource_id:x}")
+            raise self._error(self._invalid, f"invalid id 0x{resource_id:x}")
         return record
 
     def delete(self, resource_id: int) -> Record:

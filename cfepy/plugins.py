@@ -176,7 +176,9 @@ def missing(what: str, *names: str) -> str:
         what: the feature that needs it, as the subject of the text.
         names: names of the add-ons, one of which is needed.
     """
-    return f"{what} needs the add-on {' or '.join(names)}, which this installation lacks; install cfepy again"
+    return (
+        f"{what} requires the add-on {' or '.join(names)}, which is missing in this installation; install cfepy again"
+    )
 
 
 def owner_of(command: str) -> Plugin | None:
@@ -203,7 +205,7 @@ def _outside() -> Iterator[Plugin]:
             print(f"cfepy: the add-on {entry.name} cannot be loaded: {type(error).__name__}: {error}", file=sys.stderr)
             continue
         if not isinstance(plugin, Plugin):
-            print(f"cfepy: the add-on {entry.name} cannot be used: {entry.value} is no Plugin", file=sys.stderr)
+            print(f"cfepy: the add-on {entry.name} cannot be used: {entry.value} is not a Plugin", file=sys.stderr)
             continue
         yield plugin
 

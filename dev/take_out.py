@@ -87,7 +87,7 @@ class Copy:
 
     def _gone(self, command: str, name: str) -> Tried:
         done = self.give("-m", "cfepy", command, "--help")
-        said = f"cfepy: the command {command} needs the add-on {name}, which this installation lacks"
+        said = f"cfepy: the command {command} requires the add-on {name}, which is missing in this installation"
         is_said = done.returncode == 2 and done.stderr.startswith(said)
         return Tried(f"cfepy {command}", "" if is_said else f"status {done.returncode}\n{done.stdout}{done.stderr}")
 

@@ -98,10 +98,10 @@ class ProcessMonitor:
         name = node.name or node.app  # one that no launch file names
         if node.respawn:
             self.restarts[node.app] = self.restarts.get(node.app, 0) + 1
-            self._say(f"{name} has ended with exit status {status} and is started again")
+            self._say(f"{name} ended with exit status {status} and is restarted")
             return True
         if node.required:
-            self._say(f"{name} has ended with exit status {status}; it is required, so the run is over")
+            self._say(f"{name} ended with exit status {status}; it is required, so the run ends")
             self._end()
         elif self._config.ends_with_nodes and all(app in self.statuses for app in self._apps()):
             self._end()

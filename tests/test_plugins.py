@@ -79,7 +79,7 @@ def test_the_example_can_be_installed(tmp_path: Path, site: Path, give: Give) ->
     ("text", "said"),
     [
         ("raise RuntimeError('no licence')", "cfepy: the add-on odd cannot be loaded: RuntimeError: no licence\n"),
-        ("PLUGIN = 7", "cfepy: the add-on odd cannot be used: odd:PLUGIN is no Plugin\n"),
+        ("PLUGIN = 7", "cfepy: the add-on odd cannot be used: odd:PLUGIN is not a Plugin\n"),
     ],
 )
 def test_an_add_on_that_cannot_be_used_is_left_out(site: Path, give: Give, text: str, said: str) -> None:
@@ -111,7 +111,7 @@ def test_a_command_that_is_there_already_cannot_be_added(site: Path, give: Give,
     offer(site, "odd", "odd:PLUGIN")
     done = give("--help")
     assert done.returncode == 0
-    assert done.stderr == f"cfepy: the add-on odd is left out: there is a command {name} already\n"
+    assert done.stderr == f"cfepy: the add-on odd is left out: the command {name} already exists\n"
 
 
 def without(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
@@ -124,7 +124,9 @@ def test_a_hook_that_nothing_fills_says_which_add_on_does(monkeypatch: pytest.Mo
     assert callable(hook.need("--perfetto"))
     without(monkeypatch, "reports")
     assert hook.first() is None
-    with pytest.raises(UsageError, match="--perfetto needs the add-on reports, which this installation lacks"):
+    with pytest.raises(
+        UsageError, match="--perfetto requires the add-on reports, which is missing in this installation"
+    ):
         hook.need("--perfetto")
 
 

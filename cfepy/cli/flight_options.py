@@ -87,7 +87,7 @@ def check_pace(arguments: argparse.Namespace) -> None:
         UsageError: something in it is for a run in real time, and this one is none.
     """
     if arguments.realtime is None and arguments.port:
-        raise UsageError("without --realtime no port is opened on this computer", field="--port")
+        raise UsageError("requires --realtime; without it no port is opened on this computer", field="--port")
     flight_add_ons.check_options(arguments)
 
 
@@ -110,12 +110,14 @@ def ports_of(text: str) -> tuple[int, int]:
     """A port of the mission and what it is on this computer, for argparse."""
     inside, _, here = text.partition("=")
     if not (inside.isdecimal() and here.isdecimal() and 0 < int(inside) <= HIGHEST_PORT >= int(here)):
-        raise argparse.ArgumentTypeError(f"{text!r} is not like 1234=0 or 1234=5000")
+        raise argparse.ArgumentTypeError(
+            f"invalid port mapping {text!r}; expected MISSION_PORT=HOST_PORT, such as 1234=5000 (0: any free port)"
+        )
     return int(inside), int(here)
 
 
 def runs_of(text: str) -> int:
     """How many runs to compare, for argparse."""
     if not text.isdecimal() or not 2 <= int(text) <= MOST_RUNS:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number of runs; give 2 to {MOST_RUNS}")
+        raise argparse.ArgumentTypeError(f"invalid number of runs {text!r}; expected 2 to {MOST_RUNS}")
     return int(text)

@@ -184,7 +184,7 @@ def _without_room(error: OSError) -> str:
 
 def _tell_out_of_memory(words: Sequence[str]) -> int:
     """There is no more memory; what was asked for says which file wanted it."""
-    print(f"cfepy: there is not enough memory for `cfepy {' '.join(words)}`; make its input smaller", file=sys.stderr)
+    print(f"cfepy: out of memory in `cfepy {' '.join(words)}`; make its input smaller", file=sys.stderr)
     return BAD_USAGE
 
 
@@ -279,7 +279,7 @@ def _with_new_commands(plugins: Iterable[Plugin]) -> list[Plugin]:
     for each in plugins:
         twice = sorted(taken.intersection(each.commands))
         if twice:
-            print(f"cfepy: the add-on {each.name} is left out: there is a command {twice[0]} already", file=sys.stderr)
+            print(f"cfepy: the add-on {each.name} is left out: the command {twice[0]} already exists", file=sys.stderr)
         else:
             taken.update(each.commands)
             usable.append(each)

@@ -270,7 +270,7 @@ def plan_of_mission(arguments: argparse.Namespace) -> RunPlan:
 
     plan = plan_of(arguments, [arguments.mission, *arguments.node_args])
     if len(plan.words) > 1 and plan.command != NODE:
-        raise UsageError(f"one mission at a time; {plan.words[1]!r} is one too many", field="MISSION")
+        raise UsageError(f"unexpected {plan.words[1]!r}; expected one mission", field="MISSION")
     return plan
 
 
@@ -340,7 +340,7 @@ def add_mission_or_node(parser: argparse.ArgumentParser, **said: Any) -> None:
     """
     add_mission(parser, **said)
     parser.add_argument("node_args", metavar="ARG", nargs="*", help="what a node's .py gets")
-    parser.set_defaults(hint="; what a node itself is to get comes after --")
+    parser.set_defaults(hint="; put the options of the node itself after --")
 
 
 LOOKED_AT_HELP = f"a journal that `cfepy run --record FILE` wrote, or what is flown: {MISSION_HELP}"
@@ -446,7 +446,7 @@ def seconds_of(text: str) -> float:
     except ValueError:
         seconds = 0.0
     if not 0 < seconds <= LONGEST_S:
-        text = f"{text!r} is not a number of seconds; give more than 0 to {LONGEST_S:g}, or a time such as 600ms"
+        text = f"invalid number of seconds {text!r}; expected more than 0 to {LONGEST_S:g}, or a time such as 600ms"
         raise argparse.ArgumentTypeError(text)
     return seconds
 
@@ -462,7 +462,7 @@ def stall_of(text: str) -> float:
 def count_of(text: str) -> int:
     """How many, at least one, for argparse."""
     if not text.isdecimal() or int(text) == 0:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number of them; give 1 or more")
+        raise argparse.ArgumentTypeError(f"invalid count {text!r}; expected 1 or more")
     return int(text)
 
 
@@ -470,7 +470,7 @@ def launch_argument_of(text: str) -> tuple[str, str]:
     """An argument of a launch file and its value, for argparse."""
     name, mark, value = text.partition(":=")
     if not mark or not name:
-        raise argparse.ArgumentTypeError(f"{text!r} is not like rate:=20")
+        raise argparse.ArgumentTypeError(f"invalid launch argument {text!r}; expected NAME:=VALUE, such as rate:=20")
     return name, value
 
 
@@ -478,7 +478,9 @@ def setting_of(text: str) -> tuple[str, str]:
     """A parameter and its value, for argparse."""
     name, mark, value = text.partition("=")
     if not mark or not name.startswith("/"):
-        raise argparse.ArgumentTypeError(f"{text!r} is not like /arm/rate=20")
+        raise argparse.ArgumentTypeError(
+            f"invalid parameter setting {text!r}; expected /NAME=VALUE, such as /arm/rate=20"
+        )
     return name, value
 
 
@@ -487,7 +489,9 @@ def id_of(text: str) -> int:
     try:
         return int(text, 0)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no number; give one such as 67 or 0x43") from None
+        raise argparse.ArgumentTypeError(
+            f"invalid number {text!r}; expected a whole number such as 67 or 0x43"
+        ) from None
 
 
 def factor_of(text: str) -> float:
@@ -497,5 +501,5 @@ def factor_of(text: str) -> float:
     except ValueError:
         factor = 0.0
     if not SLOWEST <= factor <= FASTEST:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a factor; give {SLOWEST:g} to {FASTEST:g}")
+        raise argparse.ArgumentTypeError(f"invalid factor {text!r}; expected {SLOWEST:g} to {FASTEST:g}")
     return factor

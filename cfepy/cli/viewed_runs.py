@@ -83,7 +83,7 @@ def look_at(
 
 def _refuse_from_disk(arguments: argparse.Namespace) -> None:
     if arguments.from_disk:
-        raise UsageError(f"is for the replay of a journal, and {arguments.source} is none", field="--from-disk")
+        raise UsageError(f"only valid for a journal, and {arguments.source} is not one", field="--from-disk")
 
 
 def look_at_series(arguments: argparse.Namespace, words: Sequence[str]) -> tuple[SeriesSet, int]:
@@ -97,7 +97,9 @@ def look_at_series(arguments: argparse.Namespace, words: Sequence[str]) -> tuple
         UsageError: there is no such run, bag or packet, or an option is for another kind of source.
     """
     if is_bag(arguments.source):
-        refuse_run_options(arguments, f"{arguments.source} is a bag, which is not flown; leave it out", but=["seconds"])
+        refuse_run_options(
+            arguments, f"only valid for a mission, and {arguments.source} is a bag; leave it out", but=["seconds"]
+        )
         _refuse_from_disk(arguments)
         ends = [each for each in (arguments.seconds, arguments.until) if each is not None]
         return bag_series(arguments.source, words, min(ends, default=None)), ENDED_WELL
@@ -138,7 +140,9 @@ def _replay(
 ) -> LookedAt:
     from cfepy.journal import Replay, read_journal, staged
 
-    refuse_run_options(arguments, f"{arguments.source} is a journal, which says that itself; leave it out")
+    refuse_run_options(
+        arguments, f"only valid for a mission; the journal {arguments.source} contains this setting; leave it out"
+    )
     journal = read_journal(arguments.source)
     until_ns = None if arguments.until is None else round(arguments.until * NS_PER_S)
     with staged(journal, arguments.from_disk) as stage:
@@ -151,7 +155,7 @@ def _replay(
     if not verdict.same:
         warnings = (f"this is not the run of {arguments.source}: the replay differs", *stage.reasons)
     elif not verdict.proven:
-        why = "the journal is cut off" if verdict.cut_off else "its first checkpoint comes later"
+        why = "the journal is truncated" if verdict.cut_off else "its first checkpoint comes later"
         text = f"this may not be the run of {arguments.source}: {why}"
         warnings = (f"{text}; it was compared up to record {verdict.agreed.records:,}",)
     until = [] if arguments.until is None else ["--until", f"{arguments.until:g}"]

@@ -152,7 +152,10 @@ class WatchedHost(Host):
         """There is no report, since the thread that would write it does not come back."""
         with contextlib.suppress(Exception):
             sys.stdout.flush()
-        os.write(STDERR, f"cfepy: {visible(str(why))}\ncfepy: it cannot be ended; gave up\n".encode(errors="replace"))
+        os.write(
+            STDERR,
+            f"cfepy: {visible(str(why))}\ncfepy: it cannot be ended; the process exits\n".encode(errors="replace"),
+        )
         os._exit(INTERRUPTED if self.asked else FOUND_PROBLEMS)
 
     def end(self) -> None:
@@ -251,5 +254,5 @@ class Interrupts:
             self._since_second = Stopwatch()
             raise KeyboardInterrupt
         if self._count > 2 and self._since_second.elapsed_ns() > PATIENCE_NS:
-            os.write(STDERR, b"cfepy: a task does not end; gave up\n")
+            os.write(STDERR, b"cfepy: a task does not end; the process exits\n")
             os._exit(INTERRUPTED)

@@ -105,20 +105,22 @@ class AppServices(ResetApi):
         if any(lib.name == name for lib in self.libs):  # OSAL's modules are named after the application or library
             taken = f"CFE_ES_LoadModule: Could not load file:{params.file}. EC = {OS_ERR_NAME_TAKEN}"
             self.write_to_sys_log(taken)
-            raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"a library is called {name!r}")
+            raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"the name {name!r} is already used by a library")
         return self._load(
             params.file, params.symbol, lambda: self.loader.load(params.file, params.symbol, name), lambda: None
         )
 
     def _check_new_app(self, name: str) -> None:
         if name_size(name) > MAX_NAME:
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"application name {name!r}: at most {MAX_NAME} characters")
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"application name {name!r} must have at most {MAX_NAME} characters")
         if self.app_named(name) is not None:
             self.write_to_sys_log(f"CFE_ES_AppCreate: Duplicate app name '{name}'")
-            raise CfeError(CFE_ES_ERR_DUPLICATE_NAME, f"application {name!r} runs already")
+            raise CfeError(CFE_ES_ERR_DUPLICATE_NAME, f"application {name!r} is already running")
         if len(self.apps) >= self.apps.capacity:
             self.write_to_sys_log("CFE_ES_AppCreate: No free application slots available")
-            raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"{self.apps.capacity} applications run already")
+            raise CfeError(
+                CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"the limit of {self.apps.capacity} applications is reached"
+            )
 
     def _explain(self, failure: CfeError) -> None:
         """Print details about a failure, if there are any: the users of the board's memory."""
@@ -147,13 +149,15 @@ class AppServices(ResetApi):
 
     def _check_new_library(self, name: str) -> None:
         if name_size(name) > MAX_NAME:
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"library name {name!r}: at most {MAX_NAME} characters")
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"library name {name!r} must have at most {MAX_NAME} characters")
         if any(lib.name == name for lib in self.libs) or self.app_named(name) is not None:
             self.write_to_sys_log(f"CFE_ES_LoadLibrary: Duplicate Lib name '{name}'")
-            raise CfeError(CFE_ES_ERR_DUPLICATE_NAME, f"there is a library or an application {name!r} already")
+            raise CfeError(
+                CFE_ES_ERR_DUPLICATE_NAME, f"the name {name!r} is already used by a library or an application"
+            )
         if len(self.libs) >= self.libs.capacity:
             self.write_to_sys_log("CFE_ES_LoadLibrary: No free library slots available")
-            raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"{self.libs.capacity} libraries are loaded already")
+            raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"the limit of {self.libs.capacity} libraries is reached")
 
     def _init_library(self, lib: LibRecord) -> None:
         init = self._load(

@@ -140,7 +140,7 @@ class Boot:
         params = StartParams("", "", stack_size, core.priority, EXCEPTION_PROC_RESTART)
         app = self.es.app(self.es.create_app(core.name, params, core.entry))
         if not self._wait_until_running(app):
-            raise CfeError(CFE_ES_OPERATION_TIMED_OUT, f"{core.name} does not come up")
+            raise CfeError(CFE_ES_OPERATION_TIMED_OUT, f"{core.name} did not start in time")
 
     def _panic(self, text: str, cause: CfeError) -> None:
         """Report that the executive cannot continue, and call the board's panic function."""

@@ -232,7 +232,7 @@ class CriticalDataStore:
                 last one, an existing block has lost its bytes but keeps its name and handle until a reset.
         """
         if not 0 < user_size <= MAX_BLOCK_SIZE:
-            raise CfeError(CFE_ES_CDS_INVALID_SIZE, f"a CDS block of {user_size} bytes")
+            raise CfeError(CFE_ES_CDS_INVALID_SIZE, f"invalid size of a CDS block: {user_size} bytes")
         size = user_size + BLOCK_HEADER.size
         block = self.find(name)
         if block is not None and block.size == size:
@@ -263,7 +263,9 @@ class CriticalDataStore:
             self._log("CFE_ES_CDSBlockWrite: Invalid Handle or Block Descriptor.")
             raise
         if len(data) != block.user_size:
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"{len(data)} bytes for {block.name!r}, which has {block.user_size}")
+            raise CfeError(
+                CFE_ES_BAD_ARGUMENT, f"data for {block.name!r} must have {block.user_size} bytes, not {len(data)}"
+            )
         self._psp.write_to_cds(BLOCK_HEADER.pack(calculate_crc(data)), block.offset)
         self._psp.write_to_cds(data, block.offset + BLOCK_HEADER.size)
 
@@ -299,14 +301,14 @@ class CriticalDataStore:
         """Return the block of a full name; raises CFE_ES_ERR_NAME_NOT_FOUND."""
         block = self.find(name)
         if block is None:
-            raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"no CDS block is called {name!r}")
+            raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"unknown CDS block {name!r}")
         return block
 
     def get(self, handle: int) -> CdsBlock:
         """Return the block of a handle; raises CFE_ES_ERR_RESOURCEID_NOT_VALID."""
         block = self._blocks[self._slot(handle)]
         if block is None or block.handle != handle:
-            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"no CDS block has the handle 0x{handle:x}")
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"invalid CDS handle 0x{handle:x}")
         return block
 
     def _check(self, block: CdsBlock) -> None:
@@ -319,7 +321,7 @@ class CriticalDataStore:
     def _next_handle(self) -> int:
         handle = find_next(self._last_handle, self._capacity, lambda each: self._blocks[self._slot(each)] is not None)
         if handle == UNDEFINED:
-            raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"the CDS has {self._capacity} blocks already")
+            raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"the limit of {self._capacity} CDS blocks is reached")
         self._last_handle = handle
         return handle
 
@@ -396,7 +398,7 @@ class CdsApi(EsCore):
         app = self.app_of_caller()
         if app is None:
             self.write_to_sys_log("CFE_ES_RegisterCDS: Bad AppId context")
-            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, "CDS blocks belong to applications")
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, "the caller must be a task of an application")
         try:
             return self._register(block_size, name, app.name)
         except CfeError as error:
@@ -411,7 +413,7 @@ class CdsApi(EsCore):
         elif not 0 < name_size(name) <= MAX_NAME_LENGTH:
             cut = name[: FULL_NAME_SIZE - 1]
             self.write_to_sys_log(f"CFE_ES_RegisterCDS: CDS Name ({cut}) is either too long, or an empty string")
-            raise CfeError(CFE_ES_CDS_INVALID_NAME, f"CDS name {name!r}: 1 to {MAX_NAME_LENGTH} characters")
+            raise CfeError(CFE_ES_CDS_INVALID_NAME, f"CDS name {name!r} must have 1 to {MAX_NAME_LENGTH} characters")
         try:
             handle, status = self.register_cds_ex(block_size, f"{app_name}.{name}", critical_table=False)
             return CdsHandle.with_status(handle, status)
@@ -484,7 +486,7 @@ class CdsApi(EsCore):
             raise CfeError(CFE_ES_CDS_WRONG_TYPE_ERR, f"{full_name!r} is {'' if block.is_table else 'not '}a table's")
         owner = full_name.partition(".")[0]
         if self.app_named(owner) is not None:
-            raise CfeError(CFE_ES_CDS_OWNER_ACTIVE_ERR, f"{owner} still runs")
+            raise CfeError(CFE_ES_CDS_OWNER_ACTIVE_ERR, f"the owner {owner} is still running")
         store.delete(full_name)
 
     def cds_blocks(self) -> list[CdsBlock]:

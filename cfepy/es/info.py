@@ -41,7 +41,7 @@ class InfoApi(EsCore):
         for lib in self.libs:
             if lib.name == name:
                 return lib.lib_id
-        raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"no library is called {name!r}")
+        raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"unknown library {name!r}")
 
     def get_lib_name(self, lib_id: int) -> str:
         """Return the name of a library (CFE_ES_GetLibName); raises CFE_ES_ERR_RESOURCEID_NOT_VALID."""
@@ -52,7 +52,7 @@ class InfoApi(EsCore):
         try:
             return self.osal.task_get_id_by_name(name)
         except OsalError as error:
-            raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"no task is called {name!r}") from error
+            raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"unknown task {name!r}") from error
 
     def get_task_name(self, task_id: int) -> str:
         """Return the name of a task, or of any OSAL object (CFE_ES_GetTaskName); raises
@@ -61,7 +61,7 @@ class InfoApi(EsCore):
         try:
             return self.osal.get_resource_name(task_id)
         except OsalError as error:
-            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"no task has the id 0x{task_id:x}") from error
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"invalid task id 0x{task_id:x}") from error
 
     # -- ids as indices --------------------------------------------------------------------------------------------
 
@@ -110,7 +110,7 @@ class InfoApi(EsCore):
         if base == ids.ES_LIBID_BASE:
             return self.get_lib_info(resource_id)
         self.write_to_sys_log(f"CFE_ES_GetModuleInfo: Resource ID not valid: {resource_id}")
-        raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"0x{resource_id:x} is neither an AppId nor a LibId")
+        raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"0x{resource_id:x} is not an AppId or a LibId")
 
     def get_task_info(self, task_id: int) -> TaskInfo:
         """Return the properties of a task (CFE_ES_GetTaskInfo); raises CFE_ES_ERR_RESOURCEID_NOT_VALID."""

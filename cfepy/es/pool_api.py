@@ -109,7 +109,9 @@ class PoolApi(EsCore):
         name = app.name if app is not None else owner or self.kernel.current.name
         if len(self.pools) >= self.pools.capacity:
             self.write_to_sys_log("CFE_ES_PoolCreateEx_WithAlignment: No free MemPool slots available")
-            raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"there are {self.pools.capacity} memory pools already")
+            raise CfeError(
+                CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"the limit of {self.pools.capacity} memory pools is reached"
+            )
         claim = self.ports.memory.claim(name, "memory pool", size) if memory is None else NO_CLAIM
         if memory is None and owner:
             memory = self.core_memory(size)
@@ -200,7 +202,7 @@ class PoolApi(EsCore):
         pool = self.pools.find(pool_id)
         if pool is None:
             self.write_to_sys_log(f"CFE_ES_PutPoolBuf: Err:Invalid Memory Handle (0x{pool_id:08X}).")
-            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"no memory pool has the handle 0x{pool_id:x}")
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"invalid memory pool handle 0x{pool_id:x}")
         try:
             return self._alone(pool, lambda: pool.put(block))
         except CfeError as error:
@@ -226,7 +228,7 @@ class PoolApi(EsCore):
             app = self.app_of_caller()
             who = app.app_id if app is not None else 0
             self.write_to_sys_log(f"CFE_ES_{function}: Err:Bad handle(0x{pool_id:08X}) AppId={who}")
-            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"no memory pool has the handle 0x{pool_id:x}")
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"invalid memory pool handle 0x{pool_id:x}")
         return pool
 
     def _alone(self, pool: MemPool, call: Callable[[], _Result]) -> _Result:

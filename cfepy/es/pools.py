@@ -93,12 +93,12 @@ class GenericPool:
     ) -> None:
         if not sizes:
             log("CFE_ES_GenPoolInitialize: cannot create pool with 0 block sizes")
-            raise CfeError(CFE_ES_BAD_ARGUMENT, "a pool needs block sizes")
+            raise CfeError(CFE_ES_BAD_ARGUMENT, "a pool requires block sizes")
         if alignment < 1 or alignment & (alignment - 1):
             log(f"CFE_ES_GenPoolInitialize: invalid alignment for pool: {alignment}")
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"the alignment of a pool is a power of 2, not {alignment}")
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"the alignment of a pool must be a power of 2, not {alignment}")
         if min(sizes) <= 0:
-            raise CfeError(CFE_ES_ERR_MEM_BLOCK_SIZE, f"blocks of {min(sizes)} bytes")
+            raise CfeError(CFE_ES_ERR_MEM_BLOCK_SIZE, f"invalid block size: {min(sizes)} bytes")
         self.size = size
         self.end = start + size
         self.tail = start
@@ -130,7 +130,9 @@ class GenericPool:
         if bucket is None:
             largest = self.buckets[-1].size
             self._log(f"CFE_ES_GenPoolGetBlock: Err:size({size}) > max({largest})")
-            raise CfeError(CFE_ES_ERR_MEM_BLOCK_SIZE, f"a block of {size} bytes, the largest has {largest}")
+            raise CfeError(
+                CFE_ES_ERR_MEM_BLOCK_SIZE, f"a block of {size} bytes is larger than the largest block size, {largest}"
+            )
         return self._recycle(bucket, size) or self._create(bucket, size)
 
     def room_of(self, size: int) -> int:
@@ -350,7 +352,7 @@ class MemPool:
 
     def _offset(self, block: PoolBlock) -> int:
         if block.pool is not self:
-            raise CfeError(CFE_ES_BUFFER_NOT_IN_POOL, f"the block at {block.offset} is not of pool {self.name}")
+            raise CfeError(CFE_ES_BUFFER_NOT_IN_POOL, f"the block at {block.offset} is not in pool {self.name}")
         return block.offset
 
     def statistics(self) -> dict[str, object]:

@@ -48,7 +48,7 @@ class ResetApi(EsCore):
             text = "POWERON RESET called from CFE_ES_ResetCFE (Commanded)."
         elif reset_type != RST_TYPE_PROCESSOR:
             self.write_to_sys_log(f"CFE_ES_ResetCFE: Invalid Reset Type: {reset_type}.")
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"reset type {reset_type}")
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"invalid reset type {reset_type}")
         else:
             variables.processor_reset_count += 1
             if variables.processor_reset_count > variables.max_processor_reset_count:

@@ -73,10 +73,10 @@ class ChildTaskApi(InfoApi, AppEnd):
         app = self.app_of_caller()
         if app is None:
             self.write_to_sys_log(f"CFE_ES_CreateChildTask: Invalid calling context when creating Task '{name}'")
-            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"child task {name!r} needs an application")
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"child task {name!r} requires an application")
         if self.osal.task_get_id() != app.main_task_id:
             self.write_to_sys_log(f"CFE_ES_CreateChildTask: Error: Cannot call from a Child Task (for Task '{name}').")
-            raise CfeError(CFE_ES_ERR_CHILD_TASK_CREATE, "only the main task of an application creates child tasks")
+            raise CfeError(CFE_ES_ERR_CHILD_TASK_CREATE, "only the main task of an application can create child tasks")
         return self.start_task(app, name, entry, stack_size, priority)
 
     def _check_child(self, name: str, entry: Callable[[], object]) -> None:
@@ -87,7 +87,7 @@ class ChildTaskApi(InfoApi, AppEnd):
         else:
             return
         self.write_to_sys_log(f"CFE_ES_CreateChildTask: {text}")
-        raise CfeError(CFE_ES_BAD_ARGUMENT, f"a child task needs a name and a function, not {name!r} and {entry!r}")
+        raise CfeError(CFE_ES_BAD_ARGUMENT, f"a child task requires a name and a function, not {name!r} and {entry!r}")
 
     def delete_child_task(self, task_id: int) -> None:
         """End a child task (CFE_ES_DeleteChildTask).
@@ -108,7 +108,10 @@ class ChildTaskApi(InfoApi, AppEnd):
             raise
         if task_id == app.main_task_id:
             log(f"CFE_ES_DeleteChildTask: Error: Task {task_id} is a cFE Main Task.")
-            raise CfeError(CFE_ES_ERR_CHILD_TASK_DELETE_MAIN_TASK, f"task {task_id} is the main task of {app.name}")
+            raise CfeError(
+                CFE_ES_ERR_CHILD_TASK_DELETE_MAIN_TASK,
+                f"task {task_id} must be a child task, not the main task of {app.name}",
+            )
         self.end_task(app, task_id)
         log(f"CFE_ES_DeleteChildTask: Task {task_id} Deleted")
 
@@ -146,10 +149,12 @@ class CounterApi(EsCore):
             CfeError: CFE_ES_BAD_ARGUMENT, CFE_ES_ERR_DUPLICATE_NAME, CFE_ES_NO_RESOURCE_IDS_AVAILABLE.
         """
         if name_size(name) >= OS_MAX_API_NAME:
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"counter name {name!r} has more than {OS_MAX_API_NAME - 1} characters")
+            raise CfeError(
+                CFE_ES_BAD_ARGUMENT, f"counter name {name!r} must have at most {OS_MAX_API_NAME - 1} characters"
+            )
         if any(counter.name == name for counter in self.counters):
             self.write_to_sys_log(f"CFE_ES_RegisterGenCounter: Duplicate Counter name '{name}'")
-            raise CfeError(CFE_ES_ERR_DUPLICATE_NAME, f"there is a counter {name!r} already")
+            raise CfeError(CFE_ES_ERR_DUPLICATE_NAME, f"counter {name!r} already exists")
         if len(self.counters) >= self.counters.capacity:
             self.write_to_sys_log("CFE_ES_RegisterGenCounter: No free Counter slots available")
             text = f"there are {self.counters.capacity} counters already"
@@ -179,7 +184,7 @@ class CounterApi(EsCore):
         for counter_id, counter in self.counters.items():
             if counter.name == name:
                 return counter_id
-        raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"no counter is called {name!r}")
+        raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"unknown counter {name!r}")
 
     def get_gen_counter_name(self, counter_id: int) -> str:
         """Return the name of a counter (CFE_ES_GetGenCounterName); raises CFE_ES_ERR_RESOURCEID_NOT_VALID."""
@@ -193,7 +198,7 @@ class CounterApi(EsCore):
         """Return a counter; an invalid id has another status here than elsewhere in cFE."""
         counter = self.counters.find(counter_id)
         if counter is None:
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"no counter has the id 0x{counter_id:x}")
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"invalid counter id 0x{counter_id:x}")
         return counter
 
 

@@ -197,10 +197,13 @@ def _parse_entry(raw: _Raw, longest: int) -> StartupEntry | BadLine:
         return _bad(raw, f"the file name cannot be used: {error.text}", text, error.status)
     if kind not in (CFE_APP, CFE_LIB):
         text = f"{_PARSE}Unexpected EntryType {kind} in startup file."
-        return _bad(raw, f"the first field is {kind!r}, it must be {CFE_APP} or {CFE_LIB}", text, CFE_ES_ERR_APP_CREATE)
+        return _bad(raw, f"the first field must be {CFE_APP} or {CFE_LIB}, not {kind!r}", text, CFE_ES_ERR_APP_CREATE)
     log_text = _loading(kind, path, name)
     if len(name) >= MAX_NAME_LEN:
-        reason = f"the name {name!r} has {len(name)} characters, at most {MAX_NAME_LEN - 1} fit; cFE says nothing of it"
+        reason = (
+            f"the name {name!r} must have at most {MAX_NAME_LEN - 1} characters, "
+            f"not {len(name)}; cFE does not report this"
+        )
         return _bad(raw, reason, log_text, CFE_ES_BAD_ARGUMENT)
     return StartupEntry(
         kind=kind,
@@ -234,22 +237,22 @@ def _malformed(raw: _Raw, tokens: int, longest: int) -> BadLine:
     size = len(raw.text)
     text = f"{_START}**WARNING** File Line {raw.number} is malformed: {size} bytes, {tokens - 1} tokens."
     if tokens > MAX_TOKENS:
-        return _bad(raw, f"the entry has {tokens} fields, it must have {MAX_TOKENS}; is a ';' missing?", text)
-    return _bad(raw, f"the entry has {size} characters without blanks, at most {longest} are read", text)
+        return _bad(raw, f"the entry must have {MAX_TOKENS} fields, not {tokens}; check for a missing ';'", text)
+    return _bad(raw, f"the entry must have at most {longest} characters without blanks, not {size}", text)
 
 
 def _too_few(raw: _Raw, tokens: int) -> BadLine:
     text = f"{_PARSE}Invalid ES Startup file entry: {tokens}"
-    reason = f"the entry has {tokens} of {MAX_TOKENS} fields"
+    reason = f"the entry must have {MAX_TOKENS} fields, not {tokens}"
     if raw.text.startswith(("#", "//", "/*")):
-        reason += "; a startup script has no comments before the '!' that ends it"
+        reason += "; comments are only allowed after the '!' that ends the script"
     return _bad(raw, reason, text)
 
 
 def _error_in(raw: _Raw, longest: int) -> str | None:
     """Return why an entry is invalid, or None."""
     if not raw.ended:
-        return f"the last entry has no ';' and is lost: {raw.text}"
+        return f"the last entry is ignored, because its ';' is missing: {raw.text}"
     entry = _parse_entry(raw, longest)
     return entry.explanation if isinstance(entry, BadLine) else None
 
@@ -257,14 +260,17 @@ def _error_in(raw: _Raw, longest: int) -> str | None:
 def _remarks(raw: _Raw, longest: int) -> Iterator[str]:
     """Yield remarks on parts of an entry that cFE interprets differently than they are written."""
     if raw.dropped:
-        yield "bytes that are not ASCII are left out of the entry"
+        yield "the entry has characters that are not ASCII; cFE ignores them"
     entry = _parse_entry(raw, longest) if raw.ended else None
     if not isinstance(entry, StartupEntry):
         return
     fields = raw.text.split(",")
     what = "application" if entry.kind == CFE_APP else "library"
     if not entry.name:
-        yield f"the {what} has no name: cFE starts it, and no command can name it; write one in the fourth field"
+        yield (
+            f"the name of the {what} is missing: cFE starts it, but no command can "
+            "address it; write a name in the fourth field"
+        )
     if entry.kind == CFE_APP and entry.symbol in ("", "NULL"):
         yield (
             f"the symbol is {entry.symbol!r}: the application never runs, and the start waits for it; "
@@ -274,7 +280,7 @@ def _remarks(raw: _Raw, longest: int) -> Iterator[str]:
         yield f"the symbol {fields[2]!r} is cut to {entry.symbol!r}"
     for what, field in (("priority", fields[4]), ("stack size", fields[5]), ("exception action", fields[7])):
         if not _PLAIN_NUMBER.fullmatch(field):
-            yield f"the {what} {field!r} is read as {strtoul(field)}; write a number, such as 60 or 0x3C"
+            yield f"invalid {what} {field!r}, which cFE reads as {strtoul(field)}; write a number, such as 60 or 0x3C"
     if strtoul(fields[4]) > MAX_TASK_PRIORITY:
         yield f"the priority {fields[4]} is cut to {MAX_TASK_PRIORITY}"
     if strtoul(fields[7]) > EXCEPTION_PROC_RESTART:

@@ -74,7 +74,7 @@ class SystemLog:
     def set_mode(self, mode: int) -> None:
         """Set the mode, OVERWRITE or DISCARD (CFE_ES_SysLogSetMode); raises CFE_ES_BAD_ARGUMENT for any other."""
         if mode not in (OVERWRITE, DISCARD):
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"system log mode {mode}")
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"invalid system log mode {mode}")
         self.data.mode = mode
 
     def clear(self) -> None:

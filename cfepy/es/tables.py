@@ -135,7 +135,7 @@ class EsCore:
         """
         app = self.app_named(name)
         if app is None:
-            raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"no application is called {name!r}")
+            raise CfeError(CFE_ES_ERR_NAME_NOT_FOUND, f"unknown application {name!r}")
         return app
 
     def find_task(self, task_id: int) -> tuple[AppRecord, TaskRecord]:
@@ -148,7 +148,7 @@ class EsCore:
             record = app.tasks.get(task_id)
             if record is not None:
                 return app, record
-        raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"no task has the id 0x{task_id:x}")
+        raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"invalid task id 0x{task_id:x}")
 
     def history_of(self, name: str) -> AppHistory:
         """Return the history of an application name."""

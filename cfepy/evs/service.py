@@ -126,7 +126,9 @@ class EventServices(EventCore):
         # as NASA's code, which clears the record first: the application is reported again
         self.unregistered.discard(caller.app_id)
         if filter_scheme != EVENT_FILTER_BINARY:
-            raise CfeError(CFE_EVS_UNKNOWN_FILTER, f"filter scheme {filter_scheme!r}, there is only 0, the binary one")
+            raise CfeError(
+                CFE_EVS_UNKNOWN_FILTER, f"invalid filter scheme {filter_scheme!r}; expected 0, the binary scheme"
+            )
         wanted = list(filters)
         for pair in wanted:
             _check_filter(pair)
@@ -228,7 +230,7 @@ class EventServices(EventCore):
         app = self._registered_caller(report=True)
         text = _checked(event_id, text, values)
         if not all(0 <= part <= _U32_MAX for part in time):
-            raise CfeError(CFE_EVS_INVALID_PARAMETER, f"{time} is no time, its parts are numbers of 32 bits")
+            raise CfeError(CFE_EVS_INVALID_PARAMETER, f"invalid time {time}; both parts must be numbers of 32 bits")
         return self.dispatch(app, event_id, event_type, text, time)
 
     def send_dbg(self, event_id: int, text: str, *values: object) -> int:
@@ -252,7 +254,7 @@ class EventServices(EventCore):
     def _caller(self) -> Caller:
         caller = application_of(self.kernel.current.owner)
         if caller is None:
-            raise CfeError(CFE_EVS_APP_ILLEGAL_APP_ID, "the calling task belongs to no application")
+            raise CfeError(CFE_EVS_APP_ILLEGAL_APP_ID, "the caller must be a task of an application")
         return caller
 
     def _registered_caller(self, report: bool = False) -> AppEvents:
@@ -262,7 +264,7 @@ class EventServices(EventCore):
             return app
         if report:
             raise self._not_registered(caller.app_id)
-        raise CfeError(CFE_EVS_APP_NOT_REGISTERED, f"{caller.name} has to call evs.register first")
+        raise CfeError(CFE_EVS_APP_NOT_REGISTERED, f"{caller.name} must call evs.register first")
 
     def _not_registered(self, app_id: int) -> CfeError:
         """Return the error for an application that is not registered, and report it the first time
@@ -285,16 +287,16 @@ class EventServices(EventCore):
 def _checked(event_id: int, text: str, values: tuple[object, ...]) -> str:
     """Return the text of an event with its values inserted."""
     if not isinstance(text, str):
-        raise CfeError(CFE_EVS_INVALID_PARAMETER, f"the text of event {event_id!r} is {text!r}, not a text")
+        raise CfeError(CFE_EVS_INVALID_PARAMETER, f"the text of event {event_id!r} must be a str, not {text!r}")
     if not isinstance(event_id, int) or not 0 <= event_id <= U16_MAX:
-        raise CfeError(CFE_EVS_INVALID_PARAMETER, f"event id is {event_id!r}, it must be 0 to {U16_MAX}")
+        raise CfeError(CFE_EVS_INVALID_PARAMETER, f"event id must be 0 to {U16_MAX}, not {event_id!r}")
     try:
         return without_addresses(text % values if values else text)
     except (TypeError, ValueError) as error:
-        raise CfeError(CFE_EVS_INVALID_PARAMETER, f"{text!r} does not go with {values}: {error}") from None
+        raise CfeError(CFE_EVS_INVALID_PARAMETER, f"the format {text!r} does not match {values}: {error}") from None
 
 
 def _check_filter(pair: tuple[int, int]) -> None:
     is_pair = isinstance(pair, (tuple, list)) and len(pair) == 2
     if not is_pair or not all(isinstance(value, int) and 0 <= value <= U16_MAX for value in pair):
-        raise CfeError(CFE_ES_BAD_ARGUMENT, f"a filter is (event id, mask), two numbers of 16 bits, not {pair!r}")
+        raise CfeError(CFE_ES_BAD_ARGUMENT, f"a filter must be (event id, mask), two numbers of 16 bits, not {pair!r}")

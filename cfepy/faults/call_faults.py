@@ -47,7 +47,7 @@ def call_name(target: str) -> str:
     functions = [name for name in dir(_classes()[service]) if not name.startswith("_")]
     if method not in functions:
         hint = did_you_mean(method, functions, before="; ", form=f"{service}.{{}}")
-        raise UsageError(f"{target!r} is no function of {service}{hint}")
+        raise UsageError(f"unknown function {target!r} of {service}{hint}")
     return found
 
 
@@ -71,7 +71,7 @@ def _call_name(target: str) -> str:
             return f"{service}.{_WORD.sub('_', target.removeprefix(prefix)).lower()}"
     service, dot, method = target.removeprefix("cfe.").partition(".")
     if not dot or service not in _classes() or not method or method.startswith("_"):
-        text = f"{target!r} is no call; write it as OS_QueuePut or os.queue_put, with one of {', '.join(_classes())}"
+        text = f"invalid call {target!r}; write it as OS_QueuePut or os.queue_put, with one of {', '.join(_classes())}"
         raise UsageError(text)
     return f"{service}.{method}"
 
@@ -91,5 +91,5 @@ def status_of(call: str, name: str | None) -> int:
         return USUAL.get(call, usual if call.startswith(("os.", "psp.")) else codes.CFE_STATUS_EXTERNAL_RESOURCE_FAIL)
     found = getattr(codes, name, None)
     if not isinstance(found, int) or not name.startswith(("CFE_", "OS_")):
-        raise UsageError(f"{name!r} is no status; write one such as OS_QUEUE_FULL or CFE_SB_BUF_ALOC_ERR")
+        raise UsageError(f"unknown status {name!r}; expected a name such as OS_QUEUE_FULL or CFE_SB_BUF_ALOC_ERR")
     return codes.to_signed(found)

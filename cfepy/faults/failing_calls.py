@@ -28,8 +28,8 @@ from cfepy.status import OS_QUEUE_FULL, CfeError, OsalError
 def why_not_called(fault: Fault) -> str:
     """Return why a fault of a function that was never called did not happen."""
     call = call_name(fault.target[0])
-    hint = "; pipes are not read by it here: let CFE_SB_ReceiveBuffer fail" if call == QUEUE_GET else ""
-    return f"nobody that it is about called {call}{hint}"
+    hint = "; pipes are read without it: use a fault of CFE_SB_ReceiveBuffer" if call == QUEUE_GET else ""
+    return f"no matching task called {call}{hint}"
 
 
 def caller_of(task: Task) -> str:
@@ -269,7 +269,7 @@ class Fill:
         name, now = self._fault.target[0], processor.machine.kernel.now
         pipe = next((each for each in processor.cfe.sb.pipes if each.name == name), None)
         if pipe is None or pipe.is_filled:
-            why = f"there is no pipe {name}" if pipe is None else f"pipe {name} is full already"
+            why = f"the pipe {name} does not exist" if pipe is None else f"pipe {name} is full already"
             self._report.missed(self._fault, f"{why} at {now / 1e9:g} s")
             return
         duration_ns = self._fault.options.get("for")

@@ -106,7 +106,7 @@ class MissionNames:
             return self._edit_message(packet, topic.name, values)
         entry = self._entry(packet)
         if not isinstance(entry, Command | Telemetry):
-            raise UsageError(f"the layout of {self.of(packet)[0]} is not known, so no field of it can be set")
+            raise UsageError(f"cannot set a field of {self.of(packet)[0]}: its layout is unknown")
         header = msg.get_header_size(packet)
         try:
             fields = entry.read(packet)
@@ -120,7 +120,7 @@ class MissionNames:
         assert self._mission is not None
         topic = next(each for each in topics_of(self._mission) if each.name == name)
         if msg.get_segmentation_flag(packet) != msg.SegmentationFlag.UNSEGMENTED:
-            raise UsageError(f"a message on {name} is sent in segments; no field of one can be set")
+            raise UsageError(f"cannot set a field of a message on {name}: it is sent in segments")
         try:
             message = library_of(topic).message_class(topic.type)().deserialize(packet[msg.TLM_HEADER_SIZE :])
             for path, value in values.items():
@@ -144,7 +144,7 @@ def _set(whole: Any, path: str, value: Any, owner: str) -> None:
     try:
         _changed(whole, _STEP.findall(path), value)
     except (AttributeError, LookupError, ValueError, TypeError):
-        raise UsageError(f"{owner} has no field {path} that can be set so") from None
+        raise UsageError(f"cannot set {path} of {owner}: the field is missing or has another type") from None
 
 
 def _changed(whole: Any, steps: Sequence[str], value: Any) -> Any:

@@ -127,14 +127,14 @@ def read_marked(root: Marked) -> FaultPlan:
     if not isinstance(root.value, list):
         sections = root.mapping(("faults",))
         if "faults" not in sections:
-            raise root.fail("has no faults; write `faults:` and a list of them, such as `- drop: /odom`")
+            raise root.fail("missing faults; write `faults:` and a list of faults, such as `- drop: /odom`")
         section = sections["faults"]
     faults: list[Fault] = []
     names: dict[str, int] = {}
     for item in section.items():
         fault = _fault(item, faults)
         if fault.name in names:
-            raise item.fail(f"is the second fault that is called {fault.name!r}; names tell faults apart")
+            raise item.fail(f"the name {fault.name!r} is already used by another fault; choose another name")
         names[fault.name] = item.line
         faults.append(fault)
     return FaultPlan(tuple(faults), str(root.file))
@@ -156,7 +156,7 @@ def _fault(item: Marked, before: list[Fault]) -> Fault:
         else:
             options[option] = read
     if when.until_ns is not None and when.until_ns <= when.after_ns:
-        raise fields["until"].fail("is not later than `after`; the fault would never happen")
+        raise fields["until"].fail("must be later than `after`, otherwise the fault never happens")
     _check_datagram(item, target, options)
     return Fault(kind_name, target, name, when, options, item.line)
 
@@ -164,12 +164,12 @@ def _fault(item: Marked, before: list[Fault]) -> Fault:
 def _kind_of(item: Marked, fields: dict[str, Marked]) -> str:
     found = [name for name in fields if name in KINDS]
     if len(found) > 1:
-        raise item.fail(f"is both {found[0]} and {found[1]}; write them as two faults")
+        raise item.fail(f"{found[0]} cannot be combined with {found[1]}; write two faults")
     if found:
         return found[0]
     hints = [did_you_mean(name, KINDS) for name in fields]
     hint = next(filter(None, hints), f"write one of {', '.join(KINDS)}, such as `drop: /odom`")
-    raise item.fail(f"says no kind of fault that is known; {hint}")
+    raise item.fail(f"missing kind of fault; {hint}")
 
 
 def _free_name(kind: str, before: list[Fault]) -> str:
@@ -184,45 +184,45 @@ def _check_options(item: Marked, name: str, kind: FaultKind, fields: dict[str, M
     for option, value in fields.items():
         if option not in kind.options:
             hint = did_you_mean(option, kind.options, f"it takes name, {', '.join(kind.options)}")
-            raise value.fail(f"is no option of {name}; {hint}")
+            raise value.fail(f"unknown option of {name}; {hint}")
     if kind.needed and not any(option in fields for option in kind.needed):
         wanted = kind.needed[0] if len(kind.needed) == 1 else f"one of {', '.join(kind.needed)}"
-        raise item.fail(f"{name} needs {wanted}, such as `{kind.needed[0]}: {EXAMPLES[kind.needed[0]]}`")
+        raise item.fail(f"{name} requires {wanted}, such as `{kind.needed[0]}: {EXAMPLES[kind.needed[0]]}`")
     for group in ALTERNATIVES:
         said = [option for option in group if option in fields]
         if len(said) > 1 and (group[0] != "at" or said[0] == "at"):
-            raise fields[said[1]].fail(f"cannot go with {said[0]}; write two faults")
+            raise fields[said[1]].fail(f"cannot be combined with {said[0]}; write two faults")
 
 
 def _check_datagram(item: Marked, target: tuple[str, ...], options: dict[str, Any]) -> None:
     if any(each.startswith(DATAGRAMS) for each in target):
         if not all(each.startswith(DATAGRAMS) for each in target):
-            raise item.fail("mixes messages and datagrams; write them as two faults")
+            raise item.fail("messages cannot be combined with datagrams; write two faults")
         wrong = [option for option in ("from", "to", "unit", "fields", "checksum") if option in options]
         if wrong:
-            raise item.fail(f"is about datagrams, which have no {wrong[0]}")
+            raise item.fail(f"{wrong[0]} is not an option of faults of datagrams; remove it")
 
 
 # -- targets -----------------------------------------------------------------------------------------------------------
 def _target(kind: FaultKind, entry: Marked) -> tuple[str, ...]:
     items = entry.items() if isinstance(entry.value, list) else [entry]
     if not items or (len(items) > 1 and kind.strikes not in (kinds.MESSAGE, kinds.APP)):
-        raise entry.fail("names no target" if not items else "takes one target; write several faults")
+        raise entry.fail("missing target" if not items else "takes one target; write several faults")
     return tuple(_one_target(kind.strikes, item) for item in items)
 
 
 def _one_target(strikes: str, item: Marked) -> str:
     if strikes in (kinds.SECONDS, kinds.PPM):
-        return f"{_number(item, -LONGEST_S, LONGEST_S, 'a number, not 0, such as -2.5'):.12g}"
+        return f"{_number(item, -LONGEST_S, LONGEST_S, 'a number other than 0, such as -2.5'):.12g}"
     if strikes == kinds.MESSAGE and isinstance(item.value, int) and not isinstance(item.value, bool):
         return f"0x{item.integer(1, 0xFFFF):04X}"
     if not isinstance(item.value, str) or not item.value:
-        raise item.fail(f"is {item.plain()!r}; write the {strikes}'s name as text")
+        raise item.fail(f"must be the name of the {strikes} as text, not {item.plain()!r}")
     choices = {kinds.SIGNAL: kinds.SIGNALS, kinds.MEMORY: kinds.MEMORIES, kinds.RESET: kinds.RESETS}.get(strikes)
     if choices is not None:
         return _choice(choices)(item)
     if strikes == kinds.FILE and not item.value.startswith("/"):
-        raise item.fail(f"is {item.value!r}; write a path of the virtual file system, such as /cf/hk_cpy_tbl.tbl")
+        raise item.fail(f"must be a path of the virtual file system, such as /cf/hk_cpy_tbl.tbl, not {item.value!r}")
     if strikes == kinds.CALL:
         _checked(item, call_name)
     return item.value
@@ -241,21 +241,21 @@ def _checked(item: Marked, check: Callable[[str], object]) -> str:
 def _number(item: Marked, least: float, most: float, what: str) -> float:
     value = item.value
     if isinstance(value, bool) or not isinstance(value, int | float) or not least <= value <= most or not value:
-        raise item.fail(f"is {item.plain()!r}; write {what}")
+        raise item.fail(f"must be {what}, not {item.plain()!r}")
     return value
 
 
 def _seconds(item: Marked) -> int:
     value = item.value
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= LONGEST_S:
-        raise item.fail(f"is {item.plain()!r}; write a number of seconds, such as 2.5")
+        raise item.fail(f"must be a number of seconds, such as 2.5, not {item.plain()!r}")
     return round(value * NS_PER_S)
 
 
 def _duration(item: Marked) -> int:
     found = _seconds(item)
     if not found:
-        raise item.fail("is 0; write a number of seconds of more than that")
+        raise item.fail("must be a number of seconds greater than 0")
     return found
 
 
@@ -272,37 +272,41 @@ def _range(item: Marked) -> tuple[int, int]:
     if not isinstance(item.value, list):
         return _duration(item), _duration(item)
     if len(item.value) != 2 or _duration(item.value[0]) > _duration(item.value[1]):
-        raise item.fail("is no range; write the least and the most number of seconds, such as [0.01, 0.05]")
+        raise item.fail("must be a shortest and a longest time in seconds, such as [0.01, 0.05]")
     return _duration(item.value[0]), _duration(item.value[1])
 
 
 def _probability(item: Marked) -> float:
-    return float(_number(item, 0, 1, "a probability of more than 0 and at most 1"))
+    return float(_number(item, 0, 1, "a probability greater than 0 and at most 1"))
 
 
 def _bytes(item: Marked) -> dict[int, int]:
     """Return positions and values, such as {16: 0xFF}; keys of YAML mappings are texts here."""
     if not isinstance(item.value, dict) or not item.value:
-        raise item.fail('is no mapping of positions to bytes, such as {"16": 0xFF}')
+        raise item.fail('must be a mapping of positions to bytes, such as {"16": 0xFF}')
     found = {}
     for key, value in item.value.items():
         try:
             found[int(key, 0)] = value.integer(0, 255)
         except ValueError as error:
-            raise error if isinstance(error, UsageError) else value.fail(f"{key!r} is no position") from None
+            raise (
+                error
+                if isinstance(error, UsageError)
+                else value.fail(f"invalid position {key!r}; expected a whole number")
+            ) from None
     return found
 
 
 def _fields(item: Marked) -> dict[str, Any]:
     if not isinstance(item.value, dict) or not item.value:
-        raise item.fail("is no mapping of fields to values, such as {data: 3}")
+        raise item.fail("must be a mapping of fields to values, such as {data: 3}")
     return {name: value.plain() for name, value in item.value.items()}
 
 
 def _choice(choices: tuple[str, ...]) -> Callable[[Marked], str]:
     def read(item: Marked) -> str:
         if item.value not in choices:
-            raise item.fail(f"is {item.plain()!r}; write one of {', '.join(choices)}")
+            raise item.fail(f"must be one of {', '.join(choices)}, not {item.plain()!r}")
         return str(item.value)
 
     return read

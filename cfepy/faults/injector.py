@@ -227,7 +227,7 @@ class FaultInjector(Attachment):
 def _without_occasion(fault: Fault, gate: Gate) -> str:
     """Return why a fault that waits for occasions had none."""
     if _is_message(fault):
-        return "no such message was sent to anybody"
+        return "no matching message was delivered"
     return why_not_called(fault) if fault.kind == "fail" else gate.why_not()
 
 

@@ -92,7 +92,9 @@ def seed_of(text: str) -> tuple[int, str]:
     found = _SEED.fullmatch(text)
     if found is None or found[2] not in (None, *INTENSITIES):
         names = ", ".join(INTENSITIES)
-        raise UsageError(f"is {text!r}; write a file, seed:7, or seed:7:high (one of {names})", field="--faults")
+        raise UsageError(
+            f"invalid value {text!r}; expected a file, seed:7, or seed:7:high (one of {names})", field="--faults"
+        )
     return int(found[1]), found[2] or MEDIUM
 
 
@@ -142,8 +144,8 @@ def _problems(fault: Fault, spec: MissionSpec, found: Found | None) -> Iterator[
 def _unknown(what: str, names: Iterable[str], known: Sequence[str]) -> Iterator[str]:
     for name in names:
         if not any(fnmatchcase(each, number_as_name(name)) for each in known):
-            hint = did_you_mean(name, known, f"there are {', '.join(known[:12]) or 'none'}")
-            yield f"no {what} is called {name}; {hint}"
+            hint = did_you_mean(name, known, f"known are {', '.join(known[:12]) or 'none'}")
+            yield f"unknown {what} {name}; {hint}"
 
 
 def _unknown_file(path: str, spec: MissionSpec) -> Iterator[str]:
@@ -155,4 +157,4 @@ def _unknown_file(path: str, spec: MissionSpec) -> Iterator[str]:
     except OsalError as error:
         yield error.text
         return
-    yield f"there is no file {path} before the boot{did_you_mean(path, names, before='; ')}"
+    yield f"the file {path} does not exist before the boot{did_you_mean(path, names, before='; ')}"

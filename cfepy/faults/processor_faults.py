@@ -223,7 +223,7 @@ class FileFault(MemoryFault):
         path = self._fault.target[0]
         node = processor.machine.files.find(path)
         if node is None:
-            raise LookupError(f"there is no file {path} at {processor.machine.kernel.now / 1e9:g} s")
+            raise LookupError(f"the file {path} does not exist at {processor.machine.kernel.now / 1e9:g} s")
         return node.data, f"file {path}"
 
 
@@ -236,7 +236,7 @@ class TableFault(MemoryFault):
         table = registry.find(name)
         active = None if table is None else registry.active(table)
         if table is None or active is None:
-            raise LookupError(f"there is no table {name} at {processor.machine.kernel.now / 1e9:g} s")
+            raise LookupError(f"the table {name} does not exist at {processor.machine.kernel.now / 1e9:g} s")
         return table.image(active), f"table {name}"
 
 
@@ -256,7 +256,7 @@ class RetainedFault(MemoryFault):
             return memory, f"the {area.upper()}" if area != "user_reserved" else "the user reserved area"
         store = processor.cfe.es.cds
         if store is None:
-            raise LookupError("there is no CDS yet")
+            raise LookupError("the CDS does not exist yet")
         block = store.named(block_name)
         start = block.offset + block.size - block.user_size
         return memory[start : start + block.user_size], f"CDS block {block_name}"

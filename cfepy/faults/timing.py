@@ -100,13 +100,13 @@ class Gate:
     def why_not(self) -> str:
         """Return why it never happened, as far as its occasions show."""
         if self.when.explored:
-            return "no schedule asked for it; cfepy explore tries those that do"
+            return "no schedule selected it; cfepy explore tries schedules that do"
         if not self.seen:
-            return "nothing that it is about happened"
+            return "no matching occasion occurred"
         times = "1 time" if self.seen == 1 else f"{self.seen} times"
         if not self._inside:
-            return f"matched {times}, but not in its window of time"
-        return f"matched {times}, but no time was one of those that it asks for"
+            return f"matched {times}, but never within its time window"
+        return f"matched {times}, but never at one of the times given"
 
 
 def asker(kernel: Kernel, name: str) -> Callable[[], bool]:

@@ -48,7 +48,7 @@ def event(
         UsageError: if there is no such type of event.
     """
     if kind is not None and kind not in EVENT_TYPES:
-        raise UsageError(f"{kind!r} is no type of event; there are {', '.join(EVENT_TYPES)}", field="type")
+        raise UsageError(f"invalid event type {kind!r}; expected one of {', '.join(EVENT_TYPES)}", field="type")
 
     def meets(each: DecodedEvent) -> bool:
         return (
@@ -195,7 +195,7 @@ def _value(thing: Any, path: str) -> Any:
     except (KeyError, AttributeError):
         known = list(thing.flat) if isinstance(thing, Packet) else getattr(thing, "__slots__", [])
         near = like(path, known, NEAR) or known
-        raise UsageError(f"no such field; there is {', '.join(near)}", field=path) from None
+        raise UsageError(f"unknown field; near it are {', '.join(near)}", field=path) from None
     return thing
 
 

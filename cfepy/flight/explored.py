@@ -180,7 +180,7 @@ def explore(
     """
     known = RunOptions.__annotations__.keys() - {"schedule"}
     if isinstance(options.get("faults"), Mapping):
-        raise TypeError("faults are flown in other processes; give the file of a plan, or seed:N")
+        raise TypeError("faults must be the file of a plan or seed:N, because the runs are in other processes")
     plan = plan_of(mission, options, known)
     return EXPLORE.need("cfepy.explore")(
         plan,

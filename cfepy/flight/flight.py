@@ -68,7 +68,7 @@ class RosSide:
         ros: RosRuntime | None = self._mission.ros
         if ros is None:
             raise ExpectationError(
-                "no ROS node has started yet: run the mission first, as with run_until_operational()"
+                "no ROS node has started yet; run the mission first, for instance with run_until_operational()"
             )
         return ros
 
@@ -79,7 +79,7 @@ class RosSide:
         topic = self._topic(name)
         route = self._mission.cfe.sb.routes.get(topic.msg_id)
         if route is None or not route.active:
-            raise ExpectationError(f"nobody subscribes to {topic.name} at {seconds(self._mission.kernel.now)} s")
+            raise ExpectationError(f"{topic.name} has no subscriber at {seconds(self._mission.kernel.now)} s")
         self._mission.outside.act(PUBLISH, topic.name, self._payload(topic, message, fields))
 
     def _topic(self, name: str) -> Topic:
@@ -87,7 +87,7 @@ class RosSide:
         known = {topic.name: topic for topic in topics_of(self._mission)}
         full = name if name.startswith("/") else f"/{name}"
         if full not in known:
-            raise ExpectationError(f"there is no topic {full} yet; {near(full, known)}")
+            raise ExpectationError(f"unknown topic {full} (so far); {near(full, known)}")
         return known[full]
 
     def _payload(self, topic: Topic, message: Any, fields: Mapping[str, Any]) -> bytes:
@@ -98,11 +98,11 @@ class RosSide:
         """
         if message is None:
             if not topic.type:
-                raise UsageError(f"the type of {topic.name} is not known; give a message")
+                raise UsageError(f"the type of {topic.name} is unknown; give a message object")
             message = filled(library_of(topic), topic.type, fields)
         elif topic.type and getattr(message, "_type", None) != topic.type:
             kind = getattr(message, "_type", type(message).__name__)
-            raise UsageError(f"{topic.name} carries {topic.type}, and this is a {kind}")
+            raise UsageError(f"{topic.name} has type {topic.type}, not {kind}")
         return serialized(message)
 
     # -- parameters ----------------------------------------------------------------------------------------------------
@@ -115,7 +115,7 @@ class RosSide:
             return found
         if default is not MISSING:
             return default
-        raise ExpectationError(f"there is no parameter {name}; {near(name, tree.names())}")
+        raise ExpectationError(f"unknown parameter {name}; {near(name, tree.names())}")
 
     def set_param(self, name: str, value: Any) -> None:
         """Set a parameter; see `Flight.set_param`."""
@@ -130,7 +130,7 @@ class RosSide:
         services = graph.services
         full = name if name.startswith("/") else f"/{name}"
         if full not in services:
-            raise ExpectationError(f"nobody offers the service {full}; {near(full, sorted(services))}")
+            raise ExpectationError(f"unknown service {full}; {near(full, sorted(services))}")
         if request is None:
             node, service_class = graph.caller(full)
             request = filled(node.library, service_class._request_class._type, fields)
@@ -208,7 +208,9 @@ class Flight(Run):
 
     def _run_until_ns(self, until_ns: int) -> None:
         if self.closed:
-            raise ExpectationError("the flight is over: its results were asked for, or it was closed")
+            raise ExpectationError(
+                "the flight is over, because its results were read or it was closed; start another flight"
+            )
         if until_ns > self.mission.kernel.now:
             watch = Stopwatch()
             self.mission.run_until(until_ns)
@@ -232,7 +234,7 @@ class Flight(Run):
         packet = command if isinstance(command, bytes | bytearray) else self._packet(command, values, fields)
         bus = self.mission.cfe.sb
         if isinstance(command, str) and not receivers(bus, get_msg_id(packet)):
-            raise self._failure(f"somebody to subscribe to {command}", "nobody does, so it cannot be sent")
+            raise self._failure(f"a subscriber of {command}", "none, so the command cannot be sent")
         self._act()
         self.mission.outside.act(PACKET, bytes(packet))
 

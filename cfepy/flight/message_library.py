@@ -68,7 +68,7 @@ def library_of_class(kind: MessageClass) -> Library:
 
     full_text = getattr(kind, "_full_text", None)
     if full_text is None:
-        raise UsageError(f"{kind!r} is no ROS message class; give one, or a type such as 'std_msgs/String'")
+        raise UsageError(f"not a ROS message class: {kind!r}; give a class, or a type such as 'std_msgs/String'")
     return library_of(kind._type, full_text)
 
 
@@ -89,7 +89,7 @@ def filled(library: Library, kind: str, fields: Mapping[str, Any]) -> Any:
     try:
         ArgumentFiller(library.message_class).fill_message_args(message, [dict(fields)])
     except Exception as error:  # any error of genpy for values that do not fit
-        raise UsageError(f"no {kind}: {error}") from None
+        raise UsageError(f"invalid {kind}: {error}") from None
     return message
 
 
@@ -100,7 +100,7 @@ def serialized(message: Any) -> bytes:
         UsageError: if it is not a message.
     """
     if not hasattr(message, "serialize"):
-        raise UsageError(f"{message!r} is no ROS message; give one, or its fields by name")
+        raise UsageError(f"not a ROS message: {message!r}; give a message, or its fields by name")
     buffer = io.BytesIO()
     message.serialize(buffer)
     return buffer.getvalue()

@@ -100,7 +100,7 @@ def plan_of(mission: MissionWords, options: Mapping[str, Any], known: Iterable[s
     names = sorted(known)
     for name in options:
         if name not in names:
-            raise TypeError(f"there is no option {name!r}; {did_you_mean(name, names)}")
+            raise TypeError(f"unknown option {name!r}{did_you_mean(name, names, before='; ')}")
     words = _words(mission)
     said = {name: value for name, value in options.items() if value is not None}
     for name in ("board", "script", "play"):

@@ -104,11 +104,16 @@ class BackgroundWriter:
     def request(self, meta: FileWrite) -> None:
         """Add a file to the queue; see `FileServices.background_file_dump_request`."""
         if not callable(meta.get_data) or not callable(meta.on_event):
-            raise CfeError(CFE_FS_BAD_ARGUMENT, "a background write needs a function for its data and one for its end")
+            raise CfeError(
+                CFE_FS_BAD_ARGUMENT, "a background write requires a function for its data and one for its end"
+            )
         if not meta.file_name:
-            raise CfeError(CFE_FS_INVALID_PATH, "a background write needs a file name")
+            raise CfeError(CFE_FS_INVALID_PATH, "a background write requires a file name")
         if meta.is_pending or len(self._waiting) >= MAX_REQUESTS:
-            raise CfeError(CFE_STATUS_REQUEST_ALREADY_PENDING, f"{meta.file_name}: this or too many others are waiting")
+            raise CfeError(
+                CFE_STATUS_REQUEST_ALREADY_PENDING,
+                f"{meta.file_name}: this write or too many others are already waiting",
+            )
         meta.is_pending = True
         self._waiting.append(meta)
         self._wake()

@@ -93,7 +93,7 @@ def parse_input_file_name_ex(
         CfeError: CFE_FS_BAD_ARGUMENT for a `max_len` of 0.
     """
     if max_len <= 0:
-        raise CfeError(CFE_FS_BAD_ARGUMENT, "a buffer of no bytes holds no file name")
+        raise CfeError(CFE_FS_BAD_ARGUMENT, "a buffer for a file name must have at least one byte")
     text = (name or default_name or "").partition("\0")[0]
     *parts, last = text.split("/")
     stem, dot, extension = last.partition(".")
@@ -102,7 +102,7 @@ def parse_input_file_name_ex(
     complete = _directory(parts, default_path) + stem + dot + extension.lstrip(".")
     size = len(to_bytes(complete))
     if size >= max_len:
-        text = f"{complete!r} has {size} characters, at most {max_len - 1} fit"
+        text = f"{complete!r} must have at most {max_len - 1} characters, not {size}"
         raise FileNameError(CFE_FS_FNAME_TOO_LONG, text, from_bytes(to_bytes(complete)[: max_len - 1]))
     if not stem:
         raise FileNameError(CFE_FS_INVALID_PATH, f"{text!r} has no file name", complete)
@@ -144,7 +144,7 @@ def extract_filename_from_path(path: str) -> str:
     """
     at = path.rfind("/")
     if len(path) - (at + 1) >= MAX_PATH_LEN:
-        raise CfeError(CFE_FS_FNAME_TOO_LONG, f"the file name of {path!r} has {len(path) - at - 1} characters")
+        raise CfeError(CFE_FS_FNAME_TOO_LONG, f"the file name of {path!r} is too long: {len(path) - at - 1} characters")
     if at <= 0:
         raise CfeError(CFE_FS_INVALID_PATH, f"{path!r} has no directory before the file name")
     return path[at + 1 :]

@@ -90,7 +90,7 @@ class FileHeader:
         try:
             return _FILE.pack(*numbers, _fixed(self.description, DESCRIPTION_SIZE))
         except struct.error:
-            raise UsageError(f"a number of the file header does not fit 32 bits: {self}") from None
+            raise UsageError(f"the numbers of the file header must fit 32 bits: {self}") from None
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +111,7 @@ class TableHeader:
         try:
             return _TABLE.pack(self.reserved, self.offset, self.num_bytes, _fixed(self.table_name, TABLE_NAME_SIZE))
         except struct.error:
-            raise UsageError(f"a number of the table header does not fit 32 bits: {self}") from None
+            raise UsageError(f"the numbers of the table header must fit 32 bits: {self}") from None
 
 
 def init_header(description: str, subtype: int) -> FileHeader:
@@ -152,7 +152,7 @@ def read_header(data: bytes) -> FileHeader:
         CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL if there are not 64 bytes.
     """
     if len(data) < HEADER_SIZE:
-        text = f"a cFE file header has {HEADER_SIZE} bytes, the file only {len(data)}"
+        text = f"a cFE file must have a header of {HEADER_SIZE} bytes; the file has {len(data)} bytes"
         raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, text)
     content, subtype, length, scid, cpu, app, seconds, subseconds, description = _FILE.unpack_from(data)
     return FileHeader(_text(description), subtype, content, length, scid, cpu, app, seconds, subseconds)
@@ -165,7 +165,7 @@ def read_table_header(data: bytes, at: int = HEADER_SIZE) -> TableHeader:
         CfeError: CFE_TBL_ERR_NO_TBL_HEADER if the file ends before it.
     """
     if len(data) < at + TABLE_HEADER_SIZE:
-        text = f"a table header has {TABLE_HEADER_SIZE} bytes after the {at} of the file header, the file ends before"
+        text = f"the file ends within the table header, {TABLE_HEADER_SIZE} bytes after the {at} of the file header"
         raise CfeError(CFE_TBL_ERR_NO_TBL_HEADER, text)
     reserved, offset, num_bytes, name = _TABLE.unpack_from(data, at)
     return TableHeader(_text(name[:-1]), num_bytes, offset, reserved)
@@ -179,19 +179,19 @@ def read_table_file(data: bytes) -> tuple[FileHeader, TableHeader, bytes]:
             the image is shorter than its header says.
     """
     if len(data) < HEADER_SIZE:
-        text = f"a table file starts with {HEADER_SIZE} bytes of header, this one has {len(data)}"
+        text = f"a table file must have a header of {HEADER_SIZE} bytes; this file has {len(data)} bytes"
         raise CfeError(CFE_TBL_ERR_NO_STD_HEADER, text)
     header = read_header(data)
     if header.content_type != CONTENT_ID:
-        text = f'content type is 0x{header.content_type:08X}, a cFE file has 0x{CONTENT_ID:08X} ("cFE1")'
+        text = f'the content type of a cFE file must be 0x{CONTENT_ID:08X} ("cFE1"), not 0x{header.content_type:08X}'
         raise CfeError(CFE_TBL_ERR_BAD_CONTENT_ID, text)
     if header.subtype != SUBTYPE_TBL_IMG:
-        text = f"subtype is {header.subtype}, a table file has {SUBTYPE_TBL_IMG}"
+        text = f"the subtype of a table file must be {SUBTYPE_TBL_IMG}, not {header.subtype}"
         raise CfeError(CFE_TBL_ERR_BAD_SUBTYPE_ID, text)
     table = read_table_header(data)
     image = bytes(data[HEADER_SIZE + TABLE_HEADER_SIZE :])
     if len(image) < table.num_bytes:
-        text = f"the header of {table.table_name!r} promises {table.num_bytes} bytes, the file has {len(image)}"
+        text = f"the header of {table.table_name!r} specifies {table.num_bytes} bytes, but the file has {len(image)}"
         raise CfeError(CFE_TBL_ERR_LOAD_INCOMPLETE, text)
     return header, table, image
 

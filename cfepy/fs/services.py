@@ -104,7 +104,7 @@ class FileServices:
         try:
             data = struct.pack(">II", *new_timestamp)
         except struct.error as error:
-            raise CfeError(CFE_FS_BAD_ARGUMENT, f"{new_timestamp} is no time: {error}") from error
+            raise CfeError(CFE_FS_BAD_ARGUMENT, f"invalid time {new_timestamp}: {error}") from error
         what = "lseek time fields"
         try:
             self._osal.lseek(filedes, TIMESTAMP_OFFSET, OS_SEEK_SET)

@@ -60,7 +60,7 @@ def library() -> SimpleNamespace:
         from spacepackets.seqcount import SeqCountProvider
         from spacepackets.util import ByteFieldU8
     except ImportError as error:
-        raise UsageError(f"CFDP on the ground needs cfdp-py ({error}): pip install 'cfepy[cfdp]'") from error
+        raise UsageError(f"CFDP on the ground requires cfdp-py ({error}): pip install 'cfepy[cfdp]'") from error
     return SimpleNamespace(
         cfdp=cfdppy,
         pdus=pdus,

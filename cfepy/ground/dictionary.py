@@ -171,7 +171,7 @@ class Dictionary:
 
     def _unknown(self, what: str, name: str, known: Iterable[str]) -> UsageError:
         unread = "".join(f"; {problem}" for problem in self.problems)
-        return UsageError(f"no {what} is called {name}{did_you_mean(name, known, before='; ', most=3)}{unread}")
+        return UsageError(f"unknown {what} {name}{did_you_mean(name, known, before='; ', most=3)}{unread}")
 
 
 def _read(entry: Command | Telemetry | Topic | None, packet: bytes, decoded: Decoded) -> Decoded:
@@ -220,7 +220,7 @@ def _default_image(spec: MissionSpec, kind: TableType, problems: list[str]) -> b
         with open_input(file) as opened:
             image = tbl.read(opened.read(HEADER_SIZE + TABLE_HEADER_SIZE + kind.size))
     except (CfeError, OSError) as error:
-        problems.append(f"{file} is no table file: {error}")
+        problems.append(f"{file} is not a table file: {error}")
         return None
     return (bytes(image.offset) + image.data)[: kind.size].ljust(kind.size, b"\0")
 
@@ -277,9 +277,9 @@ def table_type(name: str, mission: str | None) -> TableType:
     which = (
         f"did you mean {' or '.join(kind.name for kind in found)}?"
         if found
-        else f"there are {', '.join(sorted(known))}"
+        else f"known tables are {', '.join(sorted(known))}"
     )
-    raise UsageError("; ".join([f"no table is called {name!r}", which, *problems]))
+    raise UsageError("; ".join([f"unknown table {name!r}", which, *problems]))
 
 
 def _codes(spec: MissionSpec | None) -> Iterator[tuple[str, Path | str]]:

@@ -46,7 +46,7 @@ class MessageDecoder:
         except UsageError:
             raise
         except Exception as error:  # any exception of the generated code for bytes that are not such a message
-            raise UsageError(f"no {header['type']}: {error}", file=message.topic) from None
+            raise UsageError(f"invalid {header['type']}: {error}", file=message.topic) from None
 
 
 # -- one message -------------------------------------------------------------------------------------------------------

@@ -31,12 +31,12 @@ def message_from_json(class_of: Callable[[str], Any], kind: str, value: Any) -> 
 
 def _message(class_of: Callable[[str], Any], kind: str, value: Any, path: str) -> Any:
     if not isinstance(value, Mapping):
-        raise ValueError(f"{path}: {value!r} is no object")
+        raise ValueError(f"{path}: {value!r} is not an object")
     message = class_of(kind)()
     types = dict(zip(message.__slots__, message._slot_types, strict=True))
     for name, each in value.items():
         if name not in types:
-            raise ValueError(f"{path} has no field {name!r}")
+            raise ValueError(f"{path}: unknown field {name!r}")
         setattr(message, name, _value(class_of, types[name], each, f"{path}.{name}"))
     return message
 
@@ -51,7 +51,7 @@ def _value(class_of: Callable[[str], Any], kind: str, value: Any, path: str) -> 
         return _time(Time if kind == "time" else Duration, value, path)
     if kind == _TEXT:
         if not isinstance(value, str):
-            raise ValueError(f"{path}: {value!r} is no text")
+            raise ValueError(f"{path}: {value!r} is not a text")
         return value
     return _number(kind, value, path)
 
@@ -62,11 +62,11 @@ def _number(kind: str, value: Any, path: str) -> Any:
     if isinstance(value, bool) and kind == _TRUTH:
         return value
     if not isinstance(value, int | float):
-        raise ValueError(f"{path}: {value!r} is no {kind}")
+        raise ValueError(f"{path}: {value!r} is not a valid {kind}")
     if kind in _REAL:
         return float(value)
     if isinstance(value, float) and not value.is_integer():
-        raise ValueError(f"{path}: {value!r} is no {kind}")
+        raise ValueError(f"{path}: {value!r} is not a valid {kind}")
     return int(value)
 
 
@@ -77,16 +77,16 @@ def _array(class_of: Callable[[str], Any], base: str, length: int | None, value:
         except binascii.Error as error:
             raise ValueError(f"{path}: {error}") from None
     elif not isinstance(value, list):
-        raise ValueError(f"{path}: {value!r} is no array")
+        raise ValueError(f"{path}: {value!r} is not an array")
     if length is not None and len(value) != length:
-        raise ValueError(f"{path} has {len(value)} items instead of {length}")
+        raise ValueError(f"{path} must have {length} items, not {len(value)}")
     if isinstance(value, bytes):
         return value
     items = [_value(class_of, base, each, f"{path}[{number}]") for number, each in enumerate(value)]
     if base not in _BYTES:
         return items
     if not all(0 <= each < 256 for each in items):
-        raise ValueError(f"{path}: an item is no {base}")
+        raise ValueError(f"{path}: an item is not a valid {base}")
     return bytes(items)
 
 

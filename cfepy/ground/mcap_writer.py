@@ -89,5 +89,5 @@ def _library() -> ModuleType:
     try:
         from mcap import writer
     except ImportError:
-        raise UsageError("MCAP files are written by the library mcap: pip install 'cfepy[mcap]'") from None
+        raise UsageError("MCAP files require the library mcap: pip install 'cfepy[mcap]'") from None
     return writer

@@ -107,7 +107,7 @@ def play_words(options: str) -> list[str]:
     except ValueError as error:
         raise UsageError(str(error), field="--play-options") from None
     if len(said.bags) > 1:
-        raise UsageError(f"{said.bags[1]} is no option; --play names the bag", field="--play-options")
+        raise UsageError(f"unexpected {said.bags[1]}; name the bag with --play", field="--play-options")
     return words
 
 

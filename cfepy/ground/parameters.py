@@ -134,5 +134,5 @@ def _contents(path: Path) -> dict[str, bytes]:
         raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
     found = {name: data for name, data in contents.items() if files.is_parameters(data)}
     if not found:
-        raise UsageError("there is no file of a parameter table in it", file=path)
+        raise UsageError("contains no file of a parameter table", file=path)
     return found

@@ -170,7 +170,7 @@ def _opened(file: str) -> Iterator[tuple[RecordingSummary, Salvage]]:
     with data:
         kind = _BEGINNINGS.get(data[:7]) or Path(file).suffix
         if kind not in KINDS:
-            raise UsageError("is neither a bag nor an MCAP file", file=file)
+            raise UsageError("is not a bag or an MCAP file", file=file)
         salvage = storage().BagSalvage(data) if kind == BAG else storage().McapSalvage(data)
         try:
             yield RecordingSummary(file, kind, size), salvage
@@ -231,10 +231,10 @@ def rewrite(file: str, output: str, compression: str | None = None, strict: bool
     """
     kind = Path(output).suffix
     if kind not in KINDS:
-        raise UsageError("ends neither with .bag nor with .mcap", file=output, field="--output")
+        raise UsageError("must end with .bag or .mcap", file=output, field="--output")
     chosen = compression or "none"
     if chosen not in KINDS[kind]:
-        text = f"a file {kind} has no {chosen}; it has {', '.join(KINDS[kind])}"
+        text = f"unknown compression {chosen} for a file {kind}; expected {', '.join(KINDS[kind])}"
         raise UsageError(text, field="--compression")
     part = f"{output}.part"
     try:
@@ -259,10 +259,12 @@ def _copy(summary: RecordingSummary, salvage: Salvage, target: _BagTarget | _Mca
     if strict and (salvage.losses or not summary.is_whole):
         loss = next(iter(salvage.losses), None)
         why = next(summary.damage()) if loss is None else f"{loss.why} (byte {loss.at:,})"
-        raise UsageError(f"is damaged: {why}; cfepy bag recover {summary.file} saves what is left", file=summary.file)
+        raise UsageError(
+            f"is damaged: {why}; cfepy bag recover {summary.file} saves the readable messages", file=summary.file
+        )
     if not summary.messages and not strict:
         why = next(iter(summary.damage()), "it has no messages")
-        raise UsageError(f"nothing is left of it: {why}", file=summary.file)
+        raise UsageError(f"has no readable message: {why}", file=summary.file)
     for row in summary.topics:
         row.left_out = left_out.get((row.topic, row.type, row.encoding), 0)
     target.finish(salvage)

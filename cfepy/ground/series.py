@@ -155,7 +155,9 @@ class Series:
         inner = next((names_in(value) for value in values if value is not None), ())
         if inner:
             names = ", ".join(f"{path}.{name}" if path else name for name in inner)
-            raise UsageError(f"is made of fields; name one of them: {names}", file=self.name, field=path or None)
+            raise UsageError(
+                f"is not a single field; name one of its fields: {names}", file=self.name, field=path or None
+            )
         return Samples(self.times, array_of(values))
 
     def columns(self, *fields: str) -> dict[str, NDArray[Any]]:
@@ -184,7 +186,7 @@ class Series:
         try:
             from pandas import DataFrame, Index
         except ImportError:
-            raise UsageError("tables need the library pandas: pip install pandas") from None
+            raise UsageError("tables require the library pandas: pip install pandas") from None
         return DataFrame(self.columns(*fields), index=Index(self.times, name="time"))
 
     def _values(self, field: str) -> tuple[str, list[Any]]:
@@ -202,7 +204,7 @@ class Series:
         items = {path[len(array) :].split("]")[0] for path in paths if mark and path.startswith(f"{array}[")}
         if not items:
             return unknown_field(self.name, paths, field)
-        text = f"there is no such item; the last one is {array}[{len(items) - 1}]"
+        text = f"index out of range; the last item is {array}[{len(items) - 1}]"
         return UsageError(text, file=self.name, field=field)
 
 
@@ -269,17 +271,15 @@ class SeriesSet:
     def _unknown(self, word: str) -> UsageError:
         names = [name for name, _ in meanings(word)]
         if any(name in self._silent for name in names):
-            return UsageError("nothing was sent there", file=word)
+            return UsageError("no message was sent there", file=word)
         known = sorted({*self._series, *self._silent})
         if not known:
-            return UsageError("nothing is sent there, nor anywhere else", file=word)
+            return UsageError("no message was sent there or on any other topic", file=word)
         near = like(names[0], known, likeness=0.5)
         shown = [*near, *(name for name in known if name not in near)]
         more = ", ..." if len(shown) > SHOWN_NAMES else ""
         hint = f"did you mean {near[0]}? " if near else ""
-        return UsageError(
-            f"there is no such topic or packet; {hint}there are {', '.join(shown[:SHOWN_NAMES])}{more}", file=word
-        )
+        return UsageError(f"unknown topic or packet; {hint}known are {', '.join(shown[:SHOWN_NAMES])}{more}", file=word)
 
     def add(self, series: Series) -> None:
         """Add a series, replacing one with its name."""
@@ -374,7 +374,7 @@ def _take_packets(
             found.add(series)
         series.add(packet)
     if words and not there:
-        raise UsageError(f"{words[0]} is no topic, which begins with /; there is nothing else in it", file=file)
+        raise UsageError(f"{words[0]} is not a topic name, which begins with /; this file has only topics", file=file)
     found._silent += sorted(there)
 
 

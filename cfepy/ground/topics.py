@@ -48,14 +48,14 @@ class Topic:
         if self.raw:
             return {"data": bytes(packet)}
         if not self.type:
-            raise UsageError("the type of its messages is not known")
+            raise UsageError("the message type is unknown")
         if get_segmentation_flag(packet) != SegmentationFlag.UNSEGMENTED:
-            raise UsageError("a segment of a longer message")
+            raise UsageError("this is one segment of a longer message")
         try:
             message = library_of(self).message_class(self.type)()
             fields: dict[str, Any] = plain(message.deserialize(packet[TLM_HEADER_SIZE:]))
         except Exception as error:  # any exception of the generated code for bytes that are not such a message
-            raise UsageError(f"no {self.type}: {error}") from None
+            raise UsageError(f"invalid {self.type}: {error}") from None
         return fields
 
 

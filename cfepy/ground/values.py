@@ -34,9 +34,9 @@ def packet_of(declared: Command, words: Iterable[str]) -> bytes:
     for word in words:
         path, equals, text = word.partition("=")
         if not equals:
-            raise UsageError(f"{word!r} is no value of a field; write field=value")
+            raise UsageError(f"invalid field value {word!r}; expected FIELD=VALUE")
         if path in given:
-            raise UsageError("is given twice", field=path)
+            raise UsageError("is given twice; remove one", field=path)
         given.add(path)
         for cell, item in _targets(declared.name, cells, path, text):
             payload[cell.offset : cell.offset + cell.size] = _packed(cell, item)
@@ -52,7 +52,7 @@ def _targets(owner: str, cells: Mapping[str, Cell], path: str, text: str) -> Ite
         raise unknown_field(owner, cells, path)
     texts = text.split(",") if text else []
     if len(texts) > len(items):
-        raise UsageError(f"{len(texts)} items, there is room for {len(items)}", field=path)
+        raise UsageError(f"must have at most {len(items)} items, not {len(texts)}", field=path)
     return zip(items, texts, strict=False)
 
 
@@ -72,7 +72,7 @@ def unknown_field(owner: str, paths: Iterable[str], path: str) -> UsageError:
     if not known:
         return UsageError(f"{owner} has no fields", field=path)
     hint = did_you_mean(path, known, before="; ")
-    return UsageError(f"no such field{hint or ';'} {owner} has {', '.join(known)}", field=path)
+    return UsageError(f"unknown field{hint or ';'} {owner} has {', '.join(known)}", field=path)
 
 
 def _packed(cell: Cell, text: str) -> bytes:
@@ -120,7 +120,7 @@ def parse_value(kind: str, text: str, path: str) -> int | float | str:
         return float(text) if kind in ("f32", "f64") else int_of(text)
     except (ValueError, KeyError):
         wanted = {"bool": "true or false", "f32": "a number", "f64": "a number"}.get(kind, "an integer")
-        raise UsageError(f"{text!r} is not {wanted}", field=path) from None
+        raise UsageError(f"must be {wanted}, not {text!r}", field=path) from None
 
 
 def int_of(text: str) -> int:

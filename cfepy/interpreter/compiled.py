@@ -55,5 +55,7 @@ def state() -> str:
     if not any(path.exists() for path in compiled):
         return "kernel and bus interpreted"
     if not list(ROOT.glob(f"{library_name(ROOT)}__mypyc.*")):
-        return "kernel and bus compiled from other sources than those here: build them again, or delete what was built"
+        return (
+            "the compiled kernel and bus do not match the sources here; build them again, or delete the compiled files"
+        )
     return "kernel and bus compiled"

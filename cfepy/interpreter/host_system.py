@@ -156,6 +156,6 @@ def check_own_builtins() -> None:
     """
     if not has_own_builtins():
         raise UsageError(
-            f"{sys.implementation.name} gives ROS nodes and a mission's own applications no builtins of their own, "
-            "such as `open` and `__import__`: fly them with CPython. cFE and cfepy's own applications fly here"
+            f"{sys.implementation.name} cannot give ROS nodes and a mission's own applications separate builtins, "
+            "such as `open` and `__import__`; run them with CPython. cFE and cfepy's own applications can run here"
         )

@@ -51,7 +51,7 @@ def parsed(source: str | bytes, file: str = "<unknown>", *, mode: Literal["exec"
         with no_collection:
             return ast.parse(source, file, mode)
     except (RecursionError, MemoryError):  # the parser raises MemoryError for thousands of brackets
-        raise TooDeepError(f"{_TOO_DEEP} for Python; take it apart", (file, 1, 1, None)) from None
+        raise TooDeepError(f"{_TOO_DEEP} for Python; split it", (file, 1, 1, None)) from None
 
 
 def compiled(source: str | bytes | ast.Module, file: str) -> CodeType:
@@ -107,7 +107,7 @@ def parsed_input(
             _WORD.finditer(source) if isinstance(source, bytes) else _WORD.finditer(source.encode("utf-8", "replace"))
         )
         if sum(1 for _ in words) > PYTHON_WORDS:
-            text = f"has more than {PYTHON_WORDS:,} words and signs, which is the limit for a source; split it"
+            text = f"has more than the limit of {PYTHON_WORDS:,} words and signs in a source; split it"
             raise SyntaxError(text, (file, 1, 1, None))
     tree = parsed(source, file, mode=mode) if mode == "eval" else parsed(source, file)
     _check_depth(tree, file, depth)
@@ -134,7 +134,7 @@ def _check_depth(tree: ast.AST, file: str, depth: int) -> None:
         if not level:
             return
     line = next((node.lineno for node in level if isinstance(node, ast.expr | ast.stmt)), 1)
-    raise TooDeepError(f"{_TOO_DEEP}: more than {depth} levels; take it apart", (file, line, 1, None))
+    raise TooDeepError(f"{_TOO_DEEP}: more than {depth} levels; split it", (file, line, 1, None))
 
 
 class NameScope:

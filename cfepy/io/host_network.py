@@ -157,7 +157,7 @@ class HostNetwork:
         except OSError as error:
             opened.close()
             where = f"{protocol} port {self._ports.get(port, port)} of {LOOPBACK} cannot be opened: {error.strerror}"
-            raise UsageError(f"{where}; give the mission's port {port} another: --port {port}=NUMBER") from None
+            raise UsageError(f"{where}; map the mission's port {port} to another one: --port {port}=NUMBER") from None
         self._tell(f"{protocol} port {port} is open at {LOOPBACK}:{opened.getsockname()[1]}")
         return opened
 
@@ -196,7 +196,7 @@ class HostNetwork:
     def _refuse(self, host: str) -> None:
         if host not in self._foreign:
             self._foreign.append(host)
-            self._tell(f"datagrams for {host} are dropped: only {LOOPBACK} is connected")
+            self._tell(f"datagrams for {host} are dropped, because only {LOOPBACK} is connected")
 
     # -- connections -------------------------------------------------------------------------------------------------
 

@@ -15,7 +15,7 @@ from cfepy.reading.input_limits import PEER_CONNECTIONS, UNFINISHED_BYTES
 
 HEAD_S = 10.0  # wall time within which a connection must state its purpose
 TURN_S = 0.05  # wall time for requests between two parts of a run; the others wait for the next
-TOO_MUCH = f"messages that are not whole have more than {UNFINISHED_BYTES:,} bytes, and this is the largest"
+TOO_MUCH = f"incomplete messages have more than {UNFINISHED_BYTES:,} bytes, and this one is the largest"
 
 
 class Guarded(Protocol):
@@ -46,10 +46,10 @@ class PeerPlaces:
         while len(self) >= self._most:
             other = next(iter(self._new), None) or next(iter(self._idle), None)
             if other is None:
-                peer.fail("there are too many connections")
+                peer.fail("too many connections")
                 return
             self.leave(other)
-            other.fail("another connection needs the place")
+            other.fail("closed to make room for another connection")
         self._new[peer] = now_s
 
     def keep(self, peer: Guarded) -> None:
@@ -74,7 +74,7 @@ class PeerPlaces:
         """Close connections that have not stated their purpose in time."""
         for peer in [each for each, since_s in self._new.items() if now_s - since_s > HEAD_S]:
             self.leave(peer)
-            peer.fail("nothing was asked for")
+            peer.fail("no request was received")
 
     def _is_there(self, peer: Guarded) -> bool:
         return peer in self._new or peer in self._idle or peer in self._kept

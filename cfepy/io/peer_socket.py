@@ -16,7 +16,7 @@ CHUNK = 1 << 16
 # maximum number of bytes received between two parts of a run; the rest waits in the other program
 MOST_AT_ONCE = 1 << 20
 MOST_WAITING = 1000  # messages
-ENDED = "the other side has closed the connection"
+ENDED = "the peer closed the connection"
 MOST_BYTES = 1 << 26  # maximum number of waiting bytes; one message may be longer
 
 

@@ -38,7 +38,7 @@ def send(host: str, port: int, data: bytes) -> bool:
         except ConnectionRefusedError:
             return False
         except OSError as error:
-            raise UsageError(f"nothing can be sent there: {error.strerror or error}", file=f"{host}:{port}") from None
+            raise UsageError(f"cannot be reached: {error.strerror or error}", file=f"{host}:{port}") from None
 
 
 def own_address(host: str) -> str:
@@ -51,7 +51,7 @@ def own_address(host: str) -> str:
         try:
             plug.connect((host, 1))  # sends nothing, but finds the route
         except OSError as error:
-            raise UsageError(f"there is no way there: {error.strerror or error}", file=host) from None
+            raise UsageError(f"has no route: {error.strerror or error}", file=host) from None
         address: str = plug.getsockname()[0]
         return address
 

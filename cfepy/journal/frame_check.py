@@ -161,16 +161,16 @@ def problem_of(kind: str, body: Any) -> str | None:
     if wanted is None:
         return None
     if not isinstance(body, Mapping):
-        return f"a frame {kind!r} is no mapping"
+        return f"a frame {kind!r} is not a mapping"
     if kind == "header" and _whole(body.get("format")) and body["format"] != FORMAT:
         return None  # it has other fields
     found = _problem(kind, body, wanted)
     if found is None and kind == "file" and body["packed"] is not None and not _size(body["size"]):
-        return f"the file {body['path']} has {body['size']:,} bytes, a journal carries at most {JOURNAL_FILE_BYTES:,}"
+        return f"the file {body['path']} must have at most {JOURNAL_FILE_BYTES:,} bytes, not {body['size']:,}"
     if found is None and kind == "header":
         needed = {each.name for each in fields(RunPlan) if each.default is MISSING and each.default_factory is MISSING}
         plan = body["plan"]
-        return _problem("plan", plan, PLAN, needed) if isinstance(plan, Mapping) else "its plan is no mapping"
+        return _problem("plan", plan, PLAN, needed) if isinstance(plan, Mapping) else "its plan is not a mapping"
     return found
 
 
@@ -210,7 +210,7 @@ def check_values(data: bytes) -> None:
         if not left:
             return
         if at >= len(data):
-            raise ValueError("a frame is cut off inside")
+            raise ValueError("a frame is truncated")
         step, inner = _value_at(data, at)
         at += step
         left += inner - 1

@@ -239,7 +239,7 @@ def check_paths(path: str | Path) -> None:
         UsageError: if this is such a computer.
     """
     if os.name == "nt":
-        text = "journals name files as Linux and macOS do; record and replay there, or in WSL"
+        text = "journals require the file names of Linux or macOS; record and replay there, or in WSL"
         raise UsageError(text, file=path)
 
 
@@ -248,10 +248,13 @@ def _read(path: str) -> Journal:
     frames = read_frames(path)
     kind, body = next(frames, ("", {}))
     if kind != HEADER:
-        raise JournalError("is cut off before its first frame is complete: there is nothing to replay", file=path)
+        raise JournalError("is truncated before the end of its first frame and cannot be replayed", file=path)
     if body["format"] != FORMAT:
         who = body.get("versions", {}).get("cfepy", "?")
-        text = f"has format {body['format']} (cfepy {who}); this cfepy reads format {FORMAT}: use the other one"
+        text = (
+            f"has format {body['format']}, written by cfepy {who}; this cfepy reads only "
+            f"format {FORMAT}. Replay it with that version"
+        )
         raise JournalError(text, file=path)
     journal = Journal(path, Header.from_dict(body))
     for kind, body in frames:
@@ -317,7 +320,7 @@ def read_frames(path: str | Path) -> Iterator[tuple[str, dict[str, Any]]]:
 
     with open_input(path, handed=True) as file:
         if file.read(len(MARK)) != MARK:
-            raise JournalError("is no journal; give a file that `cfepy run --record FILE` wrote", file=path)
+            raise JournalError("is not a journal; give a file that `cfepy run --record FILE` wrote", file=path)
         while len(head := file.read(_head.size)) == _head.size:
             size, checksum = _head.unpack(head)
             at = file.tell()
@@ -333,7 +336,7 @@ def read_frames(path: str | Path) -> Iterator[tuple[str, dict[str, Any]]]:
                 raise JournalError(f"is damaged at byte {at}: {error or type(error).__name__}", file=path) from None
             problem = problem_of(kind, body) if isinstance(kind, str) else f"a frame has the kind {kind!r}"
             if problem is not None:
-                raise JournalError(f"is no journal that cfepy wrote: at byte {at}, {problem}", file=path)
+                raise JournalError(f"was not written by cfepy: at byte {at}, {problem}", file=path)
             yield kind, body
 
 

@@ -66,9 +66,9 @@ class MissionFile:
         try:
             content = unpacker.decompress(self.packed, self.size + 1)
         except zlib.error as error:
-            raise UsageError(f"the journal's {self.path} is damaged: {error}") from None
+            raise UsageError(f"the journal's copy of {self.path} is damaged: {error}") from None
         if len(content) != self.size or sha256(content).hexdigest() != self.sha256:
-            raise UsageError(f"the journal's {self.path} is not the file that it says; record the run again")
+            raise UsageError(f"the journal's copy of {self.path} does not match its checksum; record the run again")
         return content
 
     def same_on_disk(self) -> bool:

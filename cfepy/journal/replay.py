@@ -237,8 +237,12 @@ class Replay:
     def why_over(self) -> str:
         """Return why the run does not continue, for the user."""
         if self.is_whole:
-            return "there the recorded run ended"
-        return "there the journal ends, --until SECONDS goes on" if self.until_ns is None else "the replay ended there"
+            return "the recorded run ended there"
+        return (
+            "the journal ends there; continue with --until SECONDS"
+            if self.until_ns is None
+            else "the replay ended there"
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,7 +39,7 @@ class Stage:
 
     Attributes:
         plan: plan of the run, with paths of this computer.
-        root: folder that replaces the root of the recorded computer; empty for this computer's own.
+        root: folder that stands for the root of the recorded computer; empty for this computer's own.
         absent: paths that did not exist.
         notes: hints for the user, before the run.
         reasons: why the run may differ.
@@ -93,7 +93,7 @@ def _on_tasks_here(plan: RunPlan) -> tuple[RunPlan, tuple[str, ...]]:
     """
     if plan.tasks != GREENLET or has_greenlets():
         return plan, ()
-    note = "recorded on greenlets, and greenlet is not installed here: replayed on threads, which make the same run"
+    note = "recorded on greenlets, but greenlet is not installed: replayed on threads, which give the same run"
     return replace(plan, tasks=THREAD), (note,)
 
 
@@ -115,7 +115,9 @@ def _unpacked(journal: Journal) -> Iterator[tuple[str, Collection[str]]]:
         try:
             carried = sum(each.size for each in journal.files.values() if each.packed is not None)
             if carried > JOURNAL_FILES_BYTES:
-                raise UsageError(f"they have {carried:,} bytes, more than {JOURNAL_FILES_BYTES:,}; use --from-disk")
+                raise UsageError(
+                    f"they have {carried:,} bytes, more than the limit of {JOURNAL_FILES_BYTES:,}; use --from-disk"
+                )
             for each in journal.files.values():
                 _unpack(each, Path(root))
             for path, names in journal.folders.items():
@@ -187,11 +189,11 @@ def _warnings(journal: Journal) -> Iterator[str]:
     then, now = journal.header.versions, versions()
     for name in ("cfepy", "cfe"):
         if then.get(name) != now[name]:
-            yield f"recorded with {name} {then.get(name)}, this is {now[name]}: the run may be another one"
+            yield f"recorded with {name} {then.get(name)}, this is {now[name]}: the run may differ"
     if then.get("cfepy") == now["cfepy"] and then.get("source") != now["source"]:
-        yield "recorded with another state of cfepy's own source: the run may be another one"
+        yield "recorded with another state of cfepy's own source: the run may differ"
     if _minor(then.get("python", "")) != _minor(now["python"]):
-        yield f"recorded with Python {then.get('python')}, this is {now['python']}: the run may be another one"
+        yield f"recorded with Python {then.get('python')}, this is {now['python']}: the run may differ"
 
 
 def _minor(version: str) -> str:
@@ -207,7 +209,7 @@ def _host_changes(journal: Journal) -> Iterator[str]:
     now = host_facts()
     for name, value in journal.header.host.items():
         if now.get(name, value) != value:
-            yield f"another computer: {name} was {value}, is {now[name]}"
+            yield f"recorded on another computer: {name} was {value}, is {now[name]}"
 
 
 def moved_plan(header: Header, root: str) -> RunPlan:

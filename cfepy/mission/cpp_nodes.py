@@ -72,7 +72,7 @@ def read_cpp_nodes(section: Marked, mistakes: Mistakes) -> CppNodesConfig:
 
 def _profile(entry: Marked) -> str:
     if entry.value not in PROFILES:
-        raise entry.fail(f"is {entry.plain()!r}; the profiles are {', '.join(PROFILES)}")
+        raise entry.fail(f"unknown profile {entry.plain()!r}; expected one of {', '.join(PROFILES)}")
     return str(entry.value)
 
 
@@ -84,7 +84,7 @@ def _read_capacities(section: Marked, places: dict[str, Marked], mistakes: Mista
         if name in _DEFAULTS:
             said[name] = mistakes.attempt(partial(entry.integer, 1, MOST_ITEMS))
         elif name.count("/") != 1 or name.startswith("/") or name.endswith("/"):
-            text = "is no message type; write it with its package, such as `sensor_msgs/JointState: {position: 7}`"
+            text = "is not a message type; write it with its package, such as `sensor_msgs/JointState: {position: 7}`"
             mistakes.add(entry.fail(f"{text}, or `text: {TEXT}` or `array: {ARRAY}` for all fields that are not named"))
         else:
             for key, number in mistakes.mapping(entry).items():

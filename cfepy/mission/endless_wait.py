@@ -47,8 +47,8 @@ class EndlessWait(NamedTuple):
     def text(self) -> str:
         """A one-line description."""
         where = f" at {self.place}" if self.place else ""
-        why = f"held by {self.holder}" if self.holder else "nobody is left who could end that"
-        return f"{self.task} waits for ever for {self.what}{where}, since {self.since_ns / NS_PER_S:.6f} s; {why}"
+        why = f"held by {self.holder}" if self.holder else "no remaining task can end this wait"
+        return f"{self.task} waits forever for {self.what}{where}, since {self.since_ns / NS_PER_S:.6f} s; {why}"
 
 
 class EndlessWaits(NamedTuple):

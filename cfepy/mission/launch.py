@@ -108,7 +108,7 @@ def read_launch(file: Path, args: Mapping[str, str] | None = None, build: NodeBu
     notes = (*plan.notes, *left_out)
     if not plan.nodes and not built:
         why = "; ".join(notes) or "it has no <node>"
-        raise UsageError(f"has no node that can run here: {why}", file=file)
+        raise UsageError(f"has no node that cfepy can run: {why}", file=file)
     return spec_of(file, plan.nodes, plan.params, notes, built)
 
 
@@ -158,16 +158,18 @@ def launch_file(words: Sequence[str]) -> tuple[Path, dict[str, str]]:
     args = dict(word.split(":=", 1) for word in words if ":=" in word)
     names = [word for word in words if ":=" not in word]
     if len(names) > 1 and os.path.isfile(names[0]):
-        raise UsageError(f"{names[1]!r} is no argument for it; write NAME:=VALUE", file=names[0])
+        raise UsageError(f"invalid argument {names[1]!r}; expected NAME:=VALUE", file=names[0])
     if len(names) not in (1, 2):
-        raise UsageError(f"{len(names)} names; give a launch file, or a package and the name of a launch file in it")
+        raise UsageError(
+            f"expected a launch file, or a package and the name of a launch file in it; found {len(names)} names"
+        )
     file = Path(names[0])
     if len(names) == 1 and os.path.isfile(file):
         return file.resolve(), args
     found = launch_file_of_package(" ".join(names))
     if found is None:
         hint = did_you_mean(names[-1], files_near(file, LAUNCH_FILES), before="; ")
-        raise UsageError(f"there is no such launch file{hint}", file=" ".join(names))
+        raise UsageError(f"launch file not found{hint}", file=" ".join(names))
     return found, args
 
 
@@ -242,7 +244,7 @@ def node_script(words: Sequence[str]) -> tuple[Path, list[str]]:
     if len(words) == 1 or words[0].endswith(".py"):
         otherwise = "give one, or a package and the name of a node in it"
         hint = did_you_mean(words[0], files_near(Path(words[0]), (".py",)), otherwise)
-        raise UsageError(f"there is no such script; {hint}", file=words[0])
+        raise UsageError(f"script not found; {hint}", file=words[0])
     from rospy_shim.roslaunch.launch_plan import node_file
 
     return node_file(words[0], words[1], Path.cwd() / words[1], os.environ), list(words[2:])

@@ -92,9 +92,9 @@ class MissionLimits:
         if name in IDENTITIES or not isinstance(most, int) or not isinstance(value, int) or value <= most:
             return
         if name in self.values:
-            text = f"is {value}, the board {board.name} has {most}; lower it, or take another board"
+            text = f"must be at most {most} on the board {board.name}, not {value}; lower it, or use another board"
             raise self._error(name, text)
-        text = f"is {self.nodes}, which takes {name}: {value}; the board {board.name} has {most}"
+        text = f"is {self.nodes}, which requires {name}: {value}, but the board {board.name} has {most}"
         raise self._error(NODES, text)
 
     def _error(self, name: str, text: str) -> UsageError:

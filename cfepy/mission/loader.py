@@ -131,7 +131,10 @@ class ModuleLoader:
         except RemovedCodeError:
             pass
         name = PurePosixPath(file).stem
-        text = f"OS_ModuleLoad: no {name}.py and no package {name} in the mission's folder, no app or module {name}"
+        text = (
+            f"OS_ModuleLoad: found no {name}.py and no package {name} in the "
+            f"mission's folder, and no app or module {name}"
+        )
         self._console.write(text)
         raise OsalError(OS_ERROR, text)
 
@@ -170,7 +173,7 @@ class MainCode:
         raise self._no_module()
 
     def _no_module(self) -> OsalError:
-        return OsalError(OS_ERROR, f"{self._file} is an application, and no module")
+        return OsalError(OS_ERROR, f"{self._file} is an application, not a module")
 
 
 class BuiltInApps(Finder):

@@ -264,7 +264,7 @@ class Mission:
             RuntimeError: if the mission was closed.
         """
         if self._is_closed:
-            raise RuntimeError("this mission was closed: its tasks have ended, and it cannot go on; boot another one")
+            raise RuntimeError("this mission is closed and cannot continue; boot another one")
         stop_ns = until_ns
         while True:
             if self.meet is not None:

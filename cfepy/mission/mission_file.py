@@ -113,10 +113,12 @@ def read_launches(section: Marked, mistakes: Mistakes) -> tuple[LaunchFile, ...]
 def _launch(item: Marked) -> LaunchFile:
     fields = item.mapping(("file", "args")) if isinstance(item.value, dict) else {"file": item}
     if "file" not in fields:
-        raise item.fail("needs a file, such as `file: demo.launch`")
+        raise item.fail("missing file; add it, such as `file: demo.launch`")
     path = Path(os.path.normpath(item.file.parent / fields["file"].text()))
     if not os.path.isfile(path):
-        raise fields["file"].fail(f"is {path}, which is no file; give a launch file's path from the mission's folder")
+        raise fields["file"].fail(
+            f"file not found: {path}; give the path of a launch file relative to the mission's folder"
+        )
     return path, _texts(fields["args"]) if "args" in fields else {}
 
 
@@ -151,7 +153,11 @@ def read_nodes(section: Marked, mistakes: Mistakes) -> dict[str, NodeConfig]:
             said[name] = mistakes.attempt(partial(_NODE_FIELDS[name], value))
         if len(mistakes.errors) == before:
             if said.get("respawn") and said.get("required"):
-                mistakes.add(entry.fail("has both respawn and required; a node that ends the run cannot come back"))
+                mistakes.add(
+                    entry.fail(
+                        "respawn cannot be combined with required, because the end of a required node ends the run"
+                    )
+                )
                 continue
             if "respawn_delay" in said:
                 said["respawn_delay_ns"] = said.pop("respawn_delay")
@@ -176,19 +182,19 @@ def read_topics(section: Marked, mistakes: Mistakes) -> dict[str, TopicConfig]:
         topics[name] = topic
         other = by_id.setdefault(topic.msg_id, name)
         if other != name:
-            mistakes.add(entry.fail(f"has the MsgId 0x{topic.msg_id:04X} of {other}; change one of them"))
+            mistakes.add(entry.fail(f"the MsgId 0x{topic.msg_id:04X} is already used by {other}; change one of them"))
     return topics
 
 
 def _topic(name: str, entry: Marked) -> TopicConfig:
     if not name.startswith("/"):
-        raise entry.fail(f'is the topic {name!r}; a topic name here begins with "/"')
+        raise entry.fail(f'invalid topic name {name!r}; it must begin with "/"')
     fields = entry.mapping(["msg_id", "raw"])
     if "msg_id" not in fields:
-        raise entry.fail("needs a msg_id, such as `msg_id: 0x0901`")
+        raise entry.fail("missing msg_id; add it, such as `msg_id: 0x0901`")
     msg_id = fields["msg_id"].value
     if not isinstance(msg_id, int) or not 0 < msg_id <= HIGHEST_VALID_MSG_ID:
-        raise fields["msg_id"].fail(f"is {msg_id!r}; a MsgId is a number from 1 to 0x{HIGHEST_VALID_MSG_ID:X}")
+        raise fields["msg_id"].fail(f"must be a number from 1 to 0x{HIGHEST_VALID_MSG_ID:X}, not {msg_id!r}")
     return TopicConfig(name, msg_id, _truth(fields["raw"]) if "raw" in fields else False)
 
 
@@ -221,32 +227,32 @@ def read_bridge(section: Marked, mistakes: Mistakes) -> RosBridge:
 
 def _clock_hz(entry: Marked) -> int:
     if type(entry.value) is not int or not 1 <= entry.value <= MOST_CLOCK_HZ:
-        raise entry.fail(f"is {entry.value!r}; write how often a second /clock is told, from 1 to {MOST_CLOCK_HZ}")
+        raise entry.fail(f"must be a rate of /clock in Hz from 1 to {MOST_CLOCK_HZ}, not {entry.value!r}")
     return entry.value
 
 
 def _bridged(topic: str, entry: Marked) -> BridgedPacket:
     if not topic.startswith("/"):
-        raise entry.fail(f'is the topic {topic!r}; a topic name here begins with "/"')
+        raise entry.fail(f'invalid topic name {topic!r}; it must begin with "/"')
     if not isinstance(entry.value, dict):
         return BridgedPacket(str(entry.value))
     fields = entry.mapping(("packet", "raw"))
     if "packet" not in fields:
-        raise entry.fail("needs a packet, such as `packet: CFE_ES_HK_TLM`")
+        raise entry.fail("missing packet; add it, such as `packet: CFE_ES_HK_TLM`")
     return BridgedPacket(str(fields["packet"].value), _truth(fields["raw"]) if "raw" in fields else False)
 
 
 def _global_topic(entry: Marked) -> str:
     topic = entry.text()
     if not topic.startswith("/"):
-        raise entry.fail(f'is the topic {topic!r}; a topic name here begins with "/"')
+        raise entry.fail(f'invalid topic name {topic!r}; it must begin with "/"')
     return topic
 
 
 def _namespace(entry: Marked) -> str:
     namespace = entry.text()
     if not namespace.startswith("/"):
-        raise entry.fail(f'is {namespace!r}; a namespace begins with "/"')
+        raise entry.fail(f'invalid namespace {namespace!r}; it must begin with "/"')
     return namespace
 
 
@@ -255,14 +261,14 @@ def _keys(entry: Marked) -> tuple[str | float, ...]:
     keys = tuple(item.value for item in entry.items())
     for item, key in zip(entry.items(), keys, strict=True):
         if isinstance(key, bool) or not isinstance(key, str | int | float) or (not isinstance(key, str) and key < 0):
-            raise item.fail(f"is {key!r}; write a text that is typed, or a number of seconds to wait")
+            raise item.fail(f"must be a text to type or a number of seconds to wait, not {key!r}")
     return keys
 
 
 def _truth(entry: Marked) -> bool:
     """Return a value that is true or false."""
     if not isinstance(entry.value, bool):
-        raise entry.fail(f"is {entry.value!r}; write true or false")
+        raise entry.fail(f"must be true or false, not {entry.value!r}")
     return entry.value
 
 
@@ -270,7 +276,7 @@ def _release(entry: Marked) -> str:
     """Return a release of cFE."""
     if not isinstance(entry.value, str) or entry.value not in RELEASES:
         choice = " or ".join(f'"{name}"' for name in RELEASES)
-        raise entry.fail(f"is {entry.value!r}; the releases of cFE to choose from are {choice}")
+        raise entry.fail(f"unknown release of cFE {entry.value!r}; expected {choice}")
     return entry.value
 
 

@@ -68,8 +68,11 @@ def find_script(mission: str) -> Path:
     if file is not None:
         return file
     names = shipped_missions()
-    hint = did_you_mean(mission, [*names, *missions_near(path)], f"cfepy brings along {', '.join(names)}")
-    text = f"no startup script, launch file or folder with a {STARTUP_SCRIPT}, and no shipped mission"
+    hint = did_you_mean(mission, [*names, *missions_near(path)], f"shipped missions are {', '.join(names)}")
+    text = (
+        "unknown mission; expected a startup script, a launch file, a folder "
+        f"with a {STARTUP_SCRIPT} or a shipped mission"
+    )
     raise UsageError(f"{text}; {hint}", file=mission)
 
 
@@ -96,10 +99,10 @@ def _check_kind(path: Path) -> None:
     """
     data = read_limited(path, max(LINE_FILE_BYTES, XML_BYTES))
     if path.suffix == ".py" or data.startswith(b"#!"):
-        raise UsageError("is a program and no mission; `cfepy node` runs a ROS node by itself", file=path)
+        raise UsageError("is a program, not a mission; use `cfepy node` to run a ROS node alone", file=path)
     is_text = b"\0" not in data and any(mark in data for mark in (b"!", b"CFE_"))
     if path.suffix not in LAUNCH_FILES and data.strip() and not is_text:
-        raise UsageError("is neither a startup script nor a launch file", file=path)
+        raise UsageError("is not a startup script or a launch file", file=path)
 
 
 def mission_file_of(script: Path) -> Path | None:
@@ -125,7 +128,7 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None, build: Nod
 
         return read_launch(script, args, build)
     if args:
-        raise UsageError("only a launch file takes arguments", file=mission, field="--arg")
+        raise UsageError("is not a launch file, so it takes no arguments", file=mission, field="--arg")
     name = script.parent.name if script.name == STARTUP_SCRIPT else script.stem
     spec = MissionSpec(name=name, folder=script.parent, script=script)
     path = mission_file_of(script)
@@ -194,7 +197,7 @@ def cpp_nodes_source(said: str) -> str:
         return said
     path = mission_file_of(find_script(said))
     if path is None:
-        raise UsageError("has no mission file", file=said, field="--cpp-nodes")
+        raise UsageError("requires a mission with a mission file", file=said, field="--cpp-nodes")
     return str(path)
 
 
@@ -214,7 +217,7 @@ def cpp_nodes_of(said: str) -> CppNodesConfig:
 
     sections = read_mission_file(Path(source), Mistakes())
     if "cpp_nodes" not in sections.places:
-        raise UsageError("has no section cpp_nodes", file=source, field="--cpp-nodes")
+        raise UsageError("the section cpp_nodes is missing", file=source, field="--cpp-nodes")
     return sections.cpp_nodes
 
 
@@ -237,7 +240,10 @@ def read_lock(path: Path, ros: RosConfig) -> RosConfig:
                 continue  # the mission file has a newer choice
             msg_id = entry.integer(1, HIGHEST_VALID_MSG_ID)
             if msg_id in by_id:
-                text = f"has the MsgId 0x{msg_id:04X} of {by_id[msg_id]}; remove one, and lock the mission again"
+                text = (
+                    f"the MsgId 0x{msg_id:04X} is already used by {by_id[msg_id]}; remove "
+                    "one of them, and lock the mission again"
+                )
                 raise entry.fail(text)
             by_id[msg_id] = name
             found[title][name] = msg_id

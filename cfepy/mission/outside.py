@@ -126,11 +126,11 @@ class Outside:
         elif kind == CLOSED:
             stream.close()
         else:
-            raise LookupError(f"there is no event {kind!r}")
+            raise LookupError(f"unknown event {kind!r}")
 
     def _stream(self, number: int) -> OutsideStream:
         if not 0 <= number < len(self._streams):
-            raise LookupError(f"there is no connection {number}")
+            raise LookupError(f"unknown connection {number}")
         return OutsideStream(self, number, self._streams[number])
 
     def _keep(self, stream: Stream) -> OutsideStream:

@@ -58,10 +58,10 @@ def _files(section: Marked) -> Iterator[tuple[Path, str]]:
     for entry in entries:
         said = {"file": entry} if isinstance(entry.value, str) else entry.mapping(["file", "namespace"])
         if "file" not in said:
-            raise entry.fail("names no file; write `params_from: [robot.yaml]` or {file: robot.yaml, namespace: arm}")
+            raise entry.fail("missing file; write `params_from: [robot.yaml]` or {file: robot.yaml, namespace: arm}")
         path = entry.file.parent / said["file"].text()
         if not os.path.isfile(path):
-            raise said["file"].fail(f"there is no file {path}; a path is seen from the folder of {entry.file.name}")
+            raise said["file"].fail(f"file not found: {path}; give a path relative to the folder of {entry.file.name}")
         yield path, said["namespace"].text() if "namespace" in said else ""
 
 
@@ -94,7 +94,7 @@ def checked(value: Any) -> Any:
         checked(each)
     fault = _fault(value) if inner is None else None
     if fault is None and isinstance(value, dict) and not all(isinstance(name, str) for name in value):
-        fault = f"has names that are no text: {value}"
+        fault = f"has names that are not text: {value}"
     if fault is not None:
         raise UsageError(fault, field="value")
     return value
@@ -106,7 +106,7 @@ def _fault(value: Any) -> str | None:
         return None
     if not isinstance(value, int):
         what = "nothing" if value is None else f"a {type(value).__name__}"
-        return f"is {what}, which is no value of a ROS parameter; put text in quotes"
+        return f"must be a value that ROS parameters can have, not {what}; put text in quotes"
     if _INT_MIN <= value <= _INT_MAX:
         return None
-    return f"is {value}; a ROS parameter is an integer of 32 bits, or a number with a point"
+    return f"must be an integer of 32 bits or a number with a decimal point, not {value}"

@@ -430,7 +430,7 @@ def _fault_of(function: Callable[..., Any]) -> str | None:
     try:
         inspect.signature(function).bind(None)
     except TypeError:
-        return f"does not take one argument, the handle of the services; write `def {function.__name__}(cfe):`"
+        return f"must take one argument, the handle of the services; write `def {function.__name__}(cfe):`"
     except ValueError:
         return None  # a function in C without a signature
     return None

@@ -45,12 +45,12 @@ def with_settings(spec: MissionSpec, settings: Sequence[tuple[str, str]]) -> Mis
 
 def _value(name: str, text: str) -> Any:
     if not name.startswith("/") or not all(name[1:].split("/")):
-        raise UsageError(f"{name!r} is no full name of a parameter; write one like /arm/rate", field=OPTION)
+        raise UsageError(f"invalid parameter name {name!r}; expected a full name such as /arm/rate", field=OPTION)
     try:
         return checked(plain_yaml(text))
     except (YamlError, UsageError) as error:
         said = error.text if isinstance(error, YamlError) else str(error)
-        raise UsageError(f"the value of {name}, {text!r}, is none for ROS: {said}", field=OPTION) from None
+        raise UsageError(f"invalid value {text!r} of {name}: {said}", field=OPTION) from None
 
 
 def _full_name(node: NodeConfig) -> str:
@@ -76,4 +76,4 @@ def _doubts(name: str, nodes: Mapping[str, NodeConfig], params: Mapping[str, Any
         return []
     known = [_full_name(node) for node in nodes.values()]
     hint = did_you_mean(f"/{first}", known, before="; ")
-    return [] if not known else [f"{OPTION} {name}: no node is called /{first}{hint}"]
+    return [] if not known else [f"{OPTION} {name}: unknown node /{first}{hint}"]

@@ -39,5 +39,5 @@ def read_sweep(section: Marked, mistakes: Mistakes) -> SweepConfig:
         said[name] = tuple(text for text in texts if text)
         for item, text in zip(items, texts, strict=True):
             if name == "topics" and text and not text.startswith("/"):
-                mistakes.add(item.fail(f'is the topic {text!r}; a topic name here begins with "/"'))
+                mistakes.add(item.fail(f'invalid topic name {text!r}; it must begin with "/"'))
     return SweepConfig(**said)

@@ -46,7 +46,7 @@ def described(error: BaseException) -> str:
     try:
         return f"{type(error).__name__}: {error}"
     except Exception:
-        return f"{type(error).__name__}: its text cannot be had"
+        return f"{type(error).__name__}: its text is not available"
 
 
 def _is_ours(file: str) -> bool:

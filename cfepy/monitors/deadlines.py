@@ -95,11 +95,11 @@ def read_deadlines(section: Marked, mistakes: Mistakes) -> Deadlines:
 def _app_deadline(app: str, entry: Marked) -> AppDeadline:
     fields = entry.mapping(APP_FIELDS)
     if "response" not in fields and "period" not in fields:
-        raise entry.fail("needs a response or a period, such as `response: 2 ms`")
+        raise entry.fail("missing response or period; add one, such as `response: 2 ms`")
     if "jitter" in fields and "period" not in fields:
-        raise fields["jitter"].fail("says how much a period may vary; give the period, too, such as `period: 10 ms`")
+        raise fields["jitter"].fail("requires a period; add it, such as `period: 10 ms`")
     if "period" in fields and "jitter" not in fields:
-        raise entry.fail("has a period without a jitter; say how much it may vary, such as `jitter: 1 ms`")
+        raise entry.fail("missing jitter of the period; add it, such as `jitter: 1 ms`")
     return AppDeadline(
         app,
         response_ns=_time(fields.get("response")),
@@ -112,12 +112,12 @@ def _app_deadline(app: str, entry: Marked) -> AppDeadline:
 def _topic_deadline(name: str, entry: Marked) -> TopicDeadline:
     fields = entry.mapping(TOPIC_FIELDS)
     if not fields:
-        raise entry.fail(f"needs one of {', '.join(TOPIC_FIELDS)}, such as `latency: 5 ms`")
+        raise entry.fail(f"requires one of {', '.join(TOPIC_FIELDS)}, such as `latency: 5 ms`")
     if name.startswith("0x"):
         _check_msg_id(name, entry)
     found = TopicDeadline(name, *(_time(fields.get(each)) for each in TOPIC_FIELDS))
     if found.longest_ns is not None and found.shortest_ns is not None and found.longest_ns < found.shortest_ns:
-        raise fields["at_least_every"].fail("is shorter than at_most_every: no message can be in time for both")
+        raise fields["at_least_every"].fail("must not be shorter than at_most_every")
     return found
 
 
@@ -127,7 +127,7 @@ def _check_msg_id(name: str, entry: Marked) -> None:
     except ValueError:
         is_good = False
     if not is_good:
-        raise entry.fail("is no MsgId; write one such as 0x0883, or the name of a topic or packet")
+        raise entry.fail("is not a MsgId; write one such as 0x0883, or the name of a topic or packet")
 
 
 def _time(entry: Marked | None, zero: bool = False) -> int | None:
@@ -140,11 +140,11 @@ def _time(entry: Marked | None, zero: bool = False) -> int | None:
         return None
     match = _TIME.fullmatch(entry.value) if isinstance(entry.value, str) else None
     if match is None:
-        raise entry.fail(f"is {entry.plain()!r}; write a time with its unit, such as 500 us, 2.5 ms, 1 s or 50 Hz")
+        raise entry.fail(f"must be a time with a unit, such as 500 us, 2.5 ms, 1 s or 50 Hz, not {entry.plain()!r}")
     number, unit = float(match[1]), match[2]
     found = round(number * TIME_UNITS[unit]) if unit in TIME_UNITS else round(NS_PER_S / max(number, 1e-9))
     if not (0 if zero else 1) <= found <= LONGEST_NS:
-        raise entry.fail(f"is {entry.value}, it must be from {0 if zero else 1} ns to {LONGEST_NS // NS_PER_S} s")
+        raise entry.fail(f"must be from {0 if zero else 1} ns to {LONGEST_NS // NS_PER_S} s, not {entry.value}")
     return found
 
 

@@ -52,10 +52,10 @@ class Measure(NamedTuple):
         kind, _, name = text.partition(":")
         name, arrow, effect = name.partition(_ARROW)
         if kind not in KINDS:
-            hint = did_you_mean(kind, KINDS, f"write {FORMS}")
-            raise UsageError(f"nothing is measured by {text!r}; {hint}", field="--worst")
+            hint = did_you_mean(kind, KINDS, f"expected {FORMS}")
+            raise UsageError(f"unknown measure {text!r}; {hint}", field="--worst")
         if not name or (arrow and (kind != LATENCY or not effect)):
-            raise UsageError(f"{text!r} is no measure; write {FORMS}", field="--worst")
+            raise UsageError(f"invalid measure {text!r}; expected {FORMS}", field="--worst")
         return cls(kind, name, effect)
 
     @property

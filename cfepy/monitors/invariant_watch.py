@@ -114,7 +114,7 @@ class FunctionJudge(Judge):
             said = str(error) or "an assertion failed"
             detail = f"{detail}\n{app_traceback(error)}".lstrip()
         if said is False or isinstance(said, str):
-            self.report(said or f"{self.invariant.function} says no", at_ns, sender, detail)
+            self.report(said or f"{self.invariant.function} returned False", at_ns, sender, detail)
 
 
 class AnswerJudge(Judge):
@@ -186,7 +186,7 @@ class AgainJudge(Judge):
         due_ns = self._since_ns + self._again_ns
         if now_ns > due_ns:
             what = self.invariant.selection if self.invariant.when is None else self.invariant.when.source
-            self.report(f"nothing within {self._again_ns / NS_PER_S:g} s again ({what})", due_ns, "", "")
+            self.report(f"no further message within {self._again_ns / NS_PER_S:g} s ({what})", due_ns, "", "")
 
 
 class EventuallyJudge(Judge):

@@ -112,12 +112,12 @@ def _invariant(name: str, entry: Marked) -> Invariant:
     fields = entry.mapping(FIELDS)
     kinds = [each for each in KINDS if each in fields]
     if len(kinds) != 1:
-        said = f"has {' and '.join(kinds)}; write one of them" if kinds else "says nothing"
+        said = f"has {' and '.join(kinds)}; write one of them" if kinds else "missing condition"
         text = 'give `holds: "msg.data < 3"`, `file` and `function`, `within` and `then`, `again`, or `eventually`'
         raise entry.fail(f"{said}; {text}")
     selection = read_selection(fields)
     if selection == Selection() and "function" not in fields:
-        raise entry.fail("says of no message that it is about; add `topic: /name` or `packet: NAME`")
+        raise entry.fail("missing message; add `topic: /name` or `packet: NAME`")
     file, function = _function(entry, fields)
     return Invariant(
         name,
@@ -153,7 +153,7 @@ def _list(entry: Marked | None) -> list[Marked]:
 def _topic(entry: Marked) -> str:
     name = entry.text()
     if not name.startswith(("/", "*")):
-        raise entry.fail(f'is {name!r}; a topic is named by its full name, which begins with "/", or by a pattern')
+        raise entry.fail(f'invalid topic name {name!r}; expected a full name, which begins with "/", or a pattern')
     return name
 
 
@@ -166,14 +166,14 @@ def _packet(entry: Marked) -> str:
 def _answer(entry: Marked, fields: Mapping[str, Marked]) -> Answer | None:
     if "within" not in fields:
         if "then" in fields:
-            raise fields["then"].fail("says what has to come, but not how soon; add `within: 0.5 s`")
+            raise fields["then"].fail("requires `within`; add it, such as `within: 0.5 s`")
         return None
     if "then" not in fields:
-        raise entry.fail("says how soon, but not what has to come; add `then: {topic: /name}`")
+        raise entry.fail("`within` requires `then`; add it, such as `then: {topic: /name}`")
     then = fields["then"].mapping((*SOURCE_FIELDS, "holds"))
     selection = read_selection(then)
     if selection == Selection():
-        raise fields["then"].fail("names no message that has to come; add `topic: /name` or `packet: NAME`")
+        raise fields["then"].fail("missing message; add `topic: /name` or `packet: NAME`")
     holds = Predicate.read(then["holds"], (*NAMES, CAUSE)) if "holds" in then else None
     return Answer(selection, holds, fields["within"].time())
 
@@ -181,7 +181,7 @@ def _answer(entry: Marked, fields: Mapping[str, Marked]) -> Answer | None:
 def _again(entry: Marked) -> int:
     time_ns = entry.time()
     if not time_ns:
-        raise entry.fail("is 0; write how long it may take until such a message comes again, such as 0.5 s")
+        raise entry.fail("must be the longest time between two such messages, such as 0.5 s, not 0")
     return time_ns
 
 
@@ -189,19 +189,19 @@ def _function(entry: Marked, fields: Mapping[str, Marked]) -> tuple[Path | None,
     """Return the file and the name of a function or class."""
     if "function" not in fields:
         if "file" in fields:
-            raise entry.fail("names a file but no function of it; add `function: NAME`")
+            raise entry.fail("`file` requires `function`; add `function: NAME`")
         return None, ""
     if "file" not in fields:
-        raise entry.fail("names a function but not the file it is in; add `file: checks.py`")
+        raise entry.fail("`function` requires `file`; add `file: checks.py`")
     file, name = entry.file.parent / fields["file"].text(), fields["function"].text()
     if not os.path.isfile(file):
-        raise fields["file"].fail(f"is {file}, which is no file; give its path from the mission's folder")
+        raise fields["file"].fail(f"file not found: {file}; give a path relative to the mission's folder")
     broken = sources.syntax_error(file)
     if broken is not None:
         raise UsageError(f"is not Python: {broken[1]}", file=file, line=broken[0])
     if not sources.defines(file, name):
         functions = ", ".join(sources.functions_and_classes_of(file)) or "none"
-        raise fields["function"].fail(f"is {name!r}; {file.name} has no such function or class, it has {functions}")
+        raise fields["function"].fail(f"unknown function or class {name!r}; {file.name} has {functions}")
     return file, name
 
 
@@ -218,5 +218,5 @@ def code_of(invariant: Invariant) -> Any:
         found = space[invariant.function]
         return found() if isinstance(found, type) else found
     except Exception as error:
-        text = f"{invariant.function} cannot be had: {type(error).__name__}: {error}"
+        text = f"{invariant.function} cannot be loaded: {type(error).__name__}: {error}"
         raise UsageError(text, file=invariant.file) from error

@@ -23,7 +23,7 @@ class Fields(dict[str, Any]):
         try:
             return self[name]
         except KeyError:
-            raise AttributeError(f"the packet has no field {name!r}; it has {', '.join(self) or 'none'}") from None
+            raise AttributeError(f"unknown field {name!r}; the packet has {', '.join(self) or 'none'}") from None
 
 
 class Heard:

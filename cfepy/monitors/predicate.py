@@ -53,12 +53,12 @@ class Predicate:
         """
         source = _one_line(entry)
         if len(source) > EXPRESSION_CHARACTERS:
-            raise entry.fail(f"has {len(source):,} characters, the limit is {EXPRESSION_CHARACTERS:,}; split it")
+            raise entry.fail(f"must have at most {EXPRESSION_CHARACTERS:,} characters, not {len(source):,}; split it")
         try:
             tree = parsed_input(source, mode="eval", depth=EXPRESSION_DEPTH)
         except (SyntaxError, ValueError) as error:
             what = error.msg if isinstance(error, SyntaxError) else str(error)
-            raise entry.fail(f"{source!r} is no Python expression: {what}") from None
+            raise entry.fail(f"invalid Python expression {source!r}: {what}") from None
         _check_names(entry, tree, tuple(names))
         place = f"{entry.file.name}:{entry.line}: {entry.field}"
         code = compile(tree, place, "eval")
@@ -110,9 +110,9 @@ def _check_names(entry: Marked, tree: ast.AST, names: tuple[str, ...]) -> None:
     known = {*names, *_LIBRARY, *bound, *dir(builtins)}
     for node in ast.walk(tree):
         if isinstance(node, ast.Name) and node.id not in known:
-            known_here = f"known are {', '.join(names)} and what Python has built in"
+            known_here = f"known names are {', '.join(names)} and Python's built-in names"
             hint = did_you_mean(node.id, [*names, *_LIBRARY, *sorted(bound)], known_here)
-            raise entry.fail(f"names {node.id!r}, which is not known here; {hint}")
+            raise entry.fail(f"unknown name {node.id!r}; {hint}")
 
 
 def _asked(tree: ast.AST) -> Iterator[str]:

@@ -55,18 +55,18 @@ def _selected_result(name: str, entry: Marked) -> SelectedResult:
     """Return one result: how it is compared, or a mapping with `compare` and `ignore`."""
     fields = entry.mapping(("compare", "ignore")) if isinstance(entry.value, dict) else {"compare": entry}
     if "compare" not in fields:
-        raise entry.fail("does not say what of it is compared; add `compare: last`")
+        raise entry.fail("missing compare; add it, such as `compare: last`")
     compare = fields["compare"].text()
     if compare not in COMPARISONS:
-        raise fields["compare"].fail(f"is {compare!r}, it must be one of {', '.join(COMPARISONS)}")
+        raise fields["compare"].fail(f"must be one of {', '.join(COMPARISONS)}, not {compare!r}")
     if compare == FILE and not name.startswith("/"):
-        raise entry.fail(f"is the file {name!r}; a file of the mission has a path such as /ram/log.txt")
+        raise entry.fail(f"invalid file {name!r}; expected a path in the mission's file system, such as /ram/log.txt")
     if compare == OUTPUT and name.startswith("/"):
-        raise entry.fail(f"is the output of {name!r}; name the node's application, the fourth field of its line")
+        raise entry.fail(f"invalid output {name!r}; name the node's application, the fourth field of its line")
     if "ignore" not in fields:
         return SelectedResult(name, compare)
     if compare not in OF_MESSAGES:
-        raise fields["ignore"].fail(f"names fields, but {name} has none; only messages do")
+        raise fields["ignore"].fail(f"is only valid for messages, and {name} has no fields")
     return SelectedResult(name, compare, tuple(_path(item) for item in fields["ignore"].items()))
 
 
@@ -78,4 +78,4 @@ def _path(item: Marked) -> str:
 
 
 def _bad_path(item: Marked, path: str) -> UsageError:
-    return item.fail(f"is {path!r}, it must be the path of a field, such as header.stamp")
+    return item.fail(f"must be the path of a field, such as header.stamp, not {path!r}")

@@ -89,7 +89,7 @@ class CommandTable:
             CfeError: CFE_MSG_BAD_ARGUMENT if the same command, or a plain message of that id, already has a handler.
         """
         if msg_id in self._messages or fcn_code in self._commands.get(msg_id, ()):
-            raise CfeError(CFE_MSG_BAD_ARGUMENT, f"command 0x{msg_id:04X}/{fcn_code} has a handler already")
+            raise CfeError(CFE_MSG_BAD_ARGUMENT, f"command 0x{msg_id:04X}/{fcn_code} already has a handler")
         self._commands.setdefault(msg_id, {})[fcn_code] = (length, handler)
 
     def add_message(self, msg_id: int, length: int, handler: Handler) -> None:
@@ -104,7 +104,7 @@ class CommandTable:
             CfeError: CFE_MSG_BAD_ARGUMENT if the id has a handler already.
         """
         if msg_id in self._messages or msg_id in self._commands:
-            raise CfeError(CFE_MSG_BAD_ARGUMENT, f"message 0x{msg_id:04X} has a handler already")
+            raise CfeError(CFE_MSG_BAD_ARGUMENT, f"message 0x{msg_id:04X} already has a handler")
         self._messages[msg_id] = (length, handler)
 
     def dispatch(self, packet: bytes) -> Dispatch:

@@ -62,13 +62,15 @@ def check_range(name: str, value: int, highest: int, lowest: int = 0) -> int:
         CfeError: CFE_MSG_BAD_ARGUMENT otherwise.
     """
     if not lowest <= value <= highest:
-        raise bad_argument(f"{name} is {value}, it must be {lowest} to {highest}")
+        raise bad_argument(f"{name} must be {lowest} to {highest}, not {value}")
     return value
 
 
 def _word(packet: Packet, offset: int) -> int:
     if len(packet) < PRIMARY_HEADER_SIZE:
-        raise bad_argument(f"a packet of {len(packet)} bytes has no primary header ({PRIMARY_HEADER_SIZE} bytes)")
+        raise bad_argument(
+            f"a packet must have at least {PRIMARY_HEADER_SIZE} bytes for its primary header, not {len(packet)}"
+        )
     return packet[offset] << 8 | packet[offset + 1]
 
 
@@ -108,7 +110,7 @@ def get_msg_id(packet: Packet) -> int:
 def set_msg_id(packet: bytearray, msg_id: int) -> None:
     """Set the message id, 1..0x1FFF, and with it type, secondary header flag and APID (CFE_MSG_SetMsgId)."""
     if not is_valid_msg_id(msg_id):
-        raise bad_argument(f"message id 0x{msg_id:X} is not within 0x1..0x{HIGHEST_VALID_MSG_ID:X}")
+        raise bad_argument(f"message id must be 0x1 to 0x{HIGHEST_VALID_MSG_ID:X}, not 0x{msg_id:X}")
     _put(packet, 0, 0xFFFF, msg_id)
 
 
@@ -130,7 +132,7 @@ def get_type(packet: Packet) -> MsgType:
 def set_type(packet: bytearray, msg_type: int) -> None:
     """Set the type to command or telemetry (CFE_MSG_SetType)."""
     if msg_type not in (MsgType.CMD, MsgType.TLM):
-        raise bad_argument(f"message type is {msg_type}, it must be MsgType.CMD or MsgType.TLM")
+        raise bad_argument(f"message type must be MsgType.CMD or MsgType.TLM, not {msg_type}")
     _put(packet, 0, 0x1000, 0x1000 if msg_type == MsgType.CMD else 0)
 
 

@@ -66,8 +66,8 @@ class ValueNames:
         total = 0
         for part in text.split("+") if self.flags else [text]:
             if part.upper() not in self.values:
-                hint = did_you_mean(part, self.values, f"there are {self}")
-                raise UsageError(f"{part!r} is neither a number nor a name of a value; {hint}")
+                hint = did_you_mean(part, self.values, f"expected one of {self}")
+                raise UsageError(f"unknown value {part!r}; {hint}")
             total |= self.values[part.upper()]
         return total
 
@@ -107,10 +107,10 @@ class _Scalar:
     def flatten(self, value: Any, path: str) -> Iterator[Any]:
         if not isinstance(value, (int, float)):
             if self.names is None or not isinstance(value, str):
-                raise UsageError(f"{value!r} is not a number", field=path)
+                raise UsageError(f"must be a number, not {value!r}", field=path)
             value = _named(self.names, value, path)
         if self.code not in "fd" and not isinstance(value, int):
-            raise UsageError(f"{value!r} is not an integer", field=path)
+            raise UsageError(f"must be an integer, not {value!r}", field=path)
         yield value
 
     def build(self, leaves: Iterator[Any]) -> Any:
@@ -136,10 +136,10 @@ class _Text:
 
     def flatten(self, value: Any, path: str) -> Iterator[Any]:
         if not isinstance(value, (str, bytes, bytearray)):
-            raise UsageError(f"{value!r} is not a text", field=path)
+            raise UsageError(f"must be a text, not {value!r}", field=path)
         data = to_bytes(value) if isinstance(value, str) else bytes(value)
         if len(data) > self.size:
-            raise UsageError(f"{value!r} has {len(data)} bytes, there is room for {self.size}", field=path)
+            raise UsageError(f"must have at most {self.size} bytes, not {len(data)}: {value!r}", field=path)
         yield data
 
     def build(self, leaves: Iterator[Any]) -> Any:
@@ -168,9 +168,9 @@ class _Array:
 
     def flatten(self, value: Any, path: str) -> Iterator[Any]:
         if not isinstance(value, (Sequence, memoryview, bytearray)) or isinstance(value, str):
-            raise UsageError(f"{value!r} is not a list", field=path)
+            raise UsageError(f"must be a list, not {value!r}", field=path)
         if len(value) > self.count:
-            raise UsageError(f"{len(value)} items, there is room for {self.count}", field=path)
+            raise UsageError(f"must have at most {self.count} items, not {len(value)}", field=path)
         for number in range(self.count):
             item = value[number] if number < len(value) else self.item.zero()
             yield from self.item.flatten(item, f"{path}[{number}]")
@@ -273,18 +273,18 @@ class Layout:
         try:
             leaves = self._struct.unpack_from(buffer, offset)
         except struct.error:
-            text = f"{self.name} needs {self.size} bytes at offset {offset}, the buffer has {len(buffer)}"
+            text = f"{self.name} requires {self.size} bytes at offset {offset}, but the buffer has {len(buffer)}"
             raise CfeError(CFE_STATUS_WRONG_MSG_LENGTH, text) from None
         return self.build(iter(leaves))
 
     def flatten(self, value: Any, path: str) -> Iterator[Any]:
         """Yield the leaf values of this struct in order, for the enclosing struct."""
         if not isinstance(value, Mapping):
-            raise UsageError(f"{value!r} is not a mapping of the fields of {self.name}", field=path)
+            raise UsageError(f"must be a mapping of the fields of {self.name}, not {value!r}", field=path)
         prefix = f"{path}." if path else ""
         if not value.keys() <= self._fields.keys():
             unknown = next(name for name in value if name not in self._fields)
-            raise UsageError(f"{self.name} has no such field, only {', '.join(self._fields)}", field=prefix + unknown)
+            raise UsageError(f"unknown field; {self.name} has {', '.join(self._fields)}", field=prefix + unknown)
         for field, kind in self._fields.items():
             yield from kind.flatten(value[field] if field in value else kind.zero(), prefix + field)
 
@@ -332,7 +332,7 @@ def _parse_type(kind: Any, path: str) -> _Type:
         return _Array(kind[0], kind[1])
     match = _TYPE.fullmatch(kind)
     if match is None or match[1] not in {*_SCALARS, "char"}:
-        raise UsageError(f"{kind!r} is no type; use {', '.join(_SCALARS)}, char[N] or a Layout", field=path)
+        raise UsageError(f"invalid type {kind!r}; expected {', '.join(_SCALARS)}, char[N] or a Layout", field=path)
     counts = [int(count) for count in re.findall(r"\d+", match[2])]
     parsed: _Type = _Text(counts.pop() if counts else 1) if match[1] == "char" else _Scalar(*_SCALARS[match[1]])
     for count in reversed(counts):
@@ -379,7 +379,7 @@ def message_string_set(text: str, size: int) -> bytes:
         CfeError: CFE_SB_BAD_ARGUMENT for a negative size.
     """
     if size < 0:
-        raise CfeError(CFE_SB_BAD_ARGUMENT, f"a text field of {size} bytes")
+        raise CfeError(CFE_SB_BAD_ARGUMENT, f"invalid size of a text field: {size} bytes")
     return to_bytes(text)[:size].ljust(size, b"\0")
 
 
@@ -395,7 +395,7 @@ def message_string_get(field: Packet, size: int, default: str | None = None) -> 
         CfeError: CFE_SB_BAD_ARGUMENT for a size of 0.
     """
     if size <= 0:
-        raise CfeError(CFE_SB_BAD_ARGUMENT, "a buffer of no bytes holds no text")
+        raise CfeError(CFE_SB_BAD_ARGUMENT, "a text buffer must have at least one byte")
     data = bytes(field).partition(b"\0")[0]
     if not data and default is not None:
         data = to_bytes(default)

@@ -84,7 +84,7 @@ def compute_checksum(packet: Packet) -> int:
     """
     size = get_size(packet)
     if size > len(packet):
-        raise bad_argument(f"the header says {size} bytes, the buffer has {len(packet)}")
+        raise bad_argument(f"the header specifies {size} bytes, but the buffer has {len(packet)}")
     return 0xFF ^ _fold(packet if size == len(packet) else memoryview(packet)[:size])
 
 

@@ -190,7 +190,7 @@ class ClockApi(Core):
             OsalError: OS_ERR_INVALID_ARGUMENT for a time before the epoch.
         """
         if time < 0:
-            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"local time cannot be {time}")
+            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"invalid local time {time}")
         self._local_offset = time - self.kernel.now // OS_TIME_TICK_RESOLUTION_NS
 
     def time_from_relative_milliseconds(self, milliseconds: int) -> OsTime:

@@ -170,7 +170,7 @@ class OsObjectTable(IdTable[Record]):
         """Raise OS_ERR_NAME_TOO_LONG or OS_ERR_NAME_TAKEN for a name that a new object cannot have."""
         self.check_name(name)
         if name in self.names:
-            raise OsalError(OS_ERR_NAME_TAKEN, f"there is a {self.kind} called {name!r} already")
+            raise OsalError(OS_ERR_NAME_TAKEN, f"{self.kind} {name!r} already exists")
 
     def drop(self, record: Record) -> None:
         """Remove a record and free its name."""
@@ -187,19 +187,19 @@ class OsObjectTable(IdTable[Record]):
         self.check_name(name)
         found = self.names.get(name)
         if found is None:
-            raise OsalError(OS_ERR_NAME_NOT_FOUND, f"no {self.kind} is called {name!r}")
+            raise OsalError(OS_ERR_NAME_NOT_FOUND, f"unknown {self.kind} {name!r}")
         return found
 
     def check_name(self, name: str) -> None:
         """Raise OS_ERR_NAME_TOO_LONG for a name that is too long, by default more than 19 bytes."""
         if name_size(name) >= self.name_limit:
             raise OsalError(
-                OS_ERR_NAME_TOO_LONG, f"{self.kind} name {name!r} has more than {self.name_limit - 1} characters"
+                OS_ERR_NAME_TOO_LONG, f"{self.kind} name {name!r} must have at most {self.name_limit - 1} characters"
             )
 
     def missing(self, object_id: int) -> OsalError:
         """Return the error for an id that is not in the table."""
-        return OsalError(OS_ERR_INVALID_ID, f"no {self.kind} has the id {object_id:#x}")
+        return OsalError(OS_ERR_INVALID_ID, f"invalid {self.kind} id {object_id:#x}")
 
     def gone(self, record: Record) -> OsalError:
         """Return the error for a task whose wait ended because the object was deleted."""
@@ -229,7 +229,7 @@ class Core:
     def _register(self, table: OsObjectTable[Record], record: Record, kind: str, size: int, owner: Any = None) -> int:
         """Account for an object of an application, by default the current task's, and give it an id."""
         if self._is_shut_down:
-            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"OSAL is shut down: no {table.kind} can be made")
+            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"OSAL is shut down; cannot create a {table.kind}")
         task = self.kernel.current
         record.owner = task.owner if owner is None else owner
         record.creator = self._task_ids.get(task, 0)
@@ -264,7 +264,7 @@ class Core:
         if status:
             table.drop(record)
             self._release(record)
-            raise OsalError(status, f"the event handler refuses {table.kind} {record.name}")
+            raise OsalError(status, f"the event handler refused {table.kind} {record.name}")
         self._notify(OS_EVENT_RESOURCE_CREATED, record.id)
 
     def _notify(self, event: int, object_id: int) -> int:
@@ -285,7 +285,7 @@ class Core:
 def check_size(size: int, what: str) -> None:
     """Raise OS_ERR_INVALID_SIZE for a size of 0 or one that exceeds any memory."""
     if not 0 < size < SIZE_MAX:
-        raise OsalError(OS_ERR_INVALID_SIZE, f"{what} of {size} bytes")
+        raise OsalError(OS_ERR_INVALID_SIZE, f"invalid size of {what}: {size} bytes")
 
 
 def _owner_name(owner: Any) -> str:

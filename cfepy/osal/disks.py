@@ -108,7 +108,7 @@ class DiskApi(Core):
         self._check(devname, OS_FS_DEV_NAME_LEN)
         self._check(volname, OS_FS_VOL_NAME_LEN)
         if not devname or not volname:
-            raise OsalError(OS_FS_ERR_PATH_INVALID, "a file system needs names for its device and its volume")
+            raise OsalError(OS_FS_ERR_PATH_INVALID, "a file system requires names for its device and its volume")
         size = blocksize * numblocks
         disk = OsDisk(devname, Volume(capacity=size), blocksize, f"{volname}:{devname}")
         disk.is_known = in_memory or volname.startswith("RAM")
@@ -249,17 +249,17 @@ class DiskApi(Core):
 
     def _check(self, name: str, limit: int) -> None:
         if len(to_bytes(name)) >= limit:
-            raise OsalError(OS_FS_ERR_PATH_TOO_LONG, f"{name!r} has {limit} characters or more")
+            raise OsalError(OS_FS_ERR_PATH_TOO_LONG, f"{name!r} must have fewer than {limit} characters")
 
     def _disk(self, devname: str) -> OsDisk:
         for disk in self._disks:
             if disk.name == devname:
                 return disk
-        raise OsalError(OS_ERR_NAME_NOT_FOUND, f"there is no file system {devname}")
+        raise OsalError(OS_ERR_NAME_NOT_FOUND, f"unknown file system {devname}")
 
     def _mounted(self, path: str) -> OsDisk:
         self._check(path, OS_MAX_PATH_LEN)
         for disk in self._disks:
             if disk.mount_point and (path == disk.mount_point or path.startswith(disk.mount_point + "/")):
                 return disk
-        raise OsalError(OS_ERR_NAME_NOT_FOUND, f"nothing is mounted at {path}")
+        raise OsalError(OS_ERR_NAME_NOT_FOUND, f"no file system is mounted at {path}")

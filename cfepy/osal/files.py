@@ -107,16 +107,16 @@ class FileApi(Core):
                 OS_FS_ERR_* for the path; OS_ERR_NO_FREE_IDS.
         """
         if access_mode not in ACCESS_BITS:
-            raise OsalError(OS_ERROR, f"access mode {access_mode} for {path}")
+            raise OsalError(OS_ERROR, f"invalid access mode {access_mode} for {path}")
         self.files.translate(path)
         if len(self._streams) == self._streams.capacity:  # before the file is created or truncated
-            raise OsalError(OS_ERR_NO_FREE_IDS, f"{path} would be one open file too many")
+            raise OsalError(OS_ERR_NO_FREE_IDS, f"too many open files; cannot open {path}")
         node = self.files.open_node(path) if flags & OS_FILE_FLAG_CREATE else self.files.find(path)
         if node is None:
-            raise OsalError(OS_ERROR, f"there is no file {path}")
+            raise OsalError(OS_ERROR, f"file {path} does not exist")
         needed = ACCESS_BITS[access_mode] | (OS_FILESTAT_MODE_WRITE if flags & OS_FILE_FLAG_TRUNCATE else 0)
         if needed & ~node.mode:
-            raise OsalError(OS_ERROR, f"the mode of {path} forbids to open it like this")
+            raise OsalError(OS_ERROR, f"the mode of {path} does not permit this access")
         if flags & OS_FILE_FLAG_TRUNCATE:
             node.data.clear()
         return self._register(self._streams, OsFile(self._next_name(), path, node, access_mode), "file", 0)
@@ -168,7 +168,7 @@ class FileApi(Core):
         stream = self._file(filedes)
         origins = {OS_SEEK_SET: 0, OS_SEEK_CUR: stream.position, OS_SEEK_END: len(stream.node.data)}
         if whence not in origins or origins[whence] + offset < 0:
-            raise OsalError(OS_ERROR, f"seek by {offset} from {whence} in {stream.path}")
+            raise OsalError(OS_ERROR, f"invalid seek by {offset} from {whence} in {stream.path}")
         stream.position = origins[whence] + offset
         return stream.position
 
@@ -243,7 +243,7 @@ class FileApi(Core):
     def _resize(self, filedes: int, new_size: Callable[[int], int], is_valid: bool) -> None:
         stream = self._file(filedes)
         if not is_valid or stream.access == OS_READ_ONLY:
-            raise OsalError(OS_ERROR, f"{stream.path} cannot get that size through this descriptor")
+            raise OsalError(OS_ERROR, f"cannot set this size of {stream.path} through this descriptor")
         data = stream.node.data
         size = new_size(len(data))
         try:

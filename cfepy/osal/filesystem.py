@@ -56,7 +56,7 @@ class FileSystem:
             OsalError: OS_FS_ERR_PATH_INVALID.
         """
         if not mount_point.startswith("/") or mount_point.endswith("/"):
-            raise OsalError(OS_FS_ERR_PATH_INVALID, f"mount point {mount_point!r}; write it as /name")
+            raise OsalError(OS_FS_ERR_PATH_INVALID, f"invalid mount point {mount_point!r}; expected /NAME")
         self._mounts[mount_point] = volume
         if not guest or mount_point in self._own:
             self._own[mount_point] = volume
@@ -72,7 +72,7 @@ class FileSystem:
             OsalError: OS_ERR_NAME_NOT_FOUND.
         """
         if mount_point not in self._mounts:
-            raise OsalError(OS_ERR_NAME_NOT_FOUND, f"nothing is mounted at {mount_point}")
+            raise OsalError(OS_ERR_NAME_NOT_FOUND, f"no file system is mounted at {mount_point}")
         return self._mounts.pop(mount_point)
 
     def volume(self, mount_point: str) -> Volume:
@@ -82,7 +82,7 @@ class FileSystem:
             OsalError: OS_ERR_NAME_NOT_FOUND.
         """
         if mount_point not in self._mounts:
-            raise OsalError(OS_ERR_NAME_NOT_FOUND, f"nothing is mounted at {mount_point}")
+            raise OsalError(OS_ERR_NAME_NOT_FOUND, f"no file system is mounted at {mount_point}")
         return self._mounts[mount_point]
 
     def written(self) -> dict[str, bytes]:
@@ -106,17 +106,20 @@ class FileSystem:
                 characters or more), OS_FS_ERR_PATH_INVALID (not absolute, not below a mount point, or with "..").
         """
         if len(to_bytes(path)) >= OS_MAX_PATH_LEN:
-            raise OsalError(OS_FS_ERR_PATH_TOO_LONG, f"{path!r} has {OS_MAX_PATH_LEN} characters or more")
+            raise OsalError(OS_FS_ERR_PATH_TOO_LONG, f"{path!r} must have fewer than {OS_MAX_PATH_LEN} characters")
         if "/" in path and len(to_bytes(path.rpartition("/")[2])) >= OS_MAX_FILE_NAME:
-            raise OsalError(OS_FS_ERR_NAME_TOO_LONG, f"the name in {path!r} has {OS_MAX_FILE_NAME} characters or more")
+            raise OsalError(
+                OS_FS_ERR_NAME_TOO_LONG, f"the file name in {path!r} must have fewer than {OS_MAX_FILE_NAME} characters"
+            )
         if not path.startswith("/") or ".." in path:
-            raise OsalError(OS_FS_ERR_PATH_INVALID, f'{path!r} must begin with "/" and be without ".."')
+            raise OsalError(OS_FS_ERR_PATH_INVALID, f'{path!r} must begin with "/" and must not contain ".."')
         for mount_point, volume in self._mounts.items():
             if path == mount_point or path.startswith(mount_point + "/"):
                 rest = [part for part in path[len(mount_point) :].split("/") if part not in ("", ".")]
                 return FilePlace(volume, "/".join(rest))
         raise OsalError(
-            OS_FS_ERR_PATH_INVALID, f"{path!r} is below no mount point; there are {', '.join(self.mount_points())}"
+            OS_FS_ERR_PATH_INVALID,
+            f"{path!r} is not below a mount point; expected one of {', '.join(self.mount_points())}",
         )
 
     def find(self, path: str) -> FileNode | None:
@@ -136,7 +139,7 @@ class FileSystem:
         """
         node = self.find(path)
         if node is None:
-            raise OsalError(OS_ERROR, f"there is no file {path}")
+            raise OsalError(OS_ERROR, f"file {path} does not exist")
         return bytes(node.data)
 
     def write_file(self, path: str, data: bytes | bytearray | memoryview, now_ns: int = 0) -> None:
@@ -163,13 +166,13 @@ class FileSystem:
         """
         volume, rest = self.translate(path)
         if volume.is_folder(rest) or not volume.is_folder(rest.rpartition("/")[0]):
-            raise OsalError(OS_ERROR, f"{path} is a folder, or is in none")
+            raise OsalError(OS_ERROR, f"{path} is a folder, or its folder does not exist")
         return volume.node(rest) or volume.create(rest)
 
     def check_room(self, path: str, size: int) -> None:
         """Raise OS_ERROR if the volume of a path has no room for `size` more bytes."""
         if not self.translate(path).volume.has_room(size):
-            raise OsalError(OS_ERROR, f"no room for {size} more bytes in the volume of {path}")
+            raise OsalError(OS_ERROR, f"the volume of {path} has no room for {size} more bytes")
 
     def exists(self, path: str) -> bool:
         """Return whether a file or folder exists at a path; False for an invalid path.
@@ -203,7 +206,7 @@ class FileSystem:
         elif volume.is_folder(rest):
             self.remove_folder(path)
         else:
-            raise OsalError(OS_ERROR, f"there is no file {path}")
+            raise OsalError(OS_ERROR, f"file {path} does not exist")
 
     def rename(self, old: str, new: str) -> None:
         """Give a file or folder another path in the same volume (OS_rename).
@@ -218,7 +221,7 @@ class FileSystem:
         elif source is target and _can_move_folder(source, source_path, target_path):
             source.rename_folder(source_path, target_path)
         else:
-            raise OsalError(OS_ERROR, f"{old} cannot become {new}")
+            raise OsalError(OS_ERROR, f"cannot rename {old} to {new}")
 
     def make_folder(self, path: str) -> None:
         """Add a folder (OS_mkdir); one that exists stays as it is.
@@ -228,7 +231,7 @@ class FileSystem:
         """
         volume, rest = self.translate(path)
         if volume.node(rest) is not None or not volume.is_folder(rest.rpartition("/")[0]):
-            raise OsalError(OS_ERROR, f"{path} is a file, or in no folder")
+            raise OsalError(OS_ERROR, f"{path} is a file, or its folder does not exist")
         volume.make_folder(rest)
 
     def remove_folder(self, path: str) -> None:
@@ -239,7 +242,7 @@ class FileSystem:
         """
         volume, rest = self.translate(path)
         if not rest or not volume.is_folder(rest) or volume.names(rest):
-            raise OsalError(OS_ERROR, f"{path} is no empty folder")
+            raise OsalError(OS_ERROR, f"{path} is not an empty folder")
         volume.remove_folder(rest)
 
     def list_dir(self, path: str) -> list[str]:
@@ -250,7 +253,7 @@ class FileSystem:
         """
         volume, rest = self.translate(path)
         if not volume.is_folder(rest):
-            raise OsalError(OS_ERROR, f"there is no folder {path}")
+            raise OsalError(OS_ERROR, f"folder {path} does not exist")
         return volume.names(rest)
 
 

@@ -69,7 +69,7 @@ class IdMapApi(VersionFunctions, Core):
         base = get_base(object_id)
         table = self._tables.get(base)
         if table is None or (idtype and idtype != base):
-            raise OsalError(OS_ERR_INVALID_ID, f"{object_id:#x} is no id of kind {idtype or 'any'}")
+            raise OsalError(OS_ERR_INVALID_ID, f"{object_id:#x} is not an id of kind {idtype or 'any'}")
         return table.index(object_id)
 
     def for_each_object(
@@ -129,5 +129,5 @@ class IdMapApi(VersionFunctions, Core):
         table = self._tables.get(get_base(object_id))
         record: OsObject | None = table.find(object_id) if table is not None else None
         if record is None:
-            raise OsalError(OS_ERR_INVALID_ID, f"no OSAL object has the id {object_id:#x}")
+            raise OsalError(OS_ERR_INVALID_ID, f"invalid OSAL object id {object_id:#x}")
         return record

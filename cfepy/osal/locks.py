@@ -88,8 +88,8 @@ class MutexApi(Core):
             owner = record.mutex.owner
             raise OsalError(
                 OS_SEM_FAILURE,
-                f"{self.kernel.current.name} gives mutex {record.name}, which "
-                + (f"{owner.name} owns" if owner is not None else "nobody owns"),
+                f"{self.kernel.current.name} cannot give mutex {record.name}, which "
+                + (f"{owner.name} owns" if owner is not None else "is not taken"),
             )
 
     def mut_sem_delete(self, mutex_id: int) -> None:
@@ -335,7 +335,7 @@ class RwLockApi(Core):
         """
         record = self._rw_lock(rw_id)
         if not record.readers:
-            raise OsalError(OS_ERROR, f"nobody holds lock {record.name} for reading")
+            raise OsalError(OS_ERROR, f"lock {record.name} is not held for reading")
         task = self.kernel.current
         record.readers.remove(task if task in record.readers else record.readers[0])
         if not record.readers:

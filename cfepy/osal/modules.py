@@ -94,7 +94,7 @@ class ModuleApi(Core):
         try:
             self._paths.translate(filename)
             if self.modules is None:
-                raise OsalError(OS_ERR_NOT_IMPLEMENTED, "this system cannot load code")
+                raise OsalError(OS_ERR_NOT_IMPLEMENTED, "code cannot be loaded on this system")
             record.code = self.modules.load_module(filename, f"module {module_name}")
         except BaseException:
             self._unregister(self._modules, record)
@@ -122,7 +122,7 @@ class ModuleApi(Core):
         """
         record = self._module(module_id)
         if not hasattr(record.code, symbol_name):
-            raise OsalError(OS_ERROR, f"module {record.name} has no {symbol_name}")
+            raise OsalError(OS_ERROR, f"module {record.name} has no symbol {symbol_name}")
         return getattr(record.code, symbol_name)
 
     def symbol_lookup(self, symbol_name: str) -> Any:
@@ -137,7 +137,7 @@ class ModuleApi(Core):
         found = self.modules.library_symbol(symbol_name) if self.modules is not None else None
         if found is not None:
             return found
-        raise OsalError(OS_ERROR, f"no module has {symbol_name}")
+        raise OsalError(OS_ERROR, f"unknown symbol {symbol_name}")
 
     def symbol_table_dump(self, filename: str, size_limit: int) -> None:
         """Refuse to write all symbols to a file (OS_SymbolTableDump), because symbols have no addresses.
@@ -146,7 +146,7 @@ class ModuleApi(Core):
             OsalError: OS_FS_ERR_* for the path, otherwise OS_ERR_NOT_IMPLEMENTED, as on NASA's Linux.
         """
         self._paths.translate(filename)
-        raise OsalError(OS_ERR_NOT_IMPLEMENTED, "symbols have no addresses here")
+        raise OsalError(OS_ERR_NOT_IMPLEMENTED, "symbols have no addresses in the simulation")
 
     def _module(self, module_id: int) -> OsModule:
         record = self._modules.lookup(module_id)

@@ -197,7 +197,7 @@ class ApplicationApi(CleanupApi):
             OsalError: OS_INVALID_POINTER if the handler cannot be called.
         """
         if not callable(handler):
-            raise OsalError(OS_INVALID_POINTER, "the event handler cannot be called")
+            raise OsalError(OS_INVALID_POINTER, "the event handler must be callable")
         self._event_handler = handler
 
     def application_run(self) -> None:
@@ -233,7 +233,7 @@ class ApplicationApi(CleanupApi):
         """
         free = None if self._setup.memory is None else self._setup.memory.free
         if free is None:
-            raise OsalError(OS_ERR_NOT_IMPLEMENTED, "this board has no limit of memory")
+            raise OsalError(OS_ERR_NOT_IMPLEMENTED, "this board has no memory limit")
         return HeapInfo(free, 1 if free else 0, free)
 
     def network_get_id(self) -> int:
@@ -252,7 +252,7 @@ class ApplicationApi(CleanupApi):
         check_size(name_len, "host name")
         name = self.config.processor_name
         if len(to_bytes(name)) >= name_len:
-            raise OsalError(OS_ERROR, f"the host name {name} does not fit in {name_len} bytes")
+            raise OsalError(OS_ERROR, f"a buffer of {name_len} bytes is too small for the host name {name}")
         return name
 
     def bsp_get_argc(self) -> int:

@@ -88,7 +88,7 @@ class PathApi(ClockApi, FileApi):
             return FileStat(node.mode, self._local_time_at(node.modified_ns), len(node.data))
         if self.files.is_folder(path):
             return FileStat(_FOLDER_MODE, self._local_time_at(0), 0)
-        raise OsalError(OS_ERROR, f"there is nothing at {path}")
+        raise OsalError(OS_ERROR, f"{path} does not exist")
 
     def chmod(self, path: str, access_mode: int) -> None:
         """Set the access mode of a file (OS_chmod); open descriptors keep their access.
@@ -105,7 +105,7 @@ class PathApi(ClockApi, FileApi):
         if node is None and self.files.is_folder(path):
             return  # folders have no access mode here
         if node is None or not node.mode:
-            raise OsalError(OS_ERROR, f"{path} is no file that could be opened")
+            raise OsalError(OS_ERROR, f"{path} is not a file that can be opened")
         node.mode = ACCESS_BITS.get(access_mode, 0)
 
     def remove(self, path: str) -> None:

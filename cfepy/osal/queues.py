@@ -64,7 +64,8 @@ class QueueApi(Core):
         check_size(data_size, f"messages of queue {name}")
         if not 0 <= depth <= self.config.os_queue_max_depth:
             raise OsalError(
-                OS_QUEUE_INVALID_SIZE, f"depth {depth} of queue {name} is not 1 to {self.config.os_queue_max_depth}"
+                OS_QUEUE_INVALID_SIZE,
+                f"depth of queue {name} must be 1 to {self.config.os_queue_max_depth}, not {depth}",
             )
         if not depth:
             self._queues.refuse(name, f"queue {name} has no room for a message")
@@ -97,7 +98,9 @@ class QueueApi(Core):
             raise self._queues.missing(queue_id)
         if not 0 < size <= record.data_size:
             status = OS_QUEUE_INVALID_SIZE if size else OS_ERR_INVALID_SIZE
-            raise OsalError(status, f"{size} bytes for queue {record.name} of {record.data_size}")
+            raise OsalError(
+                status, f"a message for queue {record.name} must have 1 to {record.data_size} bytes, not {size}"
+            )
         if not record.queue.put(data if type(data) is bytes else bytes(data)):
             raise OsalError(OS_QUEUE_FULL, f"queue {record.name} holds {record.queue.depth} messages")
 
@@ -119,7 +122,10 @@ class QueueApi(Core):
         if record is None:
             raise self._queues.missing(queue_id)
         if size is not None and size < record.data_size:
-            raise OsalError(OS_QUEUE_INVALID_SIZE, f"{size} bytes for queue {record.name} of {record.data_size}")
+            raise OsalError(
+                OS_QUEUE_INVALID_SIZE,
+                f"a buffer for queue {record.name} must have at least {record.data_size} bytes, not {size}",
+            )
         item = record.queue.get(timeout_ms * NS_PER_MS if timeout_ms > 0 else timeout_ms)
         if item:
             if self._cost:

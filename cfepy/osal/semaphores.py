@@ -185,7 +185,7 @@ class SemaphoreApi(Core):
             self.kernel.charge(self._cost)
         table.check_free(name)
         if not 0 <= initial_value <= SEM_VALUE_MAX:
-            raise OsalError(OS_INVALID_SEM_VALUE, f"{table.kind} {name} cannot begin with {initial_value}")
+            raise OsalError(OS_INVALID_SEM_VALUE, f"invalid initial value {initial_value} of {table.kind} {name}")
         record = OsSemaphore(name, Semaphore(self.kernel, initial_value, maximum, name))
         return self._register(table, record, "semaphore", self._setup.sizes.semaphore)
 
@@ -209,7 +209,7 @@ class SemaphoreApi(Core):
 
     def _timed_wait(self, table: OsObjectTable[OsSemaphore], sem_id: int, timeout_ms: int) -> bool:
         if timeout_ms < OS_CHECK:
-            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"time-out of {timeout_ms} ms")
+            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"invalid timeout: {timeout_ms} ms")
         return self._take(table, sem_id, timeout_ms * NS_PER_MS)
 
     def _delete(self, table: OsObjectTable[OsSemaphore], sem_id: int) -> None:

@@ -65,7 +65,7 @@ def socket_addr_init(domain: int) -> SockAddr:
         OsalError: OS_ERR_NOT_IMPLEMENTED for any other domain.
     """
     if domain not in ANY_HOST:
-        raise OsalError(OS_ERR_NOT_IMPLEMENTED, f"there is no address domain {domain}")
+        raise OsalError(OS_ERR_NOT_IMPLEMENTED, f"unknown address domain {domain}")
     return SockAddr(domain)
 
 
@@ -97,9 +97,9 @@ def socket_addr_from_string(addr: SockAddr, string: str) -> None:
     try:
         host = str(kind(string))
     except ValueError:
-        raise OsalError(OS_ERROR, f"{string!r} is no network address") from None
+        raise OsalError(OS_ERROR, f"invalid network address {string!r}") from None
     if "%" in host:
-        raise OsalError(OS_ERROR, f"{string!r} names an interface")
+        raise OsalError(OS_ERROR, f"invalid network address {string!r}; it must not name an interface")
     addr.host = host
 
 
@@ -122,7 +122,7 @@ def socket_addr_set_port(addr: SockAddr, port_num: int) -> None:
     """
     check_address(addr)
     if not 0 <= port_num <= HIGHEST_PORT:
-        raise OsalError(OS_ERR_INVALID_ARGUMENT, f"there is no port {port_num}")
+        raise OsalError(OS_ERR_INVALID_ARGUMENT, f"invalid port {port_num}")
     addr.port = port_num
 
 
@@ -152,4 +152,4 @@ def check_target(addr: SockAddr) -> None:
 def check_given(addr: SockAddr | None) -> None:
     """Raise OS_INVALID_POINTER for None."""
     if addr is None:
-        raise OsalError(OS_INVALID_POINTER, "an address is missing")
+        raise OsalError(OS_INVALID_POINTER, "missing address")

@@ -66,7 +66,7 @@ class DatagramApi(StreamApi):
         record = self._socket(sock_id, OS_SocketType_DATAGRAM)
         check_target(remote_addr)
         if remote_addr.domain != record.domain:
-            raise record.error(f"cannot send to {remote_addr!r}: that is another domain")
+            raise record.error(f"cannot send to {remote_addr!r}, an address of another domain")
         return self._send(record, bytes(buffer), remote_addr.place)
 
     def socket_recv_from(self, sock_id: int, buflen: int, timeout_ms: int = OS_PEND) -> tuple[bytes, SockAddr] | None:
@@ -135,7 +135,7 @@ class SocketApi(DatagramApi):
             OsalError: OS_ERR_NOT_IMPLEMENTED for another domain or kind; OS_ERR_NO_FREE_IDS.
         """
         if kind not in (OS_SocketType_DATAGRAM, OS_SocketType_STREAM) or domain not in sockaddr.ANY_HOST:
-            raise OsalError(OS_ERR_NOT_IMPLEMENTED, f"there are no sockets of domain {domain} and type {kind}")
+            raise OsalError(OS_ERR_NOT_IMPLEMENTED, f"unknown socket domain {domain} and type {kind}")
         return self._register(self._streams, OsSocket(self._next_name(), domain, kind), "socket", 0)
 
     def socket_bind_address(self, sock_id: int, addr: SockAddr) -> None:
@@ -211,7 +211,7 @@ class SocketApi(DatagramApi):
             raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"socket {record.name} is connected")
         check_target(addr)
         if addr.domain != record.domain:
-            raise record.error(f"cannot be connected with {addr!r}: that is another domain")
+            raise record.error(f"cannot be connected to {addr!r}, an address of another domain")
         if record.kind == OS_SocketType_DATAGRAM:
             record.mailbox.peer = addr.place
         elif not self._connect_stream(record, addr.place.reached(), timeout_ns):
@@ -222,7 +222,7 @@ class SocketApi(DatagramApi):
     def _connect_stream(self, record: OsSocket, target: Place, timeout_ns: int) -> bool:
         server = self.network.streams.find(target)
         if server is None or not server.listening or record.listener.listening:
-            raise record.error(f"cannot be connected with {target.host}:{target.port}")
+            raise record.error(f"cannot be connected to {target.host}:{target.port}")
 
         def decided() -> bool:
             return server.has_room or not server.listening or record.deleted
@@ -231,7 +231,7 @@ class SocketApi(DatagramApi):
             return False
         self._check_alive(record)
         if not server.listening:
-            raise record.error(f"finds nobody at {target.host}:{target.port} any more")
+            raise record.error(f"has lost its peer at {target.host}:{target.port}")
         source = record.listener.place or self._take_place(record, SockAddr(record.domain).place)
         record.endpoint = server.connect(source.reached(), target)
         return True
@@ -262,7 +262,7 @@ class SocketApi(DatagramApi):
             raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"socket {record.name} is not bound, or is connected")
         server = record.listener
         if not server.listening:
-            raise record.error("does not listen")
+            raise record.error("is not listening")
         if not self._await([server], lambda: server.readable or record.deleted, timeout_ns):
             return None
         self._check_alive(record)
@@ -285,7 +285,7 @@ class SocketApi(DatagramApi):
                 OS_ERR_INCORRECT_OBJ_STATE for a stream socket and OS_ERROR for a datagram socket without connection.
         """
         if mode not in (1, 2, 3):
-            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"there is no shutdown mode {mode}")
+            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"unknown shutdown mode {mode}")
         record = self._socket(sock_id)
         if not record.connected:
             is_stream = record.kind == OS_SocketType_STREAM
@@ -307,7 +307,7 @@ class SocketApi(DatagramApi):
         for sock_id, record in self._streams.items():
             if isinstance(record, OsSocket) and record.name == sock_name:
                 return sock_id
-        raise OsalError(OS_ERR_NAME_NOT_FOUND, f"no socket is called {sock_name!r}")
+        raise OsalError(OS_ERR_NAME_NOT_FOUND, f"unknown socket {sock_name!r}")
 
     def socket_get_info(self, sock_id: int) -> SocketInfo:
         """Return facts about a socket (OS_SocketGetInfo); the name is cut to 19 characters. It raises
@@ -347,7 +347,7 @@ class SocketApi(DatagramApi):
     def _with_option(self, sock_id: int, opt_id: int) -> OsSocket | None:
         """Return the socket for an option, or None for OS_socket_option_UNDEFINED."""
         if opt_id not in (OS_socket_option_UNDEFINED, OS_socket_option_IP_DSCP):
-            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"there is no socket option {opt_id}")
+            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"unknown socket option {opt_id}")
         record = self._stream(sock_id)
         if opt_id == OS_socket_option_UNDEFINED:
             return None
@@ -454,7 +454,7 @@ class SelectApi(SocketApi):
     def _select_multiple(self, read_set: FdSet | None, write_set: FdSet | None, timeout_ns: int) -> bool:
         readers, writers = self._open_of(read_set), self._open_of(write_set)
         if not readers and not writers:
-            raise OsalError(OS_ERR_INVALID_ID, "there is no descriptor to wait for")
+            raise OsalError(OS_ERR_INVALID_ID, "missing descriptor to wait for")
 
         def ready() -> bool:
             return any(_can(record, OS_STREAM_STATE_READABLE) for record in readers) or any(
@@ -478,7 +478,7 @@ class SelectApi(SocketApi):
 
     def _slot(self, objid: int) -> int:
         if get_base(objid) != OS_STREAM_BASE:
-            raise OsalError(OS_ERR_INVALID_ID, f"{objid:#x} is no descriptor")
+            raise OsalError(OS_ERR_INVALID_ID, f"{objid:#x} is not a descriptor")
         return self._streams.index(objid)
 
 
@@ -496,5 +496,5 @@ def _can(record: OsStream, flag: int) -> bool:
 
 def _given(fd_set: FdSet | None) -> FdSet:
     if fd_set is None:
-        raise OsalError(OS_INVALID_POINTER, "a set of descriptors is missing")
+        raise OsalError(OS_INVALID_POINTER, "missing set of descriptors")
     return fd_set

@@ -136,7 +136,7 @@ class StreamApi(ClockApi, FileApi):
         self._check_alive(record)
         count = stream.write(bytes(data))
         if count is None:
-            raise record.error("has nobody at the other side")
+            raise record.error("has no peer")
         self._charge_bytes(count)
         return count
 
@@ -159,7 +159,7 @@ class StreamApi(ClockApi, FileApi):
         else:
             taken = self.network.streams.bind(record.listener, place)
         if taken is None:
-            raise record.error(f"cannot have the address {place.host}:{place.port}")
+            raise record.error(f"cannot be bound to {place.host}:{place.port}")
         return taken
 
     def _unplug(self, record: OsSocket) -> None:
@@ -215,7 +215,7 @@ class StreamApi(ClockApi, FileApi):
         """Return the record of a socket of a given kind; any other descriptor raises OS_ERR_INCORRECT_OBJ_TYPE."""
         record = self._stream(sock_id)
         if not isinstance(record, OsSocket) or kind not in (None, record.kind):
-            raise OsalError(OS_ERR_INCORRECT_OBJ_TYPE, f"descriptor {sock_id:#x} is no such socket")
+            raise OsalError(OS_ERR_INCORRECT_OBJ_TYPE, f"descriptor {sock_id:#x} is not a socket of this type")
         return record
 
 

@@ -95,12 +95,12 @@ class TaskApi(Core):
         if self._cost:
             self.kernel.charge(self._cost)
         if not callable(entry):
-            raise OsalError(OS_INVALID_POINTER, f"the entry point of task {name} cannot be called")
+            raise OsalError(OS_INVALID_POINTER, f"the entry point of task {name} must be callable")
         self._tasks.check_name(name)
         check_size(stack_size, f"stack of task {name}")
         _check_priority(priority)
         if brings_stack and stack_size < LEAST_STACK:
-            self._tasks.refuse(name, f"{stack_size} bytes are too few for the stack of task {name}")
+            self._tasks.refuse(name, f"the stack of task {name} must have more than {stack_size} bytes")
         record = OsTask(name, entry, stack_size, priority)
         task_id = self._register(self._tasks, record, "stack", stack_size + self._setup.sizes.task, owner)
         record.task = self.kernel.spawn(name, lambda: self._live(record), priority, owner)
@@ -144,7 +144,7 @@ class TaskApi(Core):
         if self._cost:
             self.kernel.charge(self._cost)
         if milliseconds < 0:
-            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"delay of {milliseconds} ms")
+            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"invalid delay: {milliseconds} ms")
         self.kernel.delay(milliseconds * NS_PER_MS)
 
     def task_set_priority(self, task_id: int, priority: int) -> None:
@@ -193,7 +193,7 @@ class TaskApi(Core):
         for task_id, record in self._tasks.items():
             if record.task is system_data:
                 return task_id
-        raise OsalError(OS_ERR_NAME_NOT_FOUND, f"{system_data!r} is no OSAL task")
+        raise OsalError(OS_ERR_NAME_NOT_FOUND, f"{system_data!r} is not an OSAL task")
 
     def _task(self, task_id: int) -> OsTask:
         record = self._tasks.lookup(task_id)
@@ -231,4 +231,4 @@ class TaskApi(Core):
 
 def _check_priority(priority: int) -> None:
     if not 0 <= priority <= OS_MAX_TASK_PRIORITY:
-        raise OsalError(OS_ERR_INVALID_PRIORITY, f"priority {priority} is not within 0 to {OS_MAX_TASK_PRIORITY}")
+        raise OsalError(OS_ERR_INVALID_PRIORITY, f"priority must be 0 to {OS_MAX_TASK_PRIORITY}, not {priority}")

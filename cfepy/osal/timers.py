@@ -211,7 +211,9 @@ class TimeBaseApi(Core):
                 OS_ERR_INCORRECT_OBJ_STATE in a timer callback.
         """
         if not 0 <= start_time < TIMEBASE_LIMIT_US or not 0 <= interval_time < TIMEBASE_LIMIT_US:
-            raise OsalError(OS_TIMER_ERR_INVALID_ARGS, f"time base of {start_time} us, then every {interval_time} us")
+            raise OsalError(
+                OS_TIMER_ERR_INVALID_ARGS, f"invalid time base: {start_time} us, then every {interval_time} us"
+            )
         self._refuse_in_callback("OS_TimeBaseSet")
         self._time_base(timebase_id).set(start_time, interval_time)
 
@@ -357,7 +359,7 @@ class TimerApi(TimeBaseApi):
             self.kernel.charge(self._cost)
         valid = 0 <= start_time < TIMER_LIMIT_US and 0 <= interval_time < TIMER_LIMIT_US
         if not valid or not (start_time or interval_time):
-            raise OsalError(OS_TIMER_ERR_INVALID_ARGS, f"timer of {start_time} us, then every {interval_time} us")
+            raise OsalError(OS_TIMER_ERR_INVALID_ARGS, f"invalid timer: {start_time} us, then every {interval_time} us")
         self._refuse_in_callback("OS_TimerSet")
         timer = self._timer(timer_id)
         timer.start_us, timer.interval_us = start_time, interval_time

@@ -53,7 +53,7 @@ class SentNames:
         if not missing:
             return ""
         hint = "" if missing[0] in self.known else did_you_mean(missing[0], self.known, before="; ")
-        return f": nothing came of {', '.join(missing)}{hint}"
+        return f": no message of {', '.join(missing)} was sent{hint}"
 
 
 def never_judged(mission: Mission) -> list[str]:
@@ -80,7 +80,7 @@ def _invariants(mission: Mission, names: dict[str, tuple[str, ...]], sent: SentN
 def no_such_app(mission: Mission, name: str) -> str:
     """Return the end of a sentence about an application that never ran; empty if it did."""
     apps = mission.record.history
-    return "" if name in apps else f": there is no application {name}{did_you_mean(name, apps, before='; ')}"
+    return "" if name in apps else f": unknown application {name}{did_you_mean(name, apps, before='; ')}"
 
 
 def _deadlines(mission: Mission, sent: SentNames) -> Iterator[str]:
@@ -95,7 +95,7 @@ def _results(mission: Mission, results: Sequence[SelectedResult], sent: SentName
 
     for each in results:
         if each.compare == FILE:
-            why = "" if _is_file(mission, each.name) else ": there is no such file"
+            why = "" if _is_file(mission, each.name) else ": the file does not exist"
         elif each.compare == OUTPUT:
             why = no_such_app(mission, each.name)
         else:

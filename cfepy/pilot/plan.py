@@ -114,7 +114,7 @@ class RunPlan:
 
     def __post_init__(self) -> None:
         if not isinstance(self.schedule, Schedule):
-            raise TypeError(f"the schedule of a plan is a Schedule; write Schedule.parse({self.schedule!r})")
+            raise TypeError(f"schedule must be a Schedule, not text; write Schedule.parse({self.schedule!r})")
 
     def spec(self) -> MissionSpec:
         """Return the mission.
@@ -141,7 +141,7 @@ class RunPlan:
         said = {name: getattr(self, name) for name in IDENTITIES}
         for name, number in said.items():
             if number is not None and not (isinstance(number, int) and 0 <= number <= MOST_ID):
-                text = f"is {number!r}; give a number from 0 to {MOST_ID}"
+                text = f"must be a number from 0 to {MOST_ID}, not {number!r}"
                 raise UsageError(text, field=f"--{name.replace('_', '-')}")
         return {name: number for name, number in said.items() if number is not None}
 
@@ -165,7 +165,7 @@ class RunPlan:
         """
         if self.play is None:
             if self.play_options is not None:
-                raise UsageError("says how a bag is played; give the bag, too: --play FILE", field="--play-options")
+                raise UsageError("requires --play FILE", field="--play-options")
             return spec
         from cfepy.ground import with_player
 
@@ -186,8 +186,8 @@ class RunPlan:
 
             mission, begins_ns = boot_of(text)
             if mission in self.words:
-                what = "give the other one a startup script of its own, and a mission file with another processor_id"
-                raise UsageError(f"{text} would be the same processor twice; {what}", field="--with")
+                what = "use another startup script, and a mission file with another processor_id"
+                raise UsageError(f"{text} is already the processor of this mission; {what}", field="--with")
             plan = RunPlan((mission,), seconds=LONGEST_S, seed=self.seed, tasks=self.tasks, stall=self.stall)
             found.append((text, plan, begins_ns))
         return found
@@ -249,7 +249,7 @@ class RunPlan:
         known = {each.name for each in fields(cls)}
         unknown = sorted(set(plain) - known)
         if unknown:
-            raise TypeError(f"a plan of a run has no {', '.join(unknown)}")
+            raise TypeError(f"unknown field of a run plan: {', '.join(unknown)}")
         return cls(
             **{
                 **plain,

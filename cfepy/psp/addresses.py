@@ -104,11 +104,11 @@ class AddressSpace:
         """
         self._check_number(range_num)
         if memory_type not in (MEM_RAM, MEM_EEPROM):
-            raise OsalError(CFE_PSP_INVALID_MEM_TYPE, f"memory type {memory_type}")
+            raise OsalError(CFE_PSP_INVALID_MEM_TYPE, f"invalid memory type {memory_type}")
         if word_size not in _WORD_SIZES:
-            raise OsalError(CFE_PSP_INVALID_MEM_WORDSIZE, f"words of {word_size} bytes")
+            raise OsalError(CFE_PSP_INVALID_MEM_WORDSIZE, f"invalid word size: {word_size} bytes")
         if attributes not in (MEM_ATTR_READ, MEM_ATTR_WRITE, MEM_ATTR_READWRITE):
-            raise OsalError(CFE_PSP_INVALID_MEM_ATTR, f"memory attributes {attributes}")
+            raise OsalError(CFE_PSP_INVALID_MEM_ATTR, f"invalid memory attributes {attributes}")
         self._ranges[range_num] = MemRange(memory_type, start_addr, size, word_size, attributes)
         self._areas.pop(range_num, None)
         if area is not None:
@@ -165,24 +165,28 @@ class AddressSpace:
 
     def _check_number(self, range_num: int) -> None:
         if not 0 <= range_num < MEM_TABLE_SIZE:
-            raise OsalError(CFE_PSP_INVALID_MEM_RANGE, f"memory range {range_num} is not 0 to {MEM_TABLE_SIZE - 1}")
+            raise OsalError(
+                CFE_PSP_INVALID_MEM_RANGE, f"memory range must be 0 to {MEM_TABLE_SIZE - 1}, not {range_num}"
+            )
 
     def _range_of(self, address: int, size: int, memory_type: int) -> int:
         """Return the number of the first range that contains the whole block."""
         if memory_type not in (MEM_RAM, MEM_EEPROM, MEM_ANY):
-            raise OsalError(CFE_PSP_INVALID_MEM_TYPE, f"memory type {memory_type}")
+            raise OsalError(CFE_PSP_INVALID_MEM_TYPE, f"invalid memory type {memory_type}")
         if (address + size) % _ADDRESSES < address:
             raise OsalError(CFE_PSP_INVALID_MEM_RANGE, f"{size} bytes at {address:#x} reach beyond the last address")
-        problem = OsalError(CFE_PSP_INVALID_MEM_ADDR, f"there is no memory at {address:#x}")
+        problem = OsalError(CFE_PSP_INVALID_MEM_ADDR, f"address {address:#x} is not in a memory range")
         for number, entry in enumerate(self._ranges):
             end = (entry.start_addr + entry.size) % _ADDRESSES
             if not entry.start_addr <= address < end:
                 continue
             if address + size > end:
-                text = f"{size} bytes at {address:#x} reach beyond range {number}"
+                text = f"{size} bytes at {address:#x} exceed memory range {number}"
                 problem = OsalError(CFE_PSP_INVALID_MEM_RANGE, text)
             elif memory_type not in (MEM_ANY, entry.memory_type):
-                problem = OsalError(CFE_PSP_INVALID_MEM_TYPE, f"{address:#x} is of type {entry.memory_type}")
+                problem = OsalError(
+                    CFE_PSP_INVALID_MEM_TYPE, f"address {address:#x} is in memory of type {entry.memory_type}"
+                )
             else:
                 return number
         raise problem
@@ -222,7 +226,7 @@ def _little(value: int, size: int) -> bytes:
 
 def _check_alignment(address: int, size: int) -> None:
     if address % size:
-        raise OsalError(CFE_PSP_ERROR_ADDRESS_MISALIGNED, f"{address:#x} is not divisible by {size}")
+        raise OsalError(CFE_PSP_ERROR_ADDRESS_MISALIGNED, f"address {address:#x} must be a multiple of {size}")
 
 
 def _new_area(entry: MemRange) -> bytearray:
@@ -234,7 +238,9 @@ def _new_area(entry: MemRange) -> bytearray:
     try:
         return bytearray(entry.size)
     except (MemoryError, OverflowError):
-        raise OsalError(CFE_PSP_INVALID_MEM_ADDR, f"a range of {entry.size} bytes has no bytes here") from None
+        raise OsalError(
+            CFE_PSP_INVALID_MEM_ADDR, f"the memory range of {entry.size} bytes has no content in the simulation"
+        ) from None
 
 
 class EepromSpace(AddressSpace):
@@ -314,7 +320,7 @@ class EepromSpace(AddressSpace):
         if not self.has_eeprom_control:
             raise OsalError(CFE_PSP_ERROR_NOT_IMPLEMENTED, "the EEPROM of this board cannot be protected")
         if not 0 <= bank < NUM_EEPROM_BANKS:
-            raise OsalError(CFE_PSP_ERROR, f"there is no EEPROM bank {bank}")
+            raise OsalError(CFE_PSP_ERROR, f"invalid EEPROM bank {bank}")
 
     def _check_access(self, memory_type: int, is_write: bool) -> None:
         if memory_type != MEM_EEPROM:
@@ -386,9 +392,11 @@ class PortSpace:
         for start, data in self._port_ranges:
             if start <= address and address + size <= start + len(data):
                 if address % size:
-                    raise OsalError(CFE_PSP_ERROR_ADDRESS_MISALIGNED, f"{address:#x} is not divisible by {size}")
+                    raise OsalError(
+                        CFE_PSP_ERROR_ADDRESS_MISALIGNED, f"address {address:#x} must be a multiple of {size}"
+                    )
                 return memoryview(data)[address - start : address - start + size]
-        raise OsalError(CFE_PSP_INVALID_MEM_ADDR, f"there is no port of {size} bytes at {address:#x}")
+        raise OsalError(CFE_PSP_INVALID_MEM_ADDR, f"address {address:#x} is not an I/O port of {size} bytes")
 
 
 def _swapped(value: int, size: int) -> int:

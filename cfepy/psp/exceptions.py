@@ -115,7 +115,7 @@ class ExceptionApi:
         storage = self.exceptions
         entry = storage.entries.get(storage.read % MAX_EXCEPTION_ENTRIES) if storage.unread else None
         if entry is None:
-            raise OsalError(CFE_PSP_NO_EXCEPTION_DATA, "there is no unread exception")
+            raise OsalError(CFE_PSP_NO_EXCEPTION_DATA, "no unread exception")
         storage.read += 1
         return ExceptionSummary(entry.context_id, entry.task_id, entry.reason)
 
@@ -131,7 +131,7 @@ class ExceptionApi:
         """
         entry = self.exceptions.find(context_log_id)
         if entry is None:
-            raise OsalError(CFE_PSP_NO_EXCEPTION_DATA, f"nothing is stored under {context_log_id:#x}")
+            raise OsalError(CFE_PSP_NO_EXCEPTION_DATA, f"unknown exception context {context_log_id:#x}")
         if len(entry.context) > context_size:
             self.console.write(
                 f"CFE_PSP: Insufficient buffer for exception context, total={len(entry.context)} bytes, "

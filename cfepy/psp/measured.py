@@ -43,11 +43,14 @@ class Measured:
         call_ns = (self.short_ns - SHORT_BYTES * byte_ns) / CALLS_OF_MESSAGE
         switch_ns = (self.round_trip_ns - CALLS_OF_ROUND_TRIP * call_ns) / SWITCHES_OF_ROUND_TRIP
         if byte_ns < 0:
-            raise UsageError("a long message takes less time than a short one; measure again", field="--long")
+            raise UsageError("must not be shorter than the time of a short message; measure again", field="--long")
         if call_ns < 0:
-            raise UsageError("a short message takes less time than its bytes; measure again", field="--short")
+            raise UsageError("must not be shorter than the time of its bytes; measure again", field="--short")
         if switch_ns < 0:
-            text = f"is less than its four calls take, {CALLS_OF_ROUND_TRIP * call_ns / 1000:.3g} us; measure again"
+            text = (
+                "must not be less than the time of its four calls, "
+                f"{CALLS_OF_ROUND_TRIP * call_ns / 1000:.3g} us; measure again"
+            )
             raise UsageError(text, field="--round-trip")
         return {
             "context_switch_cycles": self._cycles(switch_ns),

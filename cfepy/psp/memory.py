@@ -76,7 +76,7 @@ class MemoryBudget:
             CfeError: for a negative size.
         """
         if size < 0:
-            raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"{owner} asks for {size} bytes ({kind})")
+            raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"not enough memory for {owner}: {size} bytes ({kind})")
         claim = Claim(owner, kind, size)
         if self.limit is not None and self.used + size > self.limit:
             raise OverBudget(claim, self.used + size - self.limit, self.report())

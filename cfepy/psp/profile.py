@@ -155,7 +155,7 @@ def load_profile(name_or_path: str | Path) -> BoardProfile:
     root = load(_find(name_or_path))
     entries = root.mapping([known.name for known in fields(BoardProfile)])
     if "name" not in entries:
-        raise root.fail("has no name; a board profile starts with `name: ...`")
+        raise root.fail("missing name; a board profile starts with `name: ...`")
     numbers = {key: _number(key, entries[key]) for key in entries if key in _NUMBERS}
     texts = {key: entries[key].text() for key in ("name", "description") if key in entries}
     parts = {key: read(entries[key]) for key, read in _PARTS.items() if key in entries}
@@ -168,9 +168,9 @@ def _find(name_or_path: str | Path) -> Path:
         return path
     boards = available_boards()
     if str(name_or_path) not in boards:
-        otherwise = f"there are {', '.join(boards)}, or give the path of a .yaml file"
+        otherwise = f"expected one of {', '.join(boards)}, or the path of a .yaml file"
         hint = did_you_mean(str(name_or_path), boards, otherwise)
-        raise UsageError(f"there is no board {str(name_or_path)!r}; {hint}", field="board")
+        raise UsageError(f"unknown board {str(name_or_path)!r}; {hint}", field="board")
     return shipped("boards") / f"{path}.yaml"
 
 
@@ -186,10 +186,10 @@ def _size(entry: Marked) -> int:
         return entry.integer(highest=MOST_BYTES)
     count, _, unit = entry.value.partition(" ")
     if not count.isdecimal() or unit not in _UNITS:
-        raise entry.fail(f"is {entry.value!r}, it must be bytes or a number with {', '.join(_UNITS)}, such as 512 KiB")
+        raise entry.fail(f"must be bytes or a number with {', '.join(_UNITS)}, such as 512 KiB, not {entry.value!r}")
     size = int(count) * _UNITS[unit]
     if size > MOST_BYTES:
-        raise entry.fail(f"is {entry.value!r}, it must be at most {MOST_BYTES // _UNITS['MiB']} MiB")
+        raise entry.fail(f"must be at most {MOST_BYTES // _UNITS['MiB']} MiB, not {entry.value!r}")
     return size
 
 
@@ -201,7 +201,7 @@ def _region(entry: Marked) -> MemoryRegion:
     parts = entry.mapping(["name", "size", "retained"])
     for needed in ("name", "size"):
         if needed not in parts:
-            raise entry.fail(f"has no {needed}; write a region as {{name: ecc, size: 512 KiB}}")
+            raise entry.fail(f"missing {needed}; write a region as {{name: ecc, size: 512 KiB}}")
     retained = parts.get("retained")
     return MemoryRegion(parts["name"].text(), _size(parts["size"]), retained is not None and retained.flag())
 
@@ -214,7 +214,7 @@ def _port_range(entry: Marked) -> PortRange:
     parts = entry.mapping(["name", "address", "size"])
     for needed in ("name", "address", "size"):
         if needed not in parts:
-            raise entry.fail(f"has no {needed}; write ports as {{name: gpio, address: 0x8C000, size: 64}}")
+            raise entry.fail(f"missing {needed}; write ports as {{name: gpio, address: 0x8C000, size: 64}}")
     return PortRange(parts["name"].text(), parts["address"].integer(highest=MOST_BYTES), _size(parts["size"]))
 
 

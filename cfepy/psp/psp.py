@@ -78,7 +78,7 @@ class AbsentHardware:
         Raises:
             OsalError: CFE_PSP_ERROR, always.
         """
-        raise OsalError(CFE_PSP_ERROR, f"there is no recorder {device_name} on bus {bus}, device {device}")
+        raise OsalError(CFE_PSP_ERROR, f"unknown recorder {device_name} on bus {bus}, device {device}")
 
     def get_volatile_disk_mem(self) -> memoryview:
         """Return the memory of the RAM disk, of size 0, because its files have no addresses
@@ -271,7 +271,7 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         self.console.write(f"CFE_PSP_Panic called with error code = 0x{error_code & 0xFFFFFFFF:08X}. Exiting.")
         self.console.write("The cFE could not start.")
         because = "" if cause is None else f": {cause}"
-        raise PanicError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"the PSP panics, code {error_code}{because}")
+        raise PanicError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"PSP panic, code {error_code}{because}")
 
     def get_restart_type(self) -> RestartType:
         """Return the type and subtype of the start of this run (CFE_PSP_GetRestartType)."""

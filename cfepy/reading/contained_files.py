@@ -38,7 +38,7 @@ def make_folder(root: Path, name: str) -> Path:
 
     Raises:
         UsageError: if the name leaves the root.
-        OSError: if if it cannot be created.
+        OSError: if it cannot be created.
     """
     path = root
     for path in _ways(root, name):
@@ -61,7 +61,7 @@ def place_contained(root: Path, name: str) -> Path:
     """
     *_, path = _ways(root, name if name != "/" else "")
     if path.exists() and not path.is_file():
-        raise UsageError(f"names {name!r}, and what has that name is not a file; move it away", file=path)
+        raise UsageError(f"names {name!r}, which already exists and is not a file; move it away", file=path)
     return path
 
 
@@ -77,7 +77,7 @@ def write_contained(root: Path, name: str, data: bytes, mode: int = 0o666) -> No
     path = _place(root, name)
     with open(path, "wb", opener=lambda file, _: os.open(file, _FLAGS, mode)) as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise UsageError(f"names {name!r}, and what has that name is not a file; move it away", file=path)
+            raise UsageError(f"names {name!r}, which already exists and is not a file; move it away", file=path)
         file.truncate(0)
         file.write(data)
 
@@ -91,18 +91,18 @@ def link_contained(root: Path, name: str) -> None:
 
 def _place(root: Path, name: str) -> Path:
     if name == "/":
-        raise UsageError("names '/', which is no file")
+        raise UsageError("names '/', which is not a file")
     return make_folder(root, posixpath.dirname(name) if is_contained(name) else name) / posixpath.basename(name)
 
 
 def _ways(root: Path, name: str) -> list[Path]:
     """Return the folders from a root to a name, then the named path itself; none of them is a symbolic link."""
     if not is_contained(name):
-        raise UsageError(f"names {name!r}, which does not stay in the folder that its files are put into")
+        raise UsageError(f"names {name!r}, which is outside the target folder")
     parts = name.strip("/").split("/") if name != "/" else []
     found = [root.joinpath(*parts[: count + 1]) for count in range(len(parts))]
     for each in found:
         if each.is_symlink():
-            text = f"names {name!r}, which leads through a symbolic link and out of its folder"
+            text = f"names {name!r}, which leads out of its folder through a symbolic link"
             raise UsageError(text, file=each)
     return found

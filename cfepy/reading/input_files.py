@@ -34,15 +34,15 @@ def open_input(path: str | Path, *, handed: bool = False) -> BufferedReader:
         The open file.
 
     Raises:
-        UsageError: if if it is a device or a pipe, or the path is not legal.
-        OSError: if if it cannot be opened or is a folder.
+        UsageError: if it is a device or a pipe, or the path is not legal.
+        OSError: if it cannot be opened or is a folder.
     """
     if handed and _DESCRIPTOR.fullmatch(str(path)):
         return open(path, "rb")
     try:
         found = os.stat(path)
     except ValueError:  # the path has a NUL or a surrogate
-        raise UsageError(f"{str(path)!r} is not a path that a file can have; correct it") from None
+        raise UsageError(f"invalid path {str(path)!r}; correct it") from None
     _check_kind(found, path)
     file = open(path, "rb", opener=lambda name, _: os.open(name, _FLAGS))  # noqa: SIM115  # the caller closes it
     try:
@@ -55,7 +55,7 @@ def open_input(path: str | Path, *, handed: bool = False) -> BufferedReader:
 
 def _check_kind(found: os.stat_result, path: str | Path) -> None:
     if not stat.S_ISREG(found.st_mode) and not stat.S_ISDIR(found.st_mode):  # reading a folder fails later, as usual
-        raise UsageError("is a device or a pipe, which may never end; name a file", file=path)
+        raise UsageError("is a device or a pipe, not a file; name a file", file=path)
 
 
 def read_limited(path: str | Path, most: int, *, handed: bool = False) -> bytes:
@@ -80,12 +80,12 @@ def read_limited(path: str | Path, most: int, *, handed: bool = False) -> bytes:
         while size <= most:
             part = file.read(piece)
             if part is None:
-                raise UsageError("has nothing to read yet, and may never have; name a file", file=path)
+                raise UsageError("is not ready for reading and may never be; name a file", file=path)
             if not part:
                 return b"".join(parts) if len(parts) > 1 else parts[0] if parts else b""
             parts.append(part)
             size = max(size, sum(map(len, parts)))
-    raise UsageError(f"has more than {most:,} bytes, which is the limit for it; make it smaller", file=path)
+    raise UsageError(f"has more than the limit of {most:,} bytes; make it smaller", file=path)
 
 
 def text_limited(path: str | Path, most: int, errors: str = "strict", *, handed: bool = False) -> str:
@@ -101,7 +101,7 @@ def text_limited(path: str | Path, most: int, errors: str = "strict", *, handed:
         The text, with "\\n" at the end of each line.
 
     Raises:
-        UnicodeDecodeError: if if it is not UTF-8 and `errors` is "strict".
+        UnicodeDecodeError: if it is not UTF-8 and `errors` is "strict".
     """
     text = read_limited(path, most, handed=handed).decode("utf-8", errors)
     return text.replace("\r\n", "\n").replace("\r", "\n")

@@ -55,7 +55,7 @@ class Marked:
         if self.value is None:
             return {}
         if not isinstance(self.value, dict):
-            raise self.fail(f"is {self.plain()!r}, it must be a mapping of names to values")
+            raise self.fail(f"must be a mapping of names to values, not {self.plain()!r}")
         allowed = None if known is None else tuple(known)
         for name, item in self.value.items():
             if allowed is not None and name not in allowed:
@@ -64,7 +64,7 @@ class Marked:
 
     def unknown(self, known: Iterable[str]) -> UsageError:
         """Return the error to raise about an unknown key."""
-        return self.fail(f"is not known here; known are {', '.join(known)}")
+        return self.fail(f"unknown field; known fields are {', '.join(known)}")
 
     def items(self) -> list[Marked]:
         """Return the value as a list, empty if there is no value.
@@ -75,39 +75,39 @@ class Marked:
         if self.value is None:
             return []
         if not isinstance(self.value, list):
-            raise self.fail(f"is {self.plain()!r}, it must be a list")
+            raise self.fail(f"must be a list, not {self.plain()!r}")
         return self.value
 
     def integer(self, lowest: int = 0, highest: int = MOST) -> int:
         """Return the value as a whole number from `lowest` to `highest`.
 
         Raises:
-            UsageError: if if it is not.
+            UsageError: if it is not.
         """
         if not isinstance(self.value, int) or isinstance(self.value, bool) or self.value < lowest:
-            raise self.fail(f"is {self.plain()!r}, it must be a whole number of at least {lowest}")
+            raise self.fail(f"must be a whole number of at least {lowest}, not {self.plain()!r}")
         if self.value > highest:
-            raise self.fail(f"is {self.value}, it must be at most {highest}")
+            raise self.fail(f"must be at most {highest}, not {self.value}")
         return self.value
 
     def text(self) -> str:
         """Return the value as text.
 
         Raises:
-            UsageError: if if it is not text.
+            UsageError: if it is not text.
         """
         if not isinstance(self.value, str):
-            raise self.fail(f"is {self.plain()!r}, it must be text; put it in quotes")
+            raise self.fail(f"must be text, not {self.plain()!r}; put it in quotes")
         return self.value
 
     def flag(self) -> bool:
         """Return the value as true or false.
 
         Raises:
-            UsageError: if if it is neither.
+            UsageError: if it is neither.
         """
         if not isinstance(self.value, bool):
-            raise self.fail(f"is {self.plain()!r}, it must be true or false")
+            raise self.fail(f"must be true or false, not {self.plain()!r}")
         return self.value
 
     def time(self) -> int:
@@ -122,7 +122,7 @@ class Marked:
                 raise ValueError
             return round(float(number) * TIME_UNITS[unit])
         except (TypeError, ValueError, KeyError):
-            raise self.fail(f"is {self.plain()!r}, it must be a time such as 0.5, 0.5 s or 20 ms") from None
+            raise self.fail(f"must be a time such as 0.5, 0.5 s or 20 ms, not {self.plain()!r}") from None
 
     def plain(self) -> Any:
         """Return the value without its marks."""
@@ -193,14 +193,14 @@ def load(path: Path, *, handed: bool = False) -> Marked:
         handed: whether the path is from the command line; see `cfepy.reading.input_files.open_input`.
 
     Raises:
-        UsageError: if if it cannot be read or is not valid YAML.
+        UsageError: if it cannot be read or is not valid YAML.
     """
     try:
         text = text_limited(path, YAML_BYTES, handed=handed)
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
     except UnicodeDecodeError:
-        raise UsageError("is no text in UTF-8", file=path) from None
+        raise UsageError("is not UTF-8 text", file=path) from None
     try:
         with opened(text) as loader:
             node = loader.get_single_node()
@@ -213,7 +213,7 @@ def _mark(loader: Any, node: Any, path: Path, field: str) -> Marked:
     """Return a composed node as Marked; the loader's own constructor turns scalars into Python values."""
     line = node.start_mark.line + 1
     if node.id != "scalar" and not node.tag.endswith((":map", ":seq", ":omap", ":set")):
-        raise YamlError(f"has the tag {node.tag}, which is not known; leave it out", line)
+        raise YamlError(f"unknown tag {node.tag}; leave it out", line)
     if node.id == "mapping":
         return Marked(dict(_pairs(loader, node, path, field)), path, line, field)
     if node.id == "sequence":
@@ -228,6 +228,6 @@ def _pairs(loader: Any, node: Any, path: Path, field: str) -> Iterator[tuple[str
         key = _mark(loader, key_node, path, field)
         name = key.text()
         if name in seen:
-            raise key.fail(f"{name!r} is there twice; remove one")
+            raise key.fail(f"{name!r} is given twice; remove one")
         seen.add(name)
         yield name, _mark(loader, value_node, path, f"{field}.{name}" if field else name)

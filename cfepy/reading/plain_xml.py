@@ -42,7 +42,7 @@ def plain_xml(data: bytes) -> Element:
         Its outermost element.
 
     Raises:
-        XmlError: if if it is not XML or exceeds a limit.
+        XmlError: if it is not XML or exceeds a limit.
     """
     from xml.etree.ElementTree import TreeBuilder
 
@@ -66,7 +66,7 @@ def parse_xml(
         text: gets the text between them, in one or several parts.
 
     Raises:
-        XmlError: if if it is not XML or exceeds a limit.
+        XmlError: if it is not XML or exceeds a limit.
     """
     from xml.parsers import expat
 
@@ -80,9 +80,9 @@ def parse_xml(
         nonlocal depth, count
         depth, count, line = depth + 1, count + 1, parser.CurrentLineNumber
         if depth > XML_DEPTH:
-            raise XmlError(f"is inside {XML_DEPTH} other tags, which is too deep; is an end tag missing?", line, name)
+            raise XmlError(f"is nested more than {XML_DEPTH} tags deep; check for a missing end tag", line, name)
         if count > XML_TAGS:
-            raise XmlError(f"is the {XML_TAGS + 1:,}th tag, which is too many for a file; split it", line, name)
+            raise XmlError(f"exceeds the limit of {XML_TAGS:,} tags in a file; split the file", line, name)
         start(name, attributes, line)
 
     def finish(name: str) -> None:
@@ -94,7 +94,7 @@ def parse_xml(
         value = declared[1]
         if isinstance(value, str) and len(value) <= XML_ENTITY and not set(value) & {"&", "%", "<"}:
             return
-        what = f"declares the entity {name!r}, which is not a short text; write the text where it is used"
+        what = f"entity {name!r} must be a short text; write the text where it is used"
         raise XmlError(what, parser.CurrentLineNumber)
 
     parser.EntityDeclHandler = entity

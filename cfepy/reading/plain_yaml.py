@@ -53,7 +53,7 @@ def plain_yaml(text: str, loader: type[Any] | None = None) -> Any:
         loader: a loader derived from `safe_loader`; None for `safe_loader` itself.
 
     Raises:
-        YamlError: if if it is not YAML or exceeds a limit.
+        YamlError: if it is not YAML or exceeds a limit.
     """
     with opened(text, loader) as found:
         node = found.get_single_node()
@@ -91,7 +91,7 @@ def opened(text: str, loader: type[Any] | None = None) -> Iterator[Any]:
     except yaml.YAMLError as error:
         raise YamlError(f"is not YAML: {error}") from None
     except UnicodeError:
-        raise YamlError("is not YAML: it has characters that no text can have") from None
+        raise YamlError("is not YAML: it has characters that are not allowed in text") from None
     finally:
         if used is not None:
             used.dispose()
@@ -101,7 +101,7 @@ def constructed(loader: Any, node: Any) -> Any:
     """Return the Python value of a node without nodes inside it.
 
     Raises:
-        YamlError: if if it does not match its tag.
+        YamlError: if it does not match its tag.
     """
     try:
         return loader.construct_object(node)
@@ -136,7 +136,7 @@ def _is_flawed(loader: Any, node: Any) -> bool:
 
 def _flaw(node: Any, error: Exception) -> YamlError:
     kind = str(node.tag).rpartition(":")[2]
-    return YamlError(f"has a value that is no {kind}: {error}", node.start_mark.line + 1)
+    return YamlError(f"has an invalid {kind}: {error}", node.start_mark.line + 1)
 
 
 def _check(text: str, loader: type[Any]) -> None:
@@ -200,10 +200,10 @@ class _Sizes:
             self._sizes[event.anchor] = 1
         is_text = event.style in _QUOTED and event.tag is None
         if len(event.value) > YAML_DIGITS and not is_text and _NUMBER.fullmatch(event.value):
-            raise YamlError(f"has a number of more than {YAML_DIGITS:,} digits", event.start_mark.line + 1)
+            raise YamlError(f"has a number with more than {YAML_DIGITS:,} digits", event.start_mark.line + 1)
 
     def _alias(self, event: Any) -> None:
         size = self._sizes.get(event.anchor, 1)  # the composer reports a missing anchor
         if size is None:
-            raise YamlError("has an alias of something inside itself", event.start_mark.line + 1)
+            raise YamlError("has an alias that contains itself", event.start_mark.line + 1)
         self._add(size, event)

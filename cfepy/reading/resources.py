@@ -27,7 +27,7 @@ def shipped(kind: str) -> Path:
         if place.is_dir():
             return place
     looked = " nor ".join(str(place) for place in places)
-    raise UsageError(f"this installation of cfepy has no {kind}: neither {looked} exists; install cfepy again")
+    raise UsageError(f"{kind} missing in this installation of cfepy: neither {looked} exists; install cfepy again")
 
 
 def import_path() -> str:

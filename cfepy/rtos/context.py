@@ -107,7 +107,7 @@ class _Carrier:
         except RuntimeError as error:
             count = len(sys._current_frames())
             raise UsageError(
-                f"this computer refuses another thread, this process has {count} ({error}): a task is a thread; "
+                f"cannot start another thread, this process has {count} ({error}): each task is a thread; "
                 "raise the limit (ulimit -u, or the container's limit of pids), or use --tasks greenlet"
             ) from error
 
@@ -371,7 +371,7 @@ class GreenletContext:
         try:
             from greenlet import GreenletExit, getcurrent, greenlet
         except ImportError as missing:
-            raise ValueError("greenlet tasks need the library greenlet: pip install 'cfepy[fast]'") from missing
+            raise ValueError("greenlet tasks require the library greenlet: pip install 'cfepy[fast]'") from missing
         self.interrupts: tuple[type[BaseException], ...] = (KeyboardInterrupt, GreenletExit)
         self._current = getcurrent
         self._greenlet = greenlet
@@ -450,4 +450,4 @@ def make_context(name: str) -> Context:
         return ThreadContext()
     if name == "greenlet":
         return GreenletContext()
-    raise ValueError(f"no task context is called {name!r}; choose thread or greenlet")
+    raise ValueError(f"unknown kind of tasks {name!r}; expected thread or greenlet")

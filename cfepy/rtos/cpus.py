@@ -156,7 +156,7 @@ def _chosen_by_user(wanted: str) -> int:
     cpus = allowed_cpus()
     if not wanted.isdecimal() or int(wanted) not in cpus:
         known = ", ".join(map(str, cpus))
-        raise UsageError(f"{VARIABLE}={wanted} is not auto, off or a CPU that this process may use: {known}")
+        raise UsageError(f"invalid {VARIABLE}={wanted}; expected auto, off or a CPU that this process may use: {known}")
     return int(wanted)
 
 

@@ -250,7 +250,7 @@ class Kernel(Scheduler):
                 the run was broken off, also in every later call.
         """
         if self.current is not self.host:
-            raise RuntimeError("run() was called from inside the simulation")
+            raise RuntimeError("run() cannot be called from inside the simulation")
         self.check_caller()
         self._check_whole()
         end = ENDLESS if until_ns is None else until_ns
@@ -406,7 +406,7 @@ class Kernel(Scheduler):
         """
         why = self.context.stranger()
         if why:
-            raise RuntimeError(f"this mission cannot go on from here: {why}")
+            raise RuntimeError(f"this mission cannot continue from here: {why}")
 
     def shutdown(self, tidy: bool = False) -> None:
         """Unwind every task and release their threads; the host calls this at the end.

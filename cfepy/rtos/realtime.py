@@ -51,7 +51,7 @@ class Pacer:
         elapsed_ns: Callable[[], int] | None = None,
     ) -> None:
         if not factor > 0:
-            raise ValueError(f"factor is {factor}, it must be more than 0")
+            raise ValueError(f"factor must be greater than 0, not {factor}")
         self._kernel = kernel
         self._run_until = run_until
         self._factor = factor

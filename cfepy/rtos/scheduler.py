@@ -37,7 +37,7 @@ def whole(time_ns: Any) -> int:
     try:
         return int(index(time_ns))
     except TypeError:
-        raise TypeError(f"a time is a whole number, an int, not {time_ns!r}") from None
+        raise TypeError(f"time must be an int, not {time_ns!r}") from None
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
@@ -200,7 +200,7 @@ class Scheduler:
         """
         left = whole(duration_ns)
         if left < 0:
-            raise ValueError(f"nothing takes {left} ns; give 0 or more")
+            raise ValueError(f"invalid time {left} ns; expected 0 or more")
         task = self.current
         while left > 0 and task is not self.host:
             if task.dying:
@@ -439,7 +439,7 @@ class Scheduler:
     def _refuse(self, task: Task) -> None:
         """Raise the error for a dying task, or the host, that tries to wait."""
         if task is self.host:
-            raise RuntimeError("this call waits, so only a task inside the simulation can make it")
+            raise RuntimeError("this call waits, so it requires a task inside the simulation")
         task.refusals += 1
         if task.refusals > MAX_REFUSALS and task.killer is not None:
             self._leave_behind(task, task.killer)

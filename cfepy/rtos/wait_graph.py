@@ -35,7 +35,7 @@ class Wait(NamedTuple):
 
     def __str__(self) -> str:
         if self.holder is None:
-            return f"{self.task.name} waits for {self.what}, and nobody is left who could end that"
+            return f"{self.task.name} waits for {self.what}, and no remaining task can end this wait"
         gone = ", which has ended" if self.holder.done else ""
         return f"{self.task.name} waits for {self.what}, held by {self.holder.name}{gone}"
 

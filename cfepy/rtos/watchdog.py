@@ -287,7 +287,10 @@ class StallWatch:
 
     def _hold_against_limit(self, stand: _Stand) -> None:
         if stand.still_s >= self.limit_s or (stand.standing_s >= self.limit_s and stand.is_turning):
-            hint = f"the run was ended: --stall {6 * self.limit_s:g} gives a long computation more time, 0 any"
+            hint = (
+                "the run was ended; allow a long computation more time with --stall "
+                f"{6 * self.limit_s:g}, or any time with --stall 0"
+            )
             self._break_off(self._error(stand, hint), stand)
         elif stand.is_idle and stand.idle_s >= self.limit_s and not stand.is_told:
             error = self._error(stand, "the run waits for it")
@@ -324,10 +327,10 @@ class StallWatch:
     def _subject(self, stand: _Stand, app: str) -> str:
         task = self._task_of(stand)
         if task is self._kernel.host:
-            return f"{COLLECTOR} has not come to an end"
+            return f"{COLLECTOR} has not finished"
         who = f"task {task.name}" + (f" of {app}" if app not in ("", task.name) else "")
         if stand.is_idle:
-            return f"{who} has waited for something outside of the simulation"
+            return f"{who} has been waiting for something outside the simulation"
         if len(stand.names) > 1 and stand.is_turning:
             return f"tasks {', '.join(sorted(stand.names))} have kept each other going, and time has stood still,"
         return f"{who} has not given up the CPU"
@@ -421,7 +424,7 @@ class StallWatch:
         self.on_lost(kernel.broken)
 
     def _tell_lost(self, why: BaseException) -> None:
-        self._tell(f"cfepy: {why}\n  it cannot be ended: it ends with this process alone")
+        self._tell(f"cfepy: {why}\n  it cannot be ended; it ends only with this process")
 
 
 @dataclass(slots=True)

@@ -137,7 +137,7 @@ class BufferServices(BusCore):
 
     def _check_buffer(self, buffer: MessageBuffer) -> None:
         if not self.is_held(buffer):
-            raise CfeError(CFE_SB_BUFFER_INVALID, "no buffer that an application holds")
+            raise CfeError(CFE_SB_BUFFER_INVALID, "not a buffer that an application holds")
 
     def _forget_buffer(self, buffer: MessageBuffer) -> None:
         del self._zero_copy[buffer.number]

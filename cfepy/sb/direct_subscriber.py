@@ -37,7 +37,7 @@ class Outlet(Pipe):
     def __init__(self, bus: SoftwareBus, msg_id: int, name: str, take: Callable[[bytes], object]) -> None:
         super().__init__(bus.kernel, NO_LIMIT, name, None)
         if msg_id not in bus.routes and not bus.routing.add_route(msg_id):
-            raise CfeError(CFE_SB_MAX_MSGS_MET, f"no room for MsgId 0x{msg_id:04X} on the bus")
+            raise CfeError(CFE_SB_MAX_MSGS_MET, f"the bus has no free entry for MsgId 0x{msg_id:04X}")
         self.items = _Passage(bus, take)
         self._route = bus.routes[msg_id]
         bus.outlets += 1

@@ -77,7 +77,7 @@ class Move(NamedTuple):
         """
         match = _MOVE.fullmatch(text)
         if match is None:
-            raise ValueError(f"{text!r} is no move")
+            raise ValueError(f"invalid move {text!r}")
         place = match["place"] or ""
         return cls(
             _unescaped(match["subject"]),

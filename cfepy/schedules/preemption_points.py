@@ -45,10 +45,10 @@ class Points:
             return cls()
         kind, *modules = text.replace(":", ",").split(",")
         if kind not in (LINES, ATTRIBUTES, CALLS):
-            raise UsageError(f"{kind!r} is no kind of points; write lines, attributes or calls", field=field)
+            raise UsageError(f"invalid kind of points {kind!r}; expected lines, attributes or calls", field=field)
         wrong = next((each for each in modules if _MODULE.fullmatch(each) is None), None)
         if wrong is not None:
-            raise UsageError(f"{wrong!r} is no module; write for instance {kind}:arm,util", field=field)
+            raise UsageError(f"invalid module {wrong!r}; write for instance {kind}:arm,util", field=field)
         return cls(kind, tuple(dict.fromkeys(each.removesuffix(".py") for each in modules)))
 
     def text(self) -> str:

@@ -25,6 +25,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.schedules.preemption_points import Points
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS, time_word
@@ -38,11 +39,15 @@ SEEDED = ("random", "pct", "abreast")
 DEPTH = 3  # default depth of PCT
 STEPS = 1000
 _TIME = re.compile(r"(\d+)(ns|us|ms|s)")
-_FORMS = (
-    "fifo, random:SEED, pct:SEED:DEPTH[:STEPS], abreast:SEED, moves:TASK@MS/FUNCTION.CALL=TASK,..., "
-    "or at:DECISION=CHOICE,..., all but fifo with :any, :fair=50, :hold=500us, :connect=50ms, :points=attributes "
-    "or :from=600ms"
-)
+_KINDS = {
+    "fifo": "fifo alone, without options",
+    "random": "random[:SEED]",
+    "pct": "pct[:SEED[:DEPTH[:STEPS]]]",
+    "abreast": "abreast[:SEED]",
+    "moves": "moves:TASK@MS/FUNCTION.CALL=TASK,...",
+    "at": "at:DECISION=CHOICE,...",
+}
+_OPTIONS = ", then options such as :any, :fair=50, :hold=500us, :connect=50ms, :points=attributes or :from=600ms"
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +97,7 @@ class Schedule:
             UsageError: if the text is not a schedule.
         """
         if _LONG_NUMBER.search(text):
-            raise UsageError("has a number of more than 30 digits; write a smaller one", field="--schedule")
+            raise UsageError("numbers must have at most 30 digits; write a smaller one", field="--schedule")
         kind, *fields = text.split(":")
         found = cls(kind, seed)
         while fields and (option := _option(fields[-1])) is not None:
@@ -212,7 +217,8 @@ def _option(field: str) -> dict[str, Any] | None:
     if name == "fair":
         if re.fullmatch(r"\d+", time, re.ASCII) is None or not int(time):
             raise UsageError(
-                f"{field!r} wants a number of decisions of at least 1, such as fair=50", field="--schedule"
+                f"invalid option {field!r}; expected a number of decisions of at least 1, such as fair=50",
+                field="--schedule",
             )
         return {"fair": int(time)}
     if name == "points":
@@ -221,7 +227,9 @@ def _option(field: str) -> dict[str, Any] | None:
         return None
     match = _TIME.fullmatch(time)
     if match is None or not int(match[1]):
-        raise UsageError(f"{field!r} wants a time in ns, us, ms or s, such as {name}=500us", field="--schedule")
+        raise UsageError(
+            f"invalid option {field!r}; expected a time in ns, us, ms or s, such as {name}=500us", field="--schedule"
+        )
     return {f"{name}_ns": int(match[1]) * TIME_UNITS[match[2]]}
 
 
@@ -231,11 +239,11 @@ def _numbers(text: str, fields: list[str]) -> dict[str, Any]:
     for name, field in zip(names, fields, strict=False):
         if re.fullmatch(r"\d+", field, re.ASCII) is None or (name != "seed" and not int(field)):
             least = "0" if name == "seed" else "1"
-            wrong = f"{name.upper()} is a whole number of at least {least}, not {field!r}"
-            raise UsageError(f"schedule {text!r}: {wrong}", field="--schedule")
+            wrong = f"{name.upper()} must be a whole number of at least {least}, not {field!r}"
+            raise UsageError(f"invalid schedule {text!r}: {wrong}", field="--schedule")
         if name in _HIGHEST and int(field) > _HIGHEST[name]:
-            wrong = f"{name.upper()} is {field}, it must be at most {_HIGHEST[name]:,}"
-            raise UsageError(f"schedule {text!r}: {wrong}", field="--schedule")
+            wrong = f"{name.upper()} must be at most {_HIGHEST[name]:,}, not {field}"
+            raise UsageError(f"invalid schedule {text!r}: {wrong}", field="--schedule")
         found[name] = int(field)
     return found
 
@@ -245,8 +253,8 @@ def _deviations(text: str, field: str) -> tuple[tuple[int, int], ...]:
     for pair in field.split(",") if field else ():
         match = re.fullmatch(r"(\d+)=(\d+)", pair, re.ASCII)
         if match is None or int(match[1]) in found:
-            wrong = f"{pair!r} is not DECISION=CHOICE" if match is None else f"decision {match[1]} comes twice"
-            raise UsageError(f"schedule {text!r}: {wrong}; write for instance at:42=1,97=2", field="--schedule")
+            wrong = f"{pair!r} is not DECISION=CHOICE" if match is None else f"decision {match[1]} is given twice"
+            raise UsageError(f"invalid schedule {text!r}: {wrong}; write for instance at:42=1,97=2", field="--schedule")
         found[int(match[1])] = int(match[2])
     return tuple((decision, choice) for decision, choice in sorted(found.items()) if choice)
 
@@ -258,8 +266,13 @@ def _moves(text: str, field: str) -> tuple[Move, ...]:
         return tuple(Move.parse(each) for each in field.split(",")) if field else ()
     except ValueError as error:
         wrong = f"{error}; write for instance moves:ARM@650/add.publish=ARM.commands"
-        raise UsageError(f"schedule {text!r}: {wrong}", field="--schedule") from None
+        raise UsageError(f"invalid schedule {text!r}: {wrong}", field="--schedule") from None
 
 
 def _wrong(text: str) -> UsageError:
-    return UsageError(f"no schedule is called {text!r}; write {_FORMS}", field="--schedule")
+    kind = text.partition(":")[0]
+    if kind in _KINDS:
+        options = "" if kind == "fifo" else _OPTIONS
+        return UsageError(f"invalid schedule {text!r}; expected {_KINDS[kind]}{options}", field="--schedule")
+    hint = did_you_mean(kind, _KINDS, f"expected {', '.join(_KINDS)}", before="; ")
+    return UsageError(f"unknown schedule {kind!r}{hint}", field="--schedule")

@@ -103,7 +103,7 @@ class Scene:
             UsageError: if there is no mission.
         """
         if self._mission is None:
-            raise UsageError("a computer elsewhere shows its packets alone: expect events and telemetry")
+            raise UsageError("a remote target can only be checked by its packets; expect events or telemetry")
         return self._mission
 
     @property
@@ -136,7 +136,7 @@ class Scene:
         """
         detail = ""
         if must_arrive and not receivers(self.mission.cfe.sb, get_msg_id(packet)):
-            detail = f"nobody subscribes to MsgId 0x{get_msg_id(packet):04X} at this time"
+            detail = f"MsgId 0x{get_msg_id(packet):04X} has no subscriber at this time"
         try:
             self.transmit(packet)
         except CfeError as error:
@@ -245,7 +245,7 @@ class FileCondition(StateCondition):
         try:
             names: Sequence[str] = scene.mission.files.list_dir(folder)
         except OsalError:
-            return f"there is no folder {folder}"
+            return f"the folder {folder} does not exist"
         return f"{folder} has {', '.join(names) or 'no files'}"
 
     def _node(self, scene: Scene) -> FileNode | None:
@@ -271,7 +271,7 @@ class ConsoleCondition(StateCondition):
         found = [line for line in lines if self.text in line]
         if found:
             return f'there was "{found[0]}"'
-        return f'the last line was "{lines[-1]}"' if lines else "there was no line"
+        return f'the last line was "{lines[-1]}"' if lines else "the console is empty"
 
 
 class PacketCondition:
@@ -311,7 +311,7 @@ class EventCondition(PacketCondition):
         if own:
             return "there was " + "; ".join(map(str, own[-NEAR:]))
         others = ", ".join(dict.fromkeys(event.app for event in events))
-        return f"there was no event of {self.app}, only of {others}" if others else "there was no event at all"
+        return f"no event of {self.app} was sent, only of {others}" if others else "no event was sent"
 
 
 class Comparison(NamedTuple):
@@ -361,7 +361,7 @@ class TelemetryCondition(PacketCondition):
     def instead(self, scene: Scene, since: Since) -> str:
         packets = [seen for seen in scene.packets.since(since.packets) if seen.msg_id == self.msg_id]
         if not packets:
-            return f"there was no {self.name}"
+            return f"no {self.name} was sent"
         values = self._values(scene, packets[-1])
         try:
             shown = ", ".join(f"{each.path} was {_field(self.name, values, each.path)}" for each in self.comparisons)

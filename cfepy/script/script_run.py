@@ -22,7 +22,7 @@ from cfepy.script.conditions import Collected, Condition, ResetCondition, Scene,
 from cfepy.script.text import Script, Step, read_script
 from cfepy.units import NS_PER_MS, NS_PER_S
 
-OVER = "the run was over before"
+OVER = "the run ended earlier"
 LOOK_NS = 10 * NS_PER_MS  # interval between two checks of an expectation
 
 

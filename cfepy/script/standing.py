@@ -87,5 +87,8 @@ class StandingScript:
 def _check_for_a_computer_elsewhere(steps: tuple[Step, ...], file: str | Path) -> None:
     for step in steps:
         if step.is_reset or (step.condition is not None and not step.condition.msg_ids):
-            text = f"{step.text!r}: a computer elsewhere shows its packets alone; send, expect event and expect tlm go"
+            text = (
+                f"{step.text!r}: a remote target can only be checked by its packets; "
+                "use send, expect event or expect tlm"
+            )
             raise UsageError(text, file=file, line=step.line)

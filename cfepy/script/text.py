@@ -70,7 +70,7 @@ class Words:
         self.source = line[:at].strip()
         rest = line[at:].strip()
         if rest and not rest.startswith("#"):
-            raise UsageError(f"a quote is opened and not closed: {rest}")
+            raise UsageError(f"unclosed quote: {rest}")
 
     def __bool__(self) -> bool:
         return bool(self._words)
@@ -85,7 +85,7 @@ class Words:
             UsageError: if there is none.
         """
         if not self._words:
-            raise UsageError(f"{what} is missing at the end of the line")
+            raise UsageError(f"unexpected end of line; {what} is missing")
         return self._words.pop(0).text
 
     def peek(self) -> Word:
@@ -114,7 +114,7 @@ def seconds_ns(text: str) -> int:
     except ValueError:
         number = math.nan
     if not 0 <= number <= LONGEST_S:
-        raise UsageError(f"{text!r} is not a number of seconds; give 0 to {LONGEST_S:g}")
+        raise UsageError(f"invalid number of seconds {text!r}; expected 0 to {LONGEST_S:g}")
     return round(number * NS_PER_S)
 
 
@@ -132,8 +132,8 @@ def choice(text: str, choices: Iterable[str], what: str) -> str:
     known = list(choices)
     if text in known:
         return text
-    hint = did_you_mean(text, known if len(text) > LONGEST_SIGN else (), f"there are {', '.join(known)}", likeness=0.5)
-    raise UsageError(f"{text!r} is no {what}; {hint}")
+    hint = did_you_mean(text, known if len(text) > LONGEST_SIGN else (), f"expected {', '.join(known)}", likeness=0.5)
+    raise UsageError(f"invalid {what} {text!r}; {hint}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,7 +203,7 @@ def read_script(path: str | Path, spec: MissionSpec, dictionary: Dictionary) -> 
     except OSError as error:
         raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
     except UnicodeError:
-        raise UsageError("is no text in UTF-8", file=path) from None
+        raise UsageError("is not UTF-8 text", file=path) from None
     return parse_script(text, path, spec, dictionary)
 
 
@@ -219,7 +219,7 @@ def parse_script(text: str, path: str | Path, spec: MissionSpec | None, dictiona
         except UsageError as error:
             raise UsageError(error.text, file=path, line=number, field=error.field) from None
     if not steps:
-        raise UsageError("has no steps", file=path)
+        raise UsageError("has no steps; add at least one, such as `at 5 send CFE_ES_NOOP`", file=path)
     return Script(str(path), tuple(steps), dictionary, reader.longest_ns)
 
 
@@ -245,7 +245,7 @@ class _Reader:
         packet: bytes | None = None
         condition: Condition | None = None
         must_arrive = is_reset = must_not = False
-        verb = choice(words.take("what to do"), ["send", "expect", "reset", "end"], "step")
+        verb = choice(words.take("a step such as send or expect"), ["send", "expect", "reset", "end"], "step")
         if verb == "send":
             must_arrive = words.peek().text != "raw"
             packet = self._packet(words)
@@ -255,13 +255,13 @@ class _Reader:
             packet = self._command("CFE_ES_RESTART", [f"RestartType={RESET_TYPES[kind]}"])
         elif verb == "expect":
             must_not = bool(words.take_if("no"))
-            what = choice(words.take("what to expect"), self._conditions, "thing to expect")
+            what = choice(words.take("a condition such as event or tlm"), self._conditions, "condition")
             condition = self._conditions[what](words)
         within_ns = until_ns = None
         if condition is not None:
             within_ns, until_ns = _limits(words)
         if words:
-            raise UsageError(f"{words.peek().text!r} is too much; the line should end before it")
+            raise UsageError(f"unexpected {words.peek().text!r} after the end of the step")
         doing = (packet, must_arrive, is_reset)
         step = Step(line, words.source, at_ns, after_ns, *doing, condition, must_not, within_ns, until_ns)
         self._pass_time(step)
@@ -272,7 +272,7 @@ class _Reader:
             at_ns = seconds_ns(words.take("the time"))
             if at_ns < self._latest_at_ns:
                 text = f"at {at_ns / NS_PER_S:g} is earlier than a step before, at {self._latest_at_ns / NS_PER_S:g}"
-                raise UsageError(f"{text}; steps stand in the order of their times")
+                raise UsageError(f"{text}; sort the steps by time")
             self._latest_at_ns = at_ns
             return at_ns, None
         if words.take_if("after"):
@@ -300,7 +300,7 @@ class _Reader:
         try:
             return bytes.fromhex(digits)
         except ValueError:
-            raise UsageError(f"{digits!r} are no bytes; write two hexadecimal digits for each") from None
+            raise UsageError(f"invalid bytes {digits!r}; write two hexadecimal digits for each byte") from None
 
     def _command(self, name: str, assignments: list[str]) -> bytes:
         return packet_of(self._dictionary.command(name), assignments)
@@ -348,19 +348,21 @@ def _app(words: Words) -> Condition:
     name = words.take("the application's name")
     if words.peek().text in ("", "within", "until"):
         return AppCondition(name)
-    return AppCondition(name, choice(words.take("the state"), APP_STATES, "state of an application"))
+    return AppCondition(name, choice(words.take("the state"), APP_STATES, "application state"))
 
 
 def _file(words: Words) -> Condition:
     path = words.take("the file's path")
     if not path.startswith("/"):
-        raise UsageError(f"{path!r} is no path of the mission's file system; it begins with /cf, /ram or the like")
+        raise UsageError(
+            f"invalid path {path!r}; a path in the mission's file system begins with /cf, /ram or the like"
+        )
     if not words.take_if("size"):
         return FileCondition(path)
     sign = words.take_if(*OPERATORS) or "=="
     size = words.take("the size")
     if not size.isdigit():
-        raise UsageError(f"{size!r} is no number of bytes")
+        raise UsageError(f"invalid size {size!r}; expected a number of bytes")
     return FileCondition(path, sign, int(size))
 
 
@@ -378,6 +380,6 @@ def _comparison(words: Words, declared: Telemetry | Topic) -> Comparison:
         try:
             number_of(value)
         except ValueError:
-            hint = "" if names is None else did_you_mean(value, names.values, f"there are {names}", before="; ")
-            raise UsageError(f"{value!r} is not a number{hint}", field=path) from None
+            hint = "" if names is None else did_you_mean(value, names.values, f"known names are {names}", before="; ")
+            raise UsageError(f"invalid number {value!r}{hint}", field=path) from None
     return Comparison(path, sign, value)

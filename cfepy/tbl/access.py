@@ -99,7 +99,7 @@ class TableAccess:
             self._log(
                 "TxnGetTableAddress", f"App({access.app_id}) attempt to access unowned Tbl Handle={int(access.handle)}"
             )
-            raise CfeError(CFE_TBL_ERR_UNREGISTERED, f"the owner of {table.name!r} gave it up")
+            raise CfeError(CFE_TBL_ERR_UNREGISTERED, f"{table.name!r} was released by its owner")
         if active is None:
             raise CfeError(CFE_TBL_ERR_NEVER_LOADED, f"{table.name!r} was never loaded")
         updated, access.updated = access.updated, False
@@ -212,7 +212,7 @@ class TableAccess:
     def _caller(self) -> tuple[int, str]:
         caller = application_of(self._kernel.current.owner)
         if caller is None:
-            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, "tables belong to apps; host code cannot make this call")
+            raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, "the caller must be a task of an application")
         return caller.app_id, caller.name
 
     def _access(self, function: str, handle: int, owner_only: bool = False, log: str = _NO_ACCESS) -> Access:
@@ -235,7 +235,7 @@ class TableAccess:
             raise
         access = self.registry.accesses.find(handle)
         if access is None:
-            error = CfeError(CFE_TBL_ERR_INVALID_HANDLE, f"0x{int(handle) & 0xFFFFFFFF:x} is no table handle")
+            error = CfeError(CFE_TBL_ERR_INVALID_HANDLE, f"invalid table handle 0x{int(handle) & 4294967295:x}")
         elif app_id in (access.table.owner if owner_only else access.app_id, self.registry.services_app_id):
             return access
         elif owner_only:

@@ -79,7 +79,7 @@ class TableType:
             UsageError: if the size of the image differs from the table.
         """
         if len(data) != self.size:
-            raise UsageError(f"{self.name} has {self.size} bytes, this image has {len(data)}", field="data")
+            raise UsageError(f"must have {self.size} bytes for {self.name}, not {len(data)}", field="data")
         return unpack_rows(self.row, data)
 
     def image(self, values: Rows) -> TableImage:
@@ -94,5 +94,7 @@ class TableType:
             return [cast(Row, values)]
         wrong = [key for key in values if key not in range(self.rows)]
         if wrong:
-            raise UsageError(f"there is no such row; {self.name} has {self.rows}, from 0", field=f"rows[{wrong[0]}]")
+            raise UsageError(
+                f"row out of range; {self.name} has {self.rows} rows, counted from 0", field=f"rows[{wrong[0]}]"
+            )
         return [numbered.get(number, {}) for number in range(max(numbered) + 1)]

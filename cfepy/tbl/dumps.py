@@ -213,7 +213,7 @@ class Dumps:
             try:
                 self._files.write_file(name, data[:end])
                 if end == len(data) == headers and event_id == ev.WRITE_TBL_IMG_ERR_EID:
-                    raise OsalError(OS_ERR_INVALID_SIZE, "there is no content to write")
+                    raise OsalError(OS_ERR_INVALID_SIZE, "a table dump requires content")
             except OsalError as error:
                 return event_id, text.format(error.status)
         return None

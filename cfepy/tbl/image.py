@@ -48,10 +48,10 @@ def build(image: TableImage) -> bytes:
         UsageError: if the name is empty, has no dot, or is longer than 39 characters; or there is no data.
     """
     if "." not in image.name or not 0 < len(image.name) < FULL_NAME_SIZE:
-        text = f"{image.name!r} is no full table name; write APP.Table, at most {FULL_NAME_SIZE - 1} characters"
+        text = f"invalid table name {image.name!r}; expected APP.Table with at most {FULL_NAME_SIZE - 1} characters"
         raise UsageError(text, field="name")
     if not image.data:
-        raise UsageError("a table file without data cannot be loaded; give at least one byte", field="data")
+        raise UsageError("must have at least one byte", field="data")
     header = FileHeader(
         description=image.description,
         spacecraft_id=image.spacecraft_id,
@@ -95,7 +95,7 @@ def with_mark(data: bytes) -> bytes:
         UsageError: if it is too short for a table file.
     """
     if len(data) < HEADER_SIZE + TABLE_HEADER_SIZE:
-        raise UsageError(f"a table file has {HEADER_SIZE + TABLE_HEADER_SIZE} bytes at least, this one {len(data)}")
+        raise UsageError(f"a table file must have at least {HEADER_SIZE + TABLE_HEADER_SIZE} bytes, not {len(data)}")
     return data[:HEADER_SIZE] + mark_for(data).to_bytes(4, "big") + data[HEADER_SIZE + 4 :]
 
 
@@ -112,7 +112,7 @@ def pack_rows(row: Layout, rows: Sequence[Mapping[str, Any]], capacity: int) -> 
         UsageError: for too many rows, or a value that does not fit; `field` has its path.
     """
     if len(rows) > capacity:
-        raise UsageError(f"{len(rows)} rows of {row.name}; there is room for {capacity}", field="rows")
+        raise UsageError(f"must have at most {capacity} rows of {row.name}, not {len(rows)}", field="rows")
     return Layout(f"{row.name}[{capacity}]", [("rows", (row, capacity))]).pack(rows=rows)
 
 

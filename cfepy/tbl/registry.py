@@ -117,7 +117,7 @@ class TableRecord:
         """
         result = 0 if self.validator is None else self.validator(image)
         if not isinstance(result, int):
-            raise TypeError(f"the validator of {self.name!r} returned {result!r}, it must return 0 for a good image")
+            raise TypeError(f"the validator of {self.name!r} must return a number, 0 for a good image, not {result!r}")
         return to_signed(result)
 
     def set_active(self, buffer: Buffer) -> None:
@@ -196,7 +196,7 @@ class TableRegistry:
         """
         table = self.find(name)
         if table is None:
-            raise CfeError(CFE_TBL_ERR_INVALID_NAME, f"no table is called {name!r}")
+            raise CfeError(CFE_TBL_ERR_INVALID_NAME, f"unknown table {name!r}")
         return table
 
     def check(self, app_name: str, name: str, size: int, options: int) -> str:
@@ -206,16 +206,16 @@ class TableRegistry:
             CfeError: CFE_TBL_ERR_INVALID_NAME, _OPTIONS or _SIZE.
         """
         if not 0 < name_size(name) < MAX_NAME_LENGTH:
-            text = f"table name {name!r} has {name_size(name)} bytes, it must have 1 to {MAX_NAME_LENGTH - 1}"
+            text = f"table name {name!r} must have 1 to {MAX_NAME_LENGTH - 1} bytes, not {name_size(name)}"
             raise CfeError(CFE_TBL_ERR_INVALID_NAME, text)
         if options & OPT_DUMP_ONLY and options & (OPT_DBL_BUFFER | OPT_CRITICAL):
-            raise CfeError(CFE_TBL_ERR_INVALID_OPTIONS, "a dump-only table is neither double-buffered nor critical")
+            raise CfeError(CFE_TBL_ERR_INVALID_OPTIONS, "a dump-only table cannot be double-buffered or critical")
         if options & _USR_DEF_BIT and not options & OPT_DUMP_ONLY:
-            raise CfeError(CFE_TBL_ERR_INVALID_OPTIONS, "only a dump-only table can be at an address of the app's")
+            raise CfeError(CFE_TBL_ERR_INVALID_OPTIONS, "a table at an address of the app must be dump-only")
         double = options & OPT_DBL_BUFFER
         limit = self._config.tbl_max_dbl_table_size if double else self._config.tbl_max_sngl_table_size
         if not 0 < size <= limit:
-            raise CfeError(CFE_TBL_ERR_INVALID_SIZE, f"table {name!r} of {size} bytes; it must have 1 to {limit}")
+            raise CfeError(CFE_TBL_ERR_INVALID_SIZE, f"table {name!r} must have 1 to {limit} bytes, not {size}")
         return f"{app_name}.{name}"
 
     def duplicate(self, full_name: str, size: int, app_id: int) -> Access | None:
@@ -230,7 +230,7 @@ class TableRegistry:
         if table.owner != app_id:
             raise CfeError(CFE_TBL_ERR_DUPLICATE_NOT_OWNED, f"table {full_name!r} belongs to app 0x{table.owner:x}")
         if table.size != size:
-            text = f"table {full_name!r} exists with {table.size} bytes and cannot become one of {size}"
+            text = f"table {full_name!r} already exists with {table.size} bytes, so it cannot have {size}"
             raise CfeError(CFE_TBL_ERR_DUPLICATE_DIFF_SIZE, text)
         for access in table.accesses:
             if access.app_id == app_id:

@@ -73,15 +73,15 @@ def explore(
         UsageError: if an argument is invalid.
     """
     if not isinstance(seeds, int):
-        raise UsageError("needs parentheses: write @explore(), or @explore(seeds=20)", field="@explore")
+        raise UsageError("requires parentheses: write @explore(), or @explore(seeds=20)", field="@explore")
     policies = (policy,) if isinstance(policy, str) else tuple(policy)
     for each in policies:
         if each not in POLICIES:
-            raise UsageError(f"{each!r} is no policy; there are {', '.join(POLICIES)}", field="policy")
+            raise UsageError(f"unknown policy {each!r}; expected one of {', '.join(POLICIES)}", field="policy")
     if seeds < 1 or not policies:
-        raise UsageError("there is nothing to run; give at least one", field="seeds" if policies else "policy")
+        raise UsageError("must not be empty; give at least one", field="seeds" if policies else "policy")
     if depth is not None and depth < 1:
-        raise UsageError(f"{depth} is no depth; it is a whole number of at least 1", field="depth")
+        raise UsageError(f"invalid depth {depth}; expected a whole number of at least 1", field="depth")
     words = [BASE, *(["any"] if any_priority else []), *([f"hold={hold}"] if hold else [])]
     words += [f"connect={connect}"] if connect else []
     words += [f"points={Points.parse(points, 'points').text()}"] if points else []

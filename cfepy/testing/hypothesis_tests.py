@@ -56,7 +56,9 @@ class ExampleTests:
         if self._code is not None:
             version, colon, code = self._code.partition(":")
             if not colon:
-                raise UsageError("is no example; take it as the failure told it", field="--cfepy-example")
+                raise UsageError(
+                    "not a valid example; copy the string printed with the failure", field="--cfepy-example"
+                )
             reproduce_failure(version, code.encode())(function)
 
     def _ending(self, inner: Callable[..., Any]) -> Callable[..., Any]:

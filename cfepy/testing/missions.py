@@ -231,7 +231,7 @@ class Missions:
         except ValueError:
             seconds = -1.0
         if not 0 <= seconds < float("inf"):
-            raise UsageError(f"{text!r} is no number of seconds; give 0 for never, or more", field="cfepy_stall")
+            raise UsageError(f"invalid number of seconds {text!r}; expected 0 (never) or more", field="cfepy_stall")
         return seconds
 
     def command(self, item: pytest.Item, schedule: Schedule | None = None, example: str | None = None) -> str:

@@ -141,7 +141,7 @@ def messages(
     known = MessageValues(library).fields(name)
     for field in fields:
         if field not in known:
-            raise UsageError(f"{name} has no such field; it has {', '.join(known)}", field=field)
+            raise UsageError(f"unknown field; {name} has {', '.join(known)}", field=field)
     built = st.fixed_dictionaries({**known, **fields}).map(lambda values: build(library, name, values))
     return built if isinstance(kind, str) else built.map(lambda message: _as_class(kind, message))
 
@@ -179,7 +179,7 @@ def fields_of(layout: Layout, given: Fields, owner: str) -> st.SearchStrategy[di
     cells = {cell.path: cell_values(cell) for cell in layout.cells()}
     for path in given:
         if path not in cells:
-            raise UsageError(f"{owner} has no such field; it has {', '.join(cells) or 'none'}", field=path)
+            raise UsageError(f"unknown field; {owner} has {', '.join(cells) or 'no fields'}", field=path)
     return st.fixed_dictionaries({**cells, **given})
 
 
@@ -224,7 +224,7 @@ def _packets(
         return (st.integers(*TELEMETRY_IDS) | st.integers(*COMMAND_IDS)).flatmap(_any_payload)
     if isinstance(name, int):
         if not 0 < name <= HIGHEST_VALID_MSG_ID or not name & HAS_TIME_OR_CODE:
-            raise UsageError(f"0x{name:04X} is no MsgId of cFE's: these are 0x0801 to 0x0FFF and 0x1801 to 0x1FFF")
+            raise UsageError(f"invalid MsgId 0x{name:04X}; expected 0x0801 to 0x0FFF or 0x1801 to 0x1FFF")
         return _any_payload(name)
     entry = name if isinstance(name, Command | Telemetry) else _entry(name, mission)
     values = fields_of(entry.payload, fields, entry.name)
@@ -238,7 +238,7 @@ def _entry(name: str, mission: MissionName) -> Command | Telemetry:
     if name in known.telemetry:
         entry = known.telemetry[name]
         if isinstance(entry, Topic):
-            raise UsageError(f"{name} is a ROS topic; its messages come from messages(TYPE)")
+            raise UsageError(f"{name} is a ROS topic; use messages(TYPE) for its messages")
         return entry
     return _command(known, name)
 
@@ -328,7 +328,7 @@ def fault_plans(
         UsageError: if there is no target.
     """
     if mission is None and not messages and not apps:
-        raise UsageError("there is nothing to strike; give a mission, messages or apps")
+        raise UsageError("missing target of faults; give a mission, messages or apps")
 
     def made() -> st.SearchStrategy[dict[str, Any]]:
         names, own = tuple(messages), tuple(apps)

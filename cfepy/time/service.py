@@ -170,7 +170,7 @@ class TimeServices:
         app_id = self._callback_owner(callback)
         if app_id in self._callbacks:
             raise CfeError(
-                CFE_TIME_TOO_MANY_SYNCH_CALLBACKS, "an application may have one callback; unregister it first"
+                CFE_TIME_TOO_MANY_SYNCH_CALLBACKS, "the application already has a callback; unregister it first"
             )
         self._callbacks[app_id] = callback
 
@@ -235,5 +235,5 @@ class TimeServices:
 
     def _need_source(self, source: str) -> None:
         if self._settings.external != source:
-            text = f"the board's limits have to say time_cfg_source: true, time_cfg_src_{source}: true"
+            text = f"requires the board limits time_cfg_source: true, time_cfg_src_{source}: true"
             raise CfeError(CFE_TIME_NOT_IMPLEMENTED, text)

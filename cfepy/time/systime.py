@@ -85,7 +85,7 @@ def sub2micro_secs(subseconds: int) -> int:
         CfeError: CFE_TIME_BAD_ARGUMENT if it is not within 32 bits.
     """
     if not 0 <= subseconds <= MASK_32:
-        raise CfeError(CFE_TIME_BAD_ARGUMENT, f"subseconds are {subseconds}, they must be 0 to {MASK_32}")
+        raise CfeError(CFE_TIME_BAD_ARGUMENT, f"subseconds must be 0 to {MASK_32}, not {subseconds}")
     return subseconds * US_PER_S >> 32
 
 
@@ -97,7 +97,7 @@ def micro2sub_secs(microseconds: int) -> int:
         CfeError: CFE_TIME_BAD_ARGUMENT if it is negative.
     """
     if microseconds < 0:
-        raise CfeError(CFE_TIME_BAD_ARGUMENT, f"microseconds are {microseconds}, they must not be negative")
+        raise CfeError(CFE_TIME_BAD_ARGUMENT, f"microseconds must not be negative: {microseconds}")
     if microseconds >= US_PER_S:
         return MASK_32
     return -(-(microseconds << 32) // US_PER_S)

@@ -63,7 +63,7 @@ class Peers(NamedTuple):
         """The files of these names, or whose names begin so; all when there are none.
 
         Raises:
-            UsageError: there is no such file.
+            UsageError: the file does not exist.
         """
         found = [peer for peer in self.files.values() if not names or peer.name.startswith(tuple(names))]
         for name in names:

@@ -22,7 +22,7 @@ def main() -> None:
     rospy.init_node("rostopic", anonymous=True)
     kind = genpy.message.get_message_class(type_name)
     if kind is None:
-        print(json.dumps({"error": f"there is no message type {type_name}"}))
+        print(json.dumps({"error": f"unknown message type {type_name}"}))
         sys.exit(1)
     publisher = rospy.Publisher(topic, kind, queue_size=100, latch=rate_hz is None)
     if at_s is not None:

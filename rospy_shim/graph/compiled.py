@@ -277,7 +277,7 @@ class CompiledNodes:
             Concern.SUBSCRIBER + Concern.SUBSCRIBED: self._give_latched,
         }
         if kind not in does:
-            raise UsageError(f"{who} asks for something of kind {kind}, which is unknown; build it with this cfepy")
+            raise UsageError(f"{who} sent an unknown request of kind {kind}; rebuild it with this cfepy")
         return does[kind](node, name, declared)
 
     def _topic(self, node: CompiledNode, name: str, declared: DeclaredType) -> TopicEntry:
@@ -372,7 +372,7 @@ def _texts(body: bytes, count: int) -> list[str]:
     for _ in range(count):
         (size,) = struct.unpack_from("<I", body, at)
         if at + 4 + size > len(body):
-            raise UsageError("a request of a compiled node is cut off")
+            raise UsageError("a request of a compiled node is truncated")
         found.append(body[at + 4 : at + 4 + size].decode())
         at += 4 + size
     return found

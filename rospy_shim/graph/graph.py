@@ -293,7 +293,9 @@ class Graph:
         if isinstance(service, CompiledService):
             for node in self.nodes.values():
                 return node, node.library.service_class(service.type)
-            raise ServiceException(f"service [{name}] is of a compiled node, and no node in Python is there to call it")
+            raise ServiceException(
+                f"service [{name}] of a compiled node can only be called from a node in Python, and none is running"
+            )
         return service.node, service.service_class
 
     def forget_service(self, service: Service) -> None:

@@ -56,8 +56,9 @@ class MsgIds:
         if holder == name or self._config.spread:
             return self.claim(name)
         raise UsageError(
-            f"{holder} and {name} both fall on MsgId 0x{msg_id:04X}; `cfepy mids --lock MISSION` gives every topic one"
-            f' of its own, or write in mission.yaml: "{name}: {{msg_id: 0x{next_free(msg_id, self._names):04X}}}"',
+            f"{holder} and {name} have the same MsgId 0x{msg_id:04X}; run `cfepy mids --lock MISSION` to "
+            f'give each topic its own MsgId, or write in mission.yaml: "{name}: {{msg_id: '
+            f'0x{next_free(msg_id, self._names):04X}}}"',
             field="topics",
         )
 
@@ -120,7 +121,7 @@ def next_free(msg_id: int, taken: Mapping[int, str]) -> int:
         found = FIRST_MSG_ID + (msg_id + step - FIRST_MSG_ID) % _HOW_MANY
         if found not in taken:
             return found
-    raise UsageError(f"there are more than {_HOW_MANY} topics and services, and no MsgId is left", field="topics")
+    raise UsageError(f"more than {_HOW_MANY} topics and services: no MsgId is left", field="topics")
 
 
 def msg_id_of(name: str) -> int:

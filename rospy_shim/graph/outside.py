@@ -132,7 +132,7 @@ class OutsideGraph:
             return -1, f"this is not a request: {error}", 0
         api = self._switchboard.api_of(node) if node else self._switchboard.master
         if api is None:
-            return 0, f"[{node}] is no node of the mission", 0
+            return 0, f"[{node}] is not a node of the mission", 0
         return call(api, str(method), arguments)
 
     # -- topics ------------------------------------------------------------------------------------------------------
@@ -157,7 +157,7 @@ class OutsideGraph:
 
     def _count_name(self, name: str) -> None:
         if len(self._names) >= ROS_NAMES and name not in self._names:
-            raise UsageError(f"{name[:200]}: programs outside have brought {ROS_NAMES} names, which is the limit")
+            raise UsageError(f"{name[:200]}: the limit of {ROS_NAMES} names of external programs is reached")
         self._names.add(name)
 
     def _publish(self, topic: str, name: str, uri: str, kind: str, md5sum: str, definition: str, latching: bool) -> str:
@@ -283,7 +283,9 @@ class OutsideGraph:
         """
         entry = self._graph.services[service]
         if len(entry.calls) >= ROS_CALLS:
-            raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"{ROS_CALLS} calls of {service} wait for their answers")
+            raise CfeError(
+                CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"the limit of {ROS_CALLS} pending calls of {service} is reached"
+            )
         header = {"callerid": caller, "md5sum": entry.service.service_class._md5sum, "service": service}
         self._listen(service, entry)
         inner = entry.begin(ServiceCall(NO_PIPE, header))

@@ -67,7 +67,7 @@ class ParameterRows:
         room = len(self.rows) * VALUE_BYTES
         if least_size(value, room) > room:  # before the texts are made
             raise ParametersFull(
-                f"the parameter tables are full: {_shown(name)} takes more than all {len(self.rows)} rows"
+                f"the parameter tables are full: {_shown(name)} needs more than all {len(self.rows)} rows"
             )
         new = dict(leaves_of(name, value))
         self._change(name, new, [*leaf_names(name, former), *self._above(name)])
@@ -100,7 +100,7 @@ class ParameterRows:
         free = self.free + released
         if needed > free:
             room = f"{needed} rows of {len(self.rows)}, {free} are free"
-            raise ParametersFull(f"the parameter tables are full: {_shown(name)} takes {room}")
+            raise ParametersFull(f"the parameter tables are full: {_shown(name)} needs {room}")
         coming = {each: rows_for(each, text) for each, text in new.items() if each not in kept}
         for record in going:
             if record.name not in kept and not self._in_place(record, new, coming):

@@ -176,7 +176,7 @@ def tree_of(rows: Iterable[Row], problems: list[str]) -> tuple[dict[str, Any], d
     for record in records(rows):
         try:
             if record.name in good:
-                raise ValueError("the name is there twice")
+                raise ValueError("the name is given twice")
             _insert(tree, parts_of(record.name), value_of(record.text))
         except ValueError as error:
             problems.append(f"row {record.first}: {record.name}: {error}")
@@ -189,10 +189,10 @@ def _insert(tree: dict[str, Any], parts: list[str], value: Any) -> None:
     for part in parts[:-1]:
         inner = tree.setdefault(part, {})
         if type(inner) is not dict:
-            raise ValueError(f"{part} has a value, and cannot be a namespace too")
+            raise ValueError(f"{part} has a value, so it cannot be a namespace")
         tree = inner
     if tree.get(parts[-1], value) != value:
-        raise ValueError("is a namespace, and cannot have a value too")
+        raise ValueError("is a namespace, so it cannot have a value")
     tree[parts[-1]] = value
 
 

@@ -65,7 +65,7 @@ def change(files: Mapping[str, bytes], parameter: str, value: Any) -> dict[str, 
         tree.keep_in(rows, bool, root)
         tree.delete(parameter) if value is None else tree.set(parameter, value)
     except KeyError:
-        raise UsageError(f"there is no parameter {parameter}", file=first) from None
+        raise UsageError(f"unknown parameter {parameter}", file=first) from None
     except (ParametersFull, TypeError) as error:
         raise UsageError(str(error), file=first) from None
     changed: dict[str, bytes] = {}
@@ -86,7 +86,7 @@ def _in_order(files: Mapping[str, bytes]) -> dict[str, _File]:
     numbers: dict[int, str] = {}
     for name, file in ordered.items():
         if numbers.setdefault(file.number, name) != name:
-            raise UsageError(f"is {file.table.table_name}, and so is {numbers[file.number]}", file=name)
+            raise UsageError(f"has the same table {file.table.table_name} as {numbers[file.number]}", file=name)
     return ordered
 
 
@@ -100,7 +100,7 @@ def _check_whole(files: Mapping[str, _File]) -> None:
         begins = file.number - 1 in numbers or not file.rows[0][0].startswith(table.MORE)
         ends = file.number + 1 in numbers or file.rows[-1] == table.FREE
         if not (begins and ends):
-            text = "a parameter in it may begin or go on in another table; give a folder with the files of all"
+            text = "may contain part of a parameter of another table; give a folder with the files of all tables"
             raise UsageError(text, file=name)
 
 
@@ -147,10 +147,10 @@ def _take_apart(name: str, data: bytes) -> _File:
     try:
         header, head, image = read_table_file(data)
     except CfeError as error:
-        raise UsageError(f"is no table file: {error.text}", file=name) from None
+        raise UsageError(f"is not a table file: {error.text}", file=name) from None
     match = _NAME.fullmatch(head.table_name)
     if match is None or head.offset or len(image) % table.ROW_BYTES:
-        what = f"the table {head.table_name}, not all of one of ROS's parameters (ROS.Params01 and on)"
+        what = f"the table {head.table_name}, not a complete table of ROS parameters (ROS.Params01 and so on)"
         raise UsageError(f"is {what}", file=name)
     return _File(int(match[1]) - 1, header, head, table.unpack(image))
 

@@ -152,11 +152,9 @@ class ParameterTree:
         if not parts and type(value) is not dict:
             raise TypeError("cannot set root of parameter tree to non-dictionary")
         if len(parts) + depth_of(value) > PARAMETER_DEPTH:
-            raise ROSException(
-                f"parameter {key[:200]}: more than {PARAMETER_DEPTH} namespaces and lists inside each other"
-            )
+            raise ROSException(f"parameter {key[:200]}: more than {PARAMETER_DEPTH} nested namespaces and lists")
         if least_size(value, PARAMETER_BYTES) > PARAMETER_BYTES:
-            raise ROSException(f"parameter {key[:200]}: more than {PARAMETER_BYTES:,} bytes, which is the limit")
+            raise ROSException(f"parameter {key[:200]}: more than the limit of {PARAMETER_BYTES:,} bytes")
         if self._rows is not None:
             former = self.find(key)
             self._rows.replace(name_of(parts), value, {} if former is _MISSING else former)

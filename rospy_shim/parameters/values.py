@@ -192,13 +192,13 @@ def parts_of(name: str) -> list[str]:
     """
     first, *parts = name.split("/")
     if first or not parts or "" in parts:
-        raise ValueError(f"{name!r} is no full name, such as /robot/rate")
+        raise ValueError(f"invalid name {name!r}; expected a full name such as /robot/rate")
     return ["" if part == _NO_NAME else _read_part(part) for part in parts]
 
 
 def _read_part(part: str) -> str:
     if "%" in _ESCAPE.sub("", part):
-        raise ValueError(f"{part!r} has a % that is none of %00 to %FF")
+        raise ValueError(f"invalid escape in {part!r}; expected %00 to %FF")
     raw = re.sub(rb"%([0-9A-F]{2})", lambda match: bytes([int(match[1], 16)]), part.encode("ascii"))
     return raw.decode("utf-8", "surrogatepass")
 
@@ -220,7 +220,7 @@ def value_of(text: str) -> Any:
         found = json.loads(text)
     except ValueError:
         if text.startswith(_BRACKETS) or not text:
-            raise ValueError(f"{text!r} is no JSON; a text that begins like that needs quotes") from None
+            raise ValueError(f"invalid JSON {text!r}; a text that begins like JSON requires quotes") from None
         return text
     except RecursionError:
         raise ValueError("is nested too deeply") from None
@@ -281,7 +281,7 @@ def _restored(value: Any) -> Any:
             return {key: _restored(item) for key, item in dict(inner).items()}
         return _bytes(inner) if mark == _BINARY else _date_time(inner)
     if value is None:
-        raise ValueError("null is no value of a ROS parameter")
+        raise ValueError("null is not a value of a ROS parameter")
     if type(value) is int and not _INT_MIN <= value <= _INT_MAX:
         raise ValueError(f"{value} has more than 32 bits")
     return value
@@ -293,7 +293,7 @@ def _is_marked(value: dict[str, Any]) -> bool:
 
 def _date_time(text: Any) -> DateTime:
     if not isinstance(text, str) or not _DATE_TIME.fullmatch(text):
-        raise ValueError(f"{text!r} is no date and time, such as 20261121T18:50:00")
+        raise ValueError(f"invalid date and time {text!r}; expected a form such as 20261121T18:50:00")
     return DateTime(text)
 
 
@@ -301,4 +301,4 @@ def _bytes(text: Any) -> bytes:
     try:
         return base64.b64decode(text, validate=True)
     except (binascii.Error, TypeError, ValueError) as error:
-        raise ValueError(f"{text!r} is no base 64: {error}") from None
+        raise ValueError(f"invalid base 64 {text!r}: {error}") from None

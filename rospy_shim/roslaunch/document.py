@@ -84,7 +84,7 @@ def read_launch_tag(file: Path) -> Tag:
     root = _parse(file)
     found = [tag for tag in root.walk() if tag.name == "launch"]
     if len(found) != 1:
-        raise root.fail(f"the file has {len(found)} <launch> tags; one of them must stand around everything else")
+        raise root.fail(f"the file must have one <launch> tag around everything else, not {len(found)}")
     return found[0]
 
 
@@ -113,7 +113,7 @@ def _parse(file: Path) -> Tag:
     except XmlError as error:
         what = error.text
         if error.is_malformed and len(open_tags) > 1:
-            what += f"; the <{open_tags[-1].name}> of line {open_tags[-1].line} is open there"
+            what += f"; the <{open_tags[-1].name}> of line {open_tags[-1].line} is not closed"
         field = None if error.tag is None else f"<{error.tag}>"
         raise UsageError(what, file=file, line=error.line, field=field) from None
     for tag, parts in texts.values():
@@ -196,14 +196,14 @@ class Attributes:
     def required(self, name: str) -> str | None:
         """The value of an attribute that must be there; None when it is not, or a substitution cannot be made."""
         if name not in self.tag.attributes:
-            self.wrong(f'has no {name!r}; write {name}="..."')
+            self.wrong(f'missing {name!r}; write {name}="..."')
         return self.optional(name)
 
     def flag(self, name: str) -> bool:
         """An attribute that is true or false; False when it is not there or something else."""
         value = self.optional(name)
         if value is not None and value.lower() not in ("true", "false"):
-            self.wrong(f"is {value!r}; write true or false", name)
+            self.wrong(f"must be true or false, not {value!r}", name)
         return value is not None and value.lower() == "true"
 
     def number(self, name: str, least: float) -> float | None:
@@ -217,14 +217,14 @@ class Attributes:
             number = least - 1
         if least <= number <= LAUNCH_NUMBER:
             return number
-        self.wrong(f"is {value[:40]!r}; write a number of at least {least:g} and at most {LAUNCH_NUMBER:g}", name)
+        self.wrong(f"must be a number from {least:g} to {LAUNCH_NUMBER:g}, not {value[:40]!r}", name)
         return None
 
     def counts(self) -> bool:
         """Whether `if` and `unless` let the tag count: not when both are there, or one is neither true nor false."""
         given = {name: self.optional(name) for name in ("if", "unless") if name in self.tag.attributes}
         if len(given) > 1:
-            self.wrong("has both 'if' and 'unless'; leave one of them out")
+            self.wrong("'if' cannot be combined with 'unless'; leave one of them out")
         for name, value in given.items():
             try:
                 if value is not None and not self.failed:

@@ -79,13 +79,13 @@ def find_script(packages: Packages, package: str, node_type: str) -> Path:
     if script is not None:
         return script
     if found:
-        raise ScriptError(f"{found[0]} is no Python script; cfepy runs nodes that are written in Python", is_there=True)
+        raise ScriptError(f"{found[0]} is not a Python script; cfepy runs only nodes written in Python", is_there=True)
     folders = packages.folders(package)
     if not folders:
         hint = did_you_mean(package, packages.names(), before="; ")
-        raise ScriptError(f"there is no package {package!r} near by or on ROS_PACKAGE_PATH{hint}")
+        raise ScriptError(f"unknown package {package!r}, neither near the file nor on ROS_PACKAGE_PATH{hint}")
     is_built = any(_is_built(folder, package, node_type) for folder in folders)
-    why = "a C++ node" if is_built else "a C++ node, or one that is not here"
+    why = "a C++ node" if is_built else "a C++ node, or a missing one"
     hint = "" if is_built else did_you_mean(node_type, _programs(folders), before="; ")
     text = f"package {package!r} has no file {node_type!r}{'' if node_type.endswith('.py') else f': {why}'}{hint}"
     raise ScriptError(text, is_there=is_built)
@@ -326,7 +326,7 @@ def launch_file(package: str, name: str, near: Path, environ: Mapping[str, str])
     if file is None:
         otherwise = "go into its workspace, or put it on ROS_PACKAGE_PATH"
         hint = did_you_mean(package, packages.names(), otherwise, before="; ")
-        raise UsageError(f"there is no package {package!r}{hint}", field=f"{package} {name}")
+        raise UsageError(f"unknown package {package!r}{hint}", field=f"{package} {name}")
     return file
 
 

@@ -42,8 +42,7 @@ def output_of(command: str) -> str:
     name = Path(program).name.removesuffix(".py")
     if name not in _PROGRAMS:
         raise ValueError(
-            f"would start the program {program!r}, which cfepy does not do; run it yourself, and name its output with"
-            " textfile= instead"
+            f"cannot start the program {program!r}; run it yourself, and name its output with textfile= instead"
         )
     try:
         return _PROGRAMS[name](arguments)
@@ -56,7 +55,7 @@ def _cat(arguments: list[str]) -> str:
     for file in arguments:
         found += _read_text(file)
         if len(found) > LAUNCH_FILE_BYTES:
-            raise ValueError(f"prints more than {LAUNCH_FILE_BYTES:,} characters; print less")
+            raise ValueError(f"must print at most {LAUNCH_FILE_BYTES:,} characters")
     return found
 
 
@@ -70,14 +69,14 @@ def _xacro(arguments: list[str]) -> str:
         xacro: Any = importlib.import_module("xacro")
     except ImportError:
         raise ValueError(
-            "needs the Python package xacro, which is not installed here; run `pip install xacro`, or run xacro"
-            " yourself and name its output with textfile="
+            "requires the Python package xacro, which is not installed; run `pip install xacro`, or run "
+            "xacro yourself and name its output with textfile="
         ) from None
     words = [word for word in arguments if not word.startswith("-")]
     mappings = dict(word.split(":=", 1) for word in words if ":=" in word)
     files = [word for word in words if ":=" not in word]
     if len(files) != 1:
-        raise ValueError(f"names {len(files)} files; xacro reads one")
+        raise ValueError(f"must name one file for xacro, not {len(files)}")
     try:
         return str(xacro.process_file(files[0], mappings=mappings).toprettyxml(indent="  "))
     except OSError:
@@ -100,20 +99,20 @@ def add_param(launch: Launch, name: str, value: Any, attributes: Attributes) -> 
     """
     name, tag = canonicalize_name(name), attributes.tag
     if len(name) > LAUNCH_NAME:
-        attributes.wrong(f"makes the name of a parameter of more than {LAUNCH_NAME:,} characters; write a shorter one")
+        attributes.wrong(f"makes a parameter name of more than {LAUNCH_NAME:,} characters; write a shorter one")
         return
     if name in ("", SEP):
-        attributes.wrong("has a name that stands for all parameters; write a parameter's name")
+        attributes.wrong("must not name all parameters; write the name of a parameter")
         return
     parents = [name[:index] for index, letter in enumerate(name) if letter == "/" and index]
     for parent in parents:
         if parent in launch.params:
-            attributes.remark(f"parameter {name} replaces {parent}, which it lies below")
+            attributes.remark(f"parameter {name} replaces its parent {parent}")
     launch.places[name] = (tag.file, tag.line)
     try:
         launch.params[name] = None if value is None else marshalled(value)
     except (TypeError, OverflowError) as error:
-        attributes.wrong(f"{name} is {value!r}, which no parameter can be: {error}; put text in quotes")
+        attributes.wrong(f"invalid value {value!r} of {name}: {error}; put text in quotes")
 
 
 def read_param(launch: Launch, tag: Tag, scope: Scope, of_node: bool = False) -> None:
@@ -130,7 +129,7 @@ def read_param(launch: Launch, tag: Tag, scope: Scope, of_node: bool = False) ->
     given = [source for source in _SOURCES if source in tag.attributes]
     name = attributes.required("name")
     if len(given) != 1:
-        attributes.wrong(f"has {' and '.join(given) or 'no value'}; give one of {', '.join(_SOURCES)}")
+        attributes.wrong(f"must have exactly one of {', '.join(_SOURCES)}, not {' and '.join(given) or 'none'}")
         return
     value = _value(attributes, given[0])
     if name is None or attributes.failed:
@@ -162,7 +161,7 @@ def _value(attributes: Attributes, source: str) -> Any:
     except OSError as error:
         attributes.wrong(f"{text} cannot be read: {error.strerror}", source)
     except UnicodeDecodeError:
-        attributes.wrong(f"{text} is no text in UTF-8; name it with binfile= if it is meant to be bytes", source)
+        attributes.wrong(f"{text} is not UTF-8 text; use binfile= for a binary file", source)
     except ValueError as error:
         attributes.wrong(str(error), source)
     return None
@@ -176,12 +175,16 @@ def read_rosparam(launch: Launch, tag: Tag, scope: Scope) -> None:
     param = joined(attributes.optional("ns") or "", attributes.optional("param") or "")
     file, resolves = attributes.optional("file"), attributes.flag("subst_value")
     if command not in ("load", "dump", "delete"):
-        attributes.wrong(f"is {command!r}; write load, dump or delete", "command")
+        attributes.wrong(f"must be load, dump or delete, not {command!r}", "command")
         return
     if command == "delete" and file is not None:
-        attributes.wrong('is of no use to command="delete"; remove it', "file")
+        attributes.wrong('is not used by command="delete"; remove it', "file")
     if command != "load":
-        why = "it stands before all parameters are set, so nothing is there" if command == "delete" else "writes a file"
+        why = (
+            "it runs before all parameters are set, so there is nothing to delete"
+            if command == "delete"
+            else "writes a file"
+        )
         attributes.remark(f'<rosparam command="{command}"> is left out: {why}')
         return
     text = None if attributes.failed else _text_of(file, attributes)
@@ -204,7 +207,7 @@ def _text_of(file: str | None, attributes: Attributes) -> str | None:
     try:
         return _read_text(file)
     except (OSError, UnicodeDecodeError) as error:
-        why = error.strerror if isinstance(error, OSError) else "is no text in UTF-8"
+        why = error.strerror if isinstance(error, OSError) else "is not UTF-8 text"
         attributes.wrong(f"{file} cannot be read: {why}", "file")
     except ValueError as error:
         attributes.wrong(str(error), "file")
@@ -226,7 +229,7 @@ def _leaves(name: str, value: Any, attributes: Attributes, named: bool) -> Itera
         if named:
             yield name, value
         else:
-            text = f'is {value!r}, which needs a name; write param="NAME", or a mapping of names to values'
+            text = f'requires a name for {value!r}; write param="NAME", or a mapping of names to values'
             attributes.wrong(text)
         return
     for key, inner in value.items():
@@ -235,4 +238,4 @@ def _leaves(name: str, value: Any, attributes: Attributes, named: bool) -> Itera
         elif isinstance(key, str):
             yield from _leaves(joined(name, key), inner, attributes, True)
         else:
-            attributes.wrong(f"has the name {key!r}, which is no text; put it in quotes")
+            attributes.wrong(f"invalid name {key!r}; put it in quotes")

@@ -66,7 +66,7 @@ def namespace_of(attributes: Attributes, scope: Scope) -> str | None:
         return None
     if namespace is None or (namespace and not namespace.startswith(PRIV_NAME)):
         return namespace
-    attributes.wrong(f"is {namespace!r}; write a namespace such as arm", "ns")
+    attributes.wrong(f"invalid namespace {namespace!r}; expected a name such as arm", "ns")
     return None
 
 
@@ -89,7 +89,7 @@ def read_env(tag: Tag, scope: Scope) -> None:
     attributes.tell_unknown(ENV)
     name, value = attributes.required("name"), attributes.required("value")
     if name == "":
-        attributes.wrong("is empty; write a variable's name", "name")
+        attributes.wrong("must not be empty; write the name of a variable", "name")
     if name and value is not None:
         scope.env[name] = value
 
@@ -100,11 +100,11 @@ def read_test(launch: Launch, tag: Tag, scope: Scope) -> None:
     attributes.tell_unknown(TEST)
     for name in _NOT_FOR_TESTS:
         if name in tag.attributes:
-            attributes.wrong("is nothing that a <test> has; remove it", name)
+            attributes.wrong("unknown attribute of <test>; remove it", name)
     test_name = attributes.required("test-name")
     limit = attributes.number("time-limit", 0.0) if tag.attributes.get("time-limit") else DEFAULT_TIME_LIMIT_S
     if limit == 0:
-        attributes.wrong("is 0; write a number of seconds", "time-limit")
+        attributes.wrong("must be greater than 0 s", "time-limit")
     retry = attributes.number("retry", 0) if tag.attributes.get("retry") else 0
     node = _node(launch, attributes, scope, attributes.optional("name") or test_name)
     if node is not None and test_name is not None:
@@ -124,7 +124,9 @@ def _node(launch: Launch, attributes: Attributes, scope: Scope, name: str | None
     """A node, with what stands inside it; None when it is not known what it is or what it is called."""
     tag = attributes.tag
     if name is not None and (not name.strip() or "/" in name):
-        attributes.wrong(f"is {name!r}; write a name without a namespace, and ns= for the namespace", "name")
+        attributes.wrong(
+            f"invalid node name {name!r}; write a name without a namespace, and ns= for the namespace", "name"
+        )
         name = None
     elif name is not None and not is_legal_name(name):
         attributes.remark(f"{name!r} is not a legal name of a node")
@@ -152,7 +154,7 @@ def _read_children(launch: Launch, tag: Tag, inner: Scope, params: Scope) -> Non
         kind = child.name.lower()
         if kind not in _IN_NODES:
             hint = did_you_mean(kind, _IN_NODES, before=", ", form="<{}>")
-            attributes.remark(f"<{child.name}> means nothing in <{tag.name}>; it is ignored{hint}", is_error=True)
+            attributes.remark(f"<{child.name}> is not valid in <{tag.name}>; it is ignored{hint}", is_error=True)
         elif not attributes.counts():
             continue
         elif kind == "remap":
@@ -184,10 +186,10 @@ def _record(attributes: Attributes, inner: Scope, name: str, namespace: str) -> 
     package, node_type = attributes.required("pkg"), attributes.required("type")
     for field, value in (("pkg", package), ("type", node_type)):
         if value is not None and not value.strip():
-            attributes.wrong("is empty; write the node's package and type", field)
+            attributes.wrong("must not be empty; write the package and the type of the node", field)
     respawn, required = attributes.flag("respawn"), attributes.flag("required")
     if respawn and required:
-        attributes.wrong("has both respawn and required; a required node ends the run, so it cannot come back")
+        attributes.wrong("respawn cannot be combined with required, because the end of a required node ends the run")
     words = {field: _word(attributes, field) for field in _WORDS}
     args, delay = attributes.optional("args"), attributes.number("respawn_delay", 0.0)
     if not (package or "").strip() or not (node_type or "").strip():
@@ -213,7 +215,7 @@ def _record(attributes: Attributes, inner: Scope, name: str, namespace: str) -> 
 def _word(attributes: Attributes, name: str) -> str | None:
     value = attributes.optional(name)
     if value and value not in _WORDS[name]:
-        attributes.wrong(f"is {value!r}; write one of {', '.join(_WORDS[name])}", name)
+        attributes.wrong(f"must be one of {', '.join(_WORDS[name])}, not {value!r}", name)
     return value or None
 
 
@@ -272,7 +274,7 @@ class _Reader:
         for name in args if is_read else ():
             if name not in scope.declared:
                 hint = did_you_mean(name, scope.declared, before=", ")
-                text = f"has no argument {name!r}; {name}:={args[name]} is ignored{hint}"
+                text = f"unknown argument {name!r}; {name}:={args[name]} is ignored{hint}"
                 self._launch.remarks.append(LaunchRemark(text, file, 0))
         for error in _names_twice(self._launch.nodes):
             self._findings.mistakes.add(error)
@@ -291,7 +293,7 @@ class _Reader:
             return False
         if file not in self._launch.files:
             for arg in unused_arguments(tag):
-                text = f"nothing uses the argument {arg.attributes['name']!r}; remove it, or use $(arg ...)"
+                text = f"unused argument {arg.attributes['name']!r}; remove it, or use $(arg ...)"
                 self._launch.remarks.append(arg.remark(text, before_runs=False))
         self._launch.files.append(file)
         if Attributes(tag, scope).counts() and tag.attributes.get("deprecated"):
@@ -310,7 +312,7 @@ class _Reader:
             read_tag, attributes = self._tags.get(tag.name), Attributes(tag, scope)
             if read_tag is None:
                 hint = did_you_mean(tag.name, self._tags, before=", ", form="<{}>")
-                attributes.remark(f"<{tag.name}> is not known; it is ignored{hint}", is_error=True)
+                attributes.remark(f"unknown tag <{tag.name}>; it is ignored{hint}", is_error=True)
             elif attributes.counts():
                 read_tag(tag, scope)
             elif attributes.failed and tag.name == "arg":
@@ -335,7 +337,7 @@ class _Reader:
         if name is None:
             return
         if value is not None and default is not None:
-            attributes.wrong(f"{name} has both a value and a default; leave one of them out")
+            attributes.wrong(f"value cannot be combined with default in {name}; leave one of them out")
             default = None
         try:
             scope.declare_arg(name, value, default)
@@ -353,7 +355,7 @@ class _Reader:
         """There is nothing to clear at the start of a run, but what is written must make sense."""
         wanted = bool(attributes.tag.attributes.get("clear_params")) and attributes.flag("clear_params")
         if wanted and namespace is None and not attributes.failed:
-            attributes.wrong("needs a namespace to clear; write ns= too", "clear_params")
+            attributes.wrong("requires ns=, the namespace to clear", "clear_params")
 
     def _include(self, tag: Tag, scope: Scope) -> None:
         attributes = Attributes(tag, scope)
@@ -366,7 +368,7 @@ class _Reader:
         if self._depth == LAUNCH_INCLUDES_DEEP:
             self._too_deep = True
             attributes.wrong(
-                f"is the {LAUNCH_INCLUDES_DEEP}th include inside another; does a file include itself?", "file"
+                f"is nested {LAUNCH_INCLUDES_DEEP} includes deep; check for a file that includes itself", "file"
             )
             return
         file = Path(name or "")
@@ -388,7 +390,7 @@ class _Reader:
         for child in tag.children:
             attributes, kind = Attributes(child, scope), child.name.lower()
             if kind not in ("arg", "env"):
-                attributes.remark(f"<{child.name}> means nothing in <include>; it is ignored", is_error=True)
+                attributes.remark(f"<{child.name}> is not valid in <include>; it is ignored", is_error=True)
             elif not attributes.counts():
                 continue
             elif kind == "env":
@@ -399,7 +401,7 @@ class _Reader:
                 self._arg(child, inner, scope)
                 name = child.attributes.get("name")
                 if name is not None and attributes.resolved(name) not in (None, *inner.args):
-                    attributes.wrong("needs a value to pass; write value=")
+                    attributes.wrong("missing value to pass; write value=")
 
     def _read_included(self, attributes: Attributes, file: Path, inner: Scope) -> bool:
         """Read an included file; whether it is one that can be read."""

@@ -28,7 +28,7 @@ def as_namespace(name: str) -> str:
         ValueError: it begins with "~".
     """
     if name.startswith(PRIV_NAME):
-        raise ValueError(f"{name!r} is private, which a namespace cannot be")
+        raise ValueError(f"invalid namespace {name!r}; a namespace cannot be private")
     name = name if name.startswith(SEP) else SEP + name
     return name if name.endswith(SEP) else name + SEP
 
@@ -120,7 +120,7 @@ class Scope:
         names = canonicalize_name(source), canonicalize_name(target)
         for which, name in zip(("from", "to"), names, strict=True):
             if not name or not is_legal_name(name):
-                raise ValueError(f"{which!r} is {name!r}; write a ROS name")
+                raise ValueError(f"invalid {which!r} {name!r}; expected a ROS name")
         self._remaps.pop(names[0], None)
         self._remaps[names[0]] = names[1]
 
@@ -147,12 +147,12 @@ class Scope:
         if name not in self.declared:
             self.declared.append(name)
         elif not self.takes_all_args:
-            raise ValueError(f"the argument {name!r} is declared already; remove one of the two tags")
+            raise ValueError(f"the argument {name!r} is already declared; remove one of the two tags")
         if value is not None:
             if name in self.args and not self.takes_all_args:
                 raise ValueError(
-                    f"the argument {name!r} was given from outside, but has a fixed value; write default= instead of"
-                    " value=, or do not give it"
+                    f"the argument {name!r} has a fixed value and cannot be set from outside; write default= "
+                    "instead of value=, or do not set it"
                 )
             self.args[name] = value
         elif default is not None:

@@ -15,8 +15,8 @@ from cfepy.reading.input_limits import SUBSTITUTED_CHARACTERS, SUBSTITUTED_IN_AL
 from rospy_shim.roslaunch.values import converted
 from rospy_shim.types.expression import MATH, ExpressionError, plain_text, value_of
 
-_SHORTER = "does an argument hold itself several times? Make it shorter"
-_TOO_LONG = f"the text becomes longer than {SUBSTITUTED_CHARACTERS:,} characters; {_SHORTER}"
+_SHORTER = "check for an argument that contains itself, or make it shorter"
+_TOO_LONG = f"the text must have at most {SUBSTITUTED_CHARACTERS:,} characters; {_SHORTER}"
 _SHOWN = 200  # characters of an expression in an error
 _WORDS = {"true": True, "false": False}
 COMMANDS = ("find", "env", "optenv", "dirname", "anon", "arg")
@@ -43,7 +43,7 @@ def evaluate(text: str, functions: Mapping[str, Any], arguments: Mapping[str, An
     """
     shown = text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
     if "__" in text:
-        raise SubstitutionError(f"$(eval {shown}) has two underscores in a row, which are not allowed there")
+        raise SubstitutionError(f"$(eval {shown}) must not contain two underscores in a row")
     try:
         return plain_text(value_of(text.strip(), {**arguments, **MATH, **_WORDS, **functions}))
     except ExpressionError as error:
@@ -51,7 +51,7 @@ def evaluate(text: str, functions: Mapping[str, Any], arguments: Mapping[str, An
     except SubstitutionError:
         raise
     except Exception as error:
-        raise SubstitutionError(f"$(eval {shown}) has no value: {type(error).__name__}: {error}") from None
+        raise SubstitutionError(f"cannot evaluate $(eval {shown}): {type(error).__name__}: {error}") from None
 
 
 UNKNOWN = "\0unknown"
@@ -136,7 +136,9 @@ class Substitutions:
         if len(text) > SUBSTITUTED_CHARACTERS:
             raise SubstitutionError(_TOO_LONG)
         if self.world.made[0] > SUBSTITUTED_IN_ALL:
-            raise SubstitutionError(f"more than {SUBSTITUTED_IN_ALL:,} characters are made by the launch; {_SHORTER}")
+            raise SubstitutionError(
+                f"substitutions of the launch file make more than {SUBSTITUTED_IN_ALL:,} characters; {_SHORTER}"
+            )
         return text
 
     def _replace(self, match: re.Match[str], text: str, commands: tuple[str, ...]) -> str:
@@ -148,7 +150,9 @@ class Substitutions:
         if not end or not inside:
             return match[0]  # never closed, or empty: plain text
         if command not in COMMANDS:
-            raise SubstitutionError(f"$({inside}) is not known; known are {', '.join(COMMANDS)}, and eval alone")
+            raise SubstitutionError(
+                f"unknown substitution $({inside}); known are {', '.join(COMMANDS)}, and eval alone"
+            )
         if command not in commands:
             return match[0]
         return self._made(command, arguments, inside)
@@ -174,7 +178,7 @@ class Substitutions:
     def _find(self, package: str) -> str:
         folder = self.world.find(package)
         if folder is None:
-            text = f"there is no package {package!r}; put it beside the launch file's package, or on ROS_PACKAGE_PATH"
+            text = f"unknown package {package!r}; put it next to the package of the launch file, or on ROS_PACKAGE_PATH"
             raise SubstitutionError(text)
         return str(folder)
 

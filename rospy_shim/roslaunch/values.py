@@ -29,12 +29,12 @@ def converted(text: str, type_name: str) -> Any:
     """
     kind = type_name.lower()
     if kind not in TYPES:
-        raise ValueError(f"there is no type {type_name!r}; known are {', '.join(TYPES)}")
+        raise ValueError(f"unknown type {type_name!r}; known are {', '.join(TYPES)}")
     try:
         return _CONVERSIONS[kind](text)
     except ValueError as error:
         if kind in ("int", "double"):
-            raise ValueError(f"is {text!r}, which is no number of type {kind}") from None
+            raise ValueError(f"must be a number of type {kind}, not {text!r}") from None
         raise error
 
 
@@ -46,7 +46,7 @@ def truth(text: str) -> bool:
     """
     word = text.lower().strip()
     if word not in _TRUTH:
-        raise ValueError(f"is {text!r}; write true or false")
+        raise ValueError(f"must be true or false, not {text!r}")
     return _TRUTH[word]
 
 
@@ -77,7 +77,7 @@ def _angle(name: str, value: Callable[[str], float]) -> Callable[[Any, Any], flo
             return value(text)
         except Exception as error:
             what = error.msg if isinstance(error, SyntaxError) else str(error)
-            told = f"has {text[:60]!r}, which is no angle: {what}; write {name}(NUMBER)"
+            told = f"has an invalid angle {text[:60]!r}: {what}; write {name}(NUMBER)"
             raise YamlError(told, node.start_mark.line + 1) from None
 
     return construct
@@ -98,7 +98,7 @@ def _auto(text: str) -> Any:
 def _plain_yaml(text: str) -> Any:
     value = from_yaml(text)
     if value is None:
-        raise ValueError("is empty; a parameter needs a value")
+        raise ValueError("must not be empty")
     return value
 
 

@@ -110,7 +110,7 @@ def value_of(text: str, names: Mapping[str, Any]) -> Any:
         Exception: whatever Python raises for it, such as ZeroDivisionError.
     """
     if len(text) > EXPRESSION_CHARACTERS:
-        raise ExpressionError(f"has {len(text):,} characters, the limit is {EXPRESSION_CHARACTERS:,}; {_TOO_MUCH}")
+        raise ExpressionError(f"must have at most {EXPRESSION_CHARACTERS:,} characters, not {len(text):,}; {_TOO_MUCH}")
     try:
         return _Interpreter(names).value(parsed(text, mode="eval").body)
     except (RecursionError, MemoryError, TooDeepError):
@@ -129,10 +129,10 @@ def plain_text(value: Any) -> str:
 
 def _check_printable(value: Any) -> None:
     if isinstance(value, set) and len(value) > 1:
-        raise ExpressionError("makes a text of a set, whose order is any; write sorted(...)")
+        raise ExpressionError("converts a set, which has no order, to text; write sorted(...)")
     if not isinstance(value, (*_SIMPLE, int, str, list, tuple, dict, set, range, slice)):
-        what = "what can be gone through once" if isinstance(value, Iterator) else type(value).__name__
-        raise ExpressionError(f"makes a text of {what}; write a call, or list(...) around it")
+        what = "an iterator" if isinstance(value, Iterator) else type(value).__name__
+        raise ExpressionError(f"converts {what} to text; write a call, or list(...) around it")
     if isinstance(value, (list, tuple, set, dict)):
         for each in (part for pair in value.items() for part in pair) if isinstance(value, dict) else value:
             _check_printable(each)
@@ -185,7 +185,7 @@ class _Interpreter:
         evaluate = self._kinds.get(type(node))
         if evaluate is None:
             what = type(node).__name__
-            raise ExpressionError(f"has {_said(node)}, which expressions in files cannot have ({what})")
+            raise ExpressionError(f"has {_said(node)}, which is not allowed in expressions in files ({what})")
         if self._depth >= EXPRESSION_DEPTH:
             raise _too_deep()
         self._depth += 1
@@ -256,7 +256,7 @@ class _Interpreter:
 
     def _constant(self, node: ast.Constant) -> Any:
         if isinstance(node.value, bytes) or node.value is ...:
-            raise ExpressionError(f"has {_said(node)}, which expressions in files cannot have")
+            raise ExpressionError(f"has {_said(node)}, which is not allowed in expressions in files")
         return node.value
 
     def _name(self, node: ast.Name) -> Any:
@@ -288,7 +288,7 @@ class _Interpreter:
         left, right = self.value(node.left), self.value(node.right)
         make = _BINARY.get(type(node.op))
         if make is None:
-            raise ExpressionError(f"has {_said(node)}, whose operator expressions in files cannot have")
+            raise ExpressionError(f"has {_said(node)}, whose operator is not allowed in expressions in files")
         self._foresee(type(node.op), left, right)
         return make(left, right)
 
@@ -307,7 +307,9 @@ class _Interpreter:
                     self._allow(self._size(many) * max(0, times))
         elif kind is ast.Mod and isinstance(left, str):
             if len(left) > EXPRESSION_CHARACTERS or _PERCENT_WIDTH.search(left):
-                raise ExpressionError("formats with a name or too large a width; write %s, or widths below 10,000")
+                raise ExpressionError(
+                    "formats with a name or a width that is too large; write %s, or widths below 10,000"
+                )
             for each in right if isinstance(right, tuple) else (right,):
                 self._repr(each)
 
@@ -380,7 +382,7 @@ class _Interpreter:
             self._names[target.id] = value
             return
         if not isinstance(target, (ast.Tuple, ast.List)):
-            raise ExpressionError(f"has {_said(target)} as a variable; write names")
+            raise ExpressionError(f"has {_said(target)} as a variable; only names are allowed")
         values = self._taken(value)
         if len(values) != len(target.elts):
             raise ValueError(f"{len(values)} values for {len(target.elts)} variables")
@@ -413,7 +415,7 @@ class _Interpreter:
 
         for _, field, form, _ in Formatter().parse(text):
             if field is not None and re.fullmatch(r"\w*", field) is None:
-                raise ExpressionError(f"formats {_short(field)!r}; name a value, and nothing inside it")
+                raise ExpressionError(f"formats {_short(field)!r}; name a value without attributes or items")
             if form and ("{" in form or _WIDTH.search(form)):
                 raise ExpressionError(f"formats with {_short(form)!r}; write widths below 10,000")
         for each in (*values, *named.values()):
@@ -425,7 +427,7 @@ class _Interpreter:
 
     def _called(self, node: ast.Call) -> Any:
         if any(each.arg is None for each in node.keywords):
-            raise ExpressionError(f"has {_said(node)}, where ** cannot stand")
+            raise ExpressionError(f"has {_said(node)}; ** is not allowed there")
         if isinstance(node.func, ast.Attribute):
             value, name = self.value(node.func.value), node.func.attr
             return self._method(value, name, *self._given(node))
@@ -453,7 +455,7 @@ class _Interpreter:
         kind: type = type(value)
         if name not in _METHODS.get(kind, ()):
             known = ", ".join(sorted(_METHODS.get(kind, ()))) or "none"
-            raise ExpressionError(f"calls {name} of a {kind.__name__}, which expressions cannot; they can: {known}")
+            raise ExpressionError(f"calls {name} of a {kind.__name__}, which is not allowed; allowed are {known}")
         if name == "format":
             return self._fill(value, values, named)
         if name in ("center", "ljust", "rjust", "zfill") and values and isinstance(values[0], int):
@@ -547,12 +549,12 @@ class _Interpreter:
     def _counted(self, *numbers: Any) -> None:
         """What is foreseen of n!, and of choices out of n."""
         if any(isinstance(each, int) and each > _LARGEST_COUNT for each in numbers):
-            raise ExpressionError(f"counts choices of more than {_LARGEST_COUNT:,}; {_TOO_MUCH}")
+            raise ExpressionError(f"counts combinations of more than {_LARGEST_COUNT:,}; {_TOO_MUCH}")
 
     def _product(self, values: Any, *, start: Any = 1) -> None:
         """What is foreseen of a product; what is no list can be gone through once, so it is not looked at here."""
         if not isinstance(values, (list, tuple, set)):
-            raise ExpressionError("multiplies what is no list; write list(...) around it")
+            raise ExpressionError("multiplies a value that is not a list; write list(...) around it")
         self._allow_bits(sum(each.bit_length() for each in (start, *values) if isinstance(each, int)))
 
 

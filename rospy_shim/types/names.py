@@ -39,7 +39,7 @@ def namespace_of(name: str) -> str:
         ValueError: an empty or a relative name.
     """
     if not name:
-        raise ValueError("name is empty: give a resolved name such as /arm/joint_states")
+        raise ValueError("name must not be empty; give a resolved name such as /arm/joint_states")
     head = name.rstrip(SEP).rpartition(SEP)[0]
     return head + SEP
 

@@ -261,7 +261,7 @@ def test_what_dies_beside_a_mission_is_told(tmp_path: Path, capsys: pytest.Captu
 
 
 def test_a_mission_does_not_fly_beside_itself() -> None:
-    with pytest.raises(UsageError, match="the same processor twice"):
+    with pytest.raises(UsageError, match="is already the processor of this mission"):
         cfepy.run("pair", seconds=1, beside=["pair"])
 
 

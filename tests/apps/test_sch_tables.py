@@ -92,7 +92,7 @@ def test_the_longest_message_is_good() -> None:
 def test_definitions_that_cannot_be() -> None:
     with pytest.raises(UsageError, match="100"):
         schedule_image({100: [activity(1)]})
-    with pytest.raises(UsageError, match="room for 5"):
+    with pytest.raises(UsageError, match="at most 5 items"):
         schedule_image({0: [activity(1)] * 6})
     with pytest.raises(UsageError, match="begin with 1"):
         message_image({0: init(0x1808, 8)})

@@ -61,9 +61,9 @@ def test_what_is_left_of_a_bag_that_is_cut_off(here: Path, capsys: Capture) -> N
 @pytest.mark.parametrize(
     ("words", "file", "why"),
     [
-        ("convert drive.bag", "drive.mcap", "is there already; say with -o what is to be written"),
-        ("recover drive.bag", "drive.recovered.bag", "is there already; say with -o what is to be written"),
-        ("recover drive.bag -o drive.bag", "drive.bag", "is the damaged recording itself; give another name"),
+        ("convert drive.bag", "drive.mcap", "already exists; name another output file with -o"),
+        ("recover drive.bag", "drive.recovered.bag", "already exists; name another output file with -o"),
+        ("recover drive.bag -o drive.bag", "drive.bag", "must not be the damaged recording itself; give another name"),
     ],
 )
 def test_nothing_is_written_over_unasked(words: str, file: str, why: str, here: Path, capsys: Capture) -> None:
@@ -103,8 +103,8 @@ def test_other_commands_read_mcap_files_as_they_do_bags(here: Path, capsys: Capt
     ("words", "why"),
     [
         (["info", "none.bag"], "none.bag: could not be read: No such file"),
-        (["convert", "drive.txt"], "drive.txt: ends neither with .bag nor with .mcap"),
-        (["convert", "drive.bag", "--compression", "bz2"], "--compression: a file .mcap has no bz2"),
+        (["convert", "drive.txt"], "drive.txt: must end with .bag or .mcap"),
+        (["convert", "drive.bag", "--compression", "bz2"], "--compression: unknown compression bz2 for a file .mcap"),
         (
             ["recover", "drive.bag", "-o", "no/such/folder.bag"],
             "no/such/folder.bag: --output: could not be written: No such",

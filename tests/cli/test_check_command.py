@@ -30,13 +30,13 @@ def test_every_problem_is_a_line(
     first, second, count = capsys.readouterr().out.splitlines()
     assert first.startswith("startup.scr:2: ")
     assert "has no function Quite; did you mean Quiet?" in first
-    assert second == "startup.scr:3: the name 'QUIET' is taken by line 1; give this one another name"
+    assert second == "startup.scr:3: the name 'QUIET' is already taken by line 1; choose another name"
     assert count == "2 problems found"
 
 
 def test_no_such_mission(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", str(tmp_path / "nothing")]) == 2
-    assert "no startup script" in capsys.readouterr().err
+    assert "unknown mission" in capsys.readouterr().err
 
 
 def test_warnings_stand_apart_and_do_not_fail(
@@ -49,7 +49,9 @@ def test_warnings_stand_apart_and_do_not_fail(
     monkeypatch.chdir(folder)
     script.write_text(f"{first}\n!", encoding="utf-8")
     assert main(["check", "."]) == 0
-    warning = "startup.scr:1: warning: the priority 'high' is read as 0; write a number, such as 60 or 0x3C"
+    warning = (
+        "startup.scr:1: warning: invalid priority 'high', which cFE reads as 0; write a number, such as 60 or 0x3C"
+    )
     assert capsys.readouterr().out.splitlines() == [warning, "1 warning found"]
     script.write_text(f"{first}\n{second}\n{second}\n!", encoding="utf-8")
     assert main(["check", "."]) == 1

@@ -158,8 +158,8 @@ def test_with_a_script_a_board_and_a_schedule(tmp_path: Path, capsys: pytest.Cap
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["--json", "x"], "--json: does not go with --check-determinism"),
-        (["--realtime"], "--realtime: does not go with --check-determinism"),
+        (["--json", "x"], "--json: cannot be combined with --check-determinism"),
+        (["--realtime"], "--realtime: cannot be combined with --check-determinism"),
         pytest.param(["--board", "none"], "none", marks=pytest.mark.slow),
     ],
 )
@@ -173,14 +173,14 @@ def test_ordered_sets_are_true_or_false(tmp_path: Path, capsys: pytest.CaptureFi
     folder = write_mission(tmp_path, "!\n", mission_yaml="ordered_sets: 3\nnodes: {A: {ordered_sets: maybe}}\n")
     assert main(["check", folder]) == 1
     shown = "".join(capsys.readouterr())
-    assert "mission.yaml:1: ordered_sets: is 3; write true or false" in shown
-    assert "mission.yaml:2: nodes.A.ordered_sets: is 'maybe'; write true or false" in shown
+    assert "mission.yaml:1: ordered_sets: must be true or false, not 3" in shown
+    assert "mission.yaml:2: nodes.A.ordered_sets: must be true or false, not 'maybe'" in shown
 
 
 def test_impossible_numbers_of_runs(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["run", "lab", "--check-determinism", "1"])
-    assert "'1' is not a number of runs; give 2 to 64" in capsys.readouterr().err
+    assert "invalid number of runs '1'; expected 2 to 64" in capsys.readouterr().err
 
 
 @pytest.mark.slow

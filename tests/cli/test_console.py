@@ -79,13 +79,13 @@ def test_what_is_wrong_is_told_and_the_session_goes_on(console: Console) -> None
     )
     assert status == 1
     for text in (
-        "no command is called CFE_ES_NOPE; did you mean CFE_ES_NOOP or ",
-        "'0' is not a number of seconds; give more than 0 ",
-        "until what? as in: until event CFE_ES 3",
-        "no telemetry packet is called NO_SUCH",
+        "unknown command CFE_ES_NOPE; did you mean CFE_ES_NOOP or ",
+        "invalid number of seconds '0'; expected more than 0 ",
+        "missing condition; write for instance: until event CFE_ES 3",
+        "unknown telemetry packet NO_SUCH",
         "cannot be read: No such file or directory",
-        "'x' is not a factor",
-        "'bus' is no thing to expect; there are event, tlm, app, file, console",
+        "invalid factor 'x'",
+        "invalid condition 'bus'; expected event, tlm, app, file, console",
     ):
         assert f"FAILED {text}" in output
     assert "OPERATIONAL" in output
@@ -175,15 +175,15 @@ def test_a_computer_elsewhere(console: Console, monkeypatch: pytest.MonkeyPatch,
     status, output = console(*words, lines=lines)
     assert status == 1
     assert "commands go to 127.0.0.1:5000, telemetry comes to port 7000" in output
-    assert "as by TO_LAB_OUTPUT_ENABLE dest_IP=127.0.0.1" in output
+    assert "until you enable it: TO_LAB_OUTPUT_ENABLE dest_IP=127.0.0.1" in output
     assert [(host, port, get_msg_id(packet), get_fcn_code(packet)) for host, port, packet in sky.sent] == [
         ("127.0.0.1", 5000, 0x1806, 0)
     ]
     assert "APP 3 INFORMATION: all is well" in output
     assert "expect event APP 3 within 60\n" in output
     assert "0x0999  n=1" in output
-    assert output.count("a computer elsewhere shows its packets alone") == 2
-    assert "a computer elsewhere does not stand still" in output
+    assert output.count("a remote target can only be checked by its packets") == 2
+    assert "a remote target cannot be paused" in output
     assert " send CFE_ES_NOOP\n" in script.read_text(encoding="utf-8")
 
 
@@ -192,20 +192,26 @@ def test_nobody_listens_and_to_lab_is_asked(console: Console, monkeypatch: pytes
     status, output = console("--udp", "127.0.0.1:9", "--enable", lines="")
     assert status == 1
     assert len(sky.sent) == 1
-    assert "send TO_LAB_OUTPUT_ENABLE dest_IP=127.0.0.1: 127.0.0.1:9: nobody listens there" in output
+    assert "send TO_LAB_OUTPUT_ENABLE dest_IP=127.0.0.1: 127.0.0.1:9: no receiver is listening" in output
 
 
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        ([], "say what it is for: cfepy console MISSION, or cfepy console --udp HOST:PORT"),
-        (["lab", "--udp", "127.0.0.1"], "say what it is for"),
-        (["lab", "--listen", "7000"], "--listen: is for a computer elsewhere"),
-        (["lab", "--mission", "lab"], "--mission: a mission has names of its own"),
-        (["lab", "--port", "1234=0"], "--port: without --realtime"),
-        (["--udp", "127.0.0.1", "--seed", "7"], "--seed: 127.0.0.1 is a computer, which is not flown"),
-        (["--udp", "127.0.0.1", "--realtime"], "--realtime: 127.0.0.1 is a computer"),
-        (["--udp", "127.0.0.1", "--listen", "no place"], "--listen: 'no place' is no address of this computer"),
+        ([], "requires one target: cfepy console MISSION, or cfepy console --udp HOST:PORT"),
+        (["lab", "--udp", "127.0.0.1"], "requires one target"),
+        (["lab", "--listen", "7000"], "--listen: only valid with --udp"),
+        (["lab", "--mission", "lab"], "--mission: only valid with --udp"),
+        (["lab", "--port", "1234=0"], "--port: requires --realtime"),
+        (["--udp", "127.0.0.1", "--seed", "7"], "--seed: only valid for a mission, and 127.0.0.1 is a remote target"),
+        (
+            ["--udp", "127.0.0.1", "--realtime"],
+            "--realtime: only valid for a mission, and 127.0.0.1 is a remote target",
+        ),
+        (
+            ["--udp", "127.0.0.1", "--listen", "no place"],
+            "--listen: invalid address 'no place'; expected an address of this computer",
+        ),
         (["no_such_mission"], "no_such_mission"),
         (["lab", "--save-script", "/none/x"], "--save-script: "),
     ],

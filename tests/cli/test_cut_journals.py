@@ -44,7 +44,7 @@ def test_replay_of_a_journal_that_is_cut_off_fails_and_says_how_far_it_was_compa
         said = capsys.readouterr().err
         assert status
         assert "the same run as cut.cfepy\n" not in said
-        assert status == 2 or "nothing was compared with cut.cfepy" in said or "the journal is cut off" in said
+        assert status == 2 or "nothing was compared with cut.cfepy" in said or "the journal is truncated" in said
 
 
 def test_replay_before_the_first_checkpoint_is_no_same_run(tmp_path: Path, recorded: bytes, capsys: Capture) -> None:
@@ -56,14 +56,14 @@ def test_replay_before_the_first_checkpoint_is_no_same_run(tmp_path: Path, recor
 def test_diff_with_a_journal_that_is_cut_off_fails(recorded: bytes, capsys: Capture) -> None:
     Path("cut.cfepy").write_bytes(recorded[:-20])
     assert main(["diff", "whole.cfepy", "cut.cfepy"]) == 1
-    assert "cut.cfepy is cut off" in capsys.readouterr().out
+    assert "cut.cfepy is truncated" in capsys.readouterr().out
     assert main(["diff", "whole.cfepy", "whole.cfepy"]) == 0
 
 
 def test_report_of_a_journal_that_is_cut_off_warns(recorded: bytes, capsys: Capture) -> None:
     Path("cut.cfepy").write_bytes(recorded[:-20])
     assert main(["report", "cut.cfepy", "-o", "page.html"]) == 1
-    assert "this may not be the run of cut.cfepy: the journal is cut off" in Path("page.html").read_text(
+    assert "this may not be the run of cut.cfepy: the journal is truncated" in Path("page.html").read_text(
         encoding="utf-8"
     )
 
@@ -75,7 +75,7 @@ def test_diff_of_two_empty_traces_is_no_same_run(
     for name in ("a", "b"):
         Path(name).touch()
     assert main(["diff", "a", "b"]) == 1
-    assert "nothing was compared" in capsys.readouterr().out
+    assert "nothing to compare" in capsys.readouterr().out
 
 
 def test_diff_tells_of_runs_with_one_trace_and_other_numbers(
@@ -90,4 +90,4 @@ def test_diff_tells_of_runs_with_one_trace_and_other_numbers(
     assert main(["diff", "0.cfepy", "1.cfepy"]) == 1
     out = capsys.readouterr().out
     assert "the same trace" in out
-    assert "the numbers of the report are others" in out
+    assert "but the numbers of the report differ" in out

@@ -173,7 +173,7 @@ def test_a_task_that_waits_for_ever_may_be_let(tmp_path: Path, capsys: pytest.Ca
     folder = missions.write(tmp_path / "pair", {"PAIR": missions.LOST_WAKE_UP})
     words = (folder, "--for", 0.8, "--seeds", 6, "--jobs", 1, "--shrink", 0, "--results", tmp_path / "results")
     assert explore(*words) == FOUND_PROBLEMS
-    assert "failure 1: stuck: PAIR: PAIR.pair.1.1 waits for ever for lock at pair.py:" in capsys.readouterr().out
+    assert "failure 1: stuck: PAIR: PAIR.pair.1.1 waits forever for lock at pair.py:" in capsys.readouterr().out
     assert explore(*words, "--no-stuck") == BAD_USAGE
     assert "no_stuck was false, is true" in capsys.readouterr().err
     assert explore(*words[:-2], "--no-stuck") == ENDED_WELL
@@ -191,8 +191,8 @@ def test_a_node_is_explored_by_itself(tmp_path: Path, capsys: pytest.CaptureFixt
 @pytest.mark.parametrize(
     ("words", "error"),
     [
-        (["/no/such/mission"], "no startup script"),
-        (["{late}", "lab"], "one mission at a time; 'lab' is one too many"),
+        (["/no/such/mission"], "unknown mission"),
+        (["{late}", "lab"], "unexpected 'lab'; expected one mission"),
         (["{late}", "--script", "/no/script"], "/no/script"),
         (["{late}", "--for", "0.7", "--jobs", "2", "--cluster", "tcp://127.0.0.1:1"], "--jobs"),
     ],

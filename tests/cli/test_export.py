@@ -128,14 +128,14 @@ def test_a_text_a_truth_and_bytes_in_csv(tmp_path: Path, capsys: pytest.CaptureF
     [
         (
             ["csv", *CAPTURE, "/joint_state"],
-            "there is no such topic or packet; did you mean /joint_states?",
+            "unknown topic or packet; did you mean /joint_states?",
         ),
-        (["csv", *CAPTURE, "/joint_states.nose"], "nose: no such field"),
-        (["csv", *CAPTURE, "CFE_ES_HK_TIM"], "no telemetry packet is called CFE_ES_HK_TIM"),
-        (["csv", *CAPTURE, "CFE_ES_MEMSTATS_TLM"], "CFE_ES_MEMSTATS_TLM: nothing was sent there"),
+        (["csv", *CAPTURE, "/joint_states.nose"], "nose: unknown field"),
+        (["csv", *CAPTURE, "CFE_ES_HK_TIM"], "unknown telemetry packet CFE_ES_HK_TIM"),
+        (["csv", *CAPTURE, "CFE_ES_MEMSTATS_TLM"], "CFE_ES_MEMSTATS_TLM: no message was sent there"),
         (["csv", *CAPTURE, "/phase", "-o", "/no/such/file.csv"], "/no/such/file.csv: --output: cannot be written"),
-        (["csv", *CAPTURE, "/phase", "--from-disk"], "--from-disk: is for the replay of a journal"),
-        (["parquet", *CAPTURE, "/phase", "-o", "-"], "--output: Parquet is no text"),
+        (["csv", *CAPTURE, "/phase", "--from-disk"], "--from-disk: only valid for a journal"),
+        (["parquet", *CAPTURE, "/phase", "-o", "-"], "--output: Parquet cannot be written to standard output"),
     ],
 )
 def test_bad_usage(words: list[str], why: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -147,7 +147,7 @@ def test_a_bag_is_not_flown_and_has_no_packets(
     sources: dict[str, list[str]], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["export", "csv", *sources["bag"], "CFE_ES_HK_TLM"]) == 2
-    assert "CFE_ES_HK_TLM is no topic" in capsys.readouterr().err
+    assert "CFE_ES_HK_TLM is not a topic" in capsys.readouterr().err
     assert main(["export", "csv", *sources["bag"], "/joint_stats"]) == 2
     assert "did you mean /joint_states?" in capsys.readouterr().err
     assert main(["export", "csv", *sources["bag"], "/phase", "--seed", "3"]) == 2

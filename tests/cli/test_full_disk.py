@@ -50,7 +50,7 @@ def test_without_memory_the_input_is_named(
 
     monkeypatch.setattr(entry, "_command", command)
     assert main(["tbl", "show", TABLE]) == 2
-    assert f"not enough memory for `cfepy tbl show {TABLE}`" in capsys.readouterr().err
+    assert f"out of memory in `cfepy tbl show {TABLE}`" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("words", [["boards"], ["tbl", "show", TABLE, "--json", "-"]], ids=("text", "json"))

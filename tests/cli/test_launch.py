@@ -33,7 +33,7 @@ def test_nodes_get_what_roslaunch_gives_them(write_launch: Launch, capsys: pytes
     assert printed(shown, "arm/talker") == [f"argv {argv} cwd scripts namespace /arm"]
     heard = [line.rpartition(": ")[2] for line in printed(shown, "arm/listener")]
     assert heard == ["heard hello 1", "heard hello 2"]
-    assert "launch: arm/talker has ended with exit status 0; it is required, so the run is over" in shown
+    assert "launch: arm/talker ended with exit status 0; it is required, so the run ends" in shown
     assert "/talk " in shown
 
 
@@ -50,7 +50,7 @@ def test_a_node_that_respawns(write_launch: Launch, capsys: pytest.CaptureFixtur
     assert main(["launch", file, "--for", "4"]) == 0
     shown = capsys.readouterr().out
     assert len(printed(shown, "talker")) == 4  # at 0.5 s, then every 1.1 s
-    assert shown.count("launch: talker has ended with exit status 0 and is started again") == 4
+    assert shown.count("launch: talker ended with exit status 0 and is restarted") == 4
 
 
 def test_what_cannot_run_is_left_out_with_a_note(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
@@ -58,16 +58,18 @@ def test_what_cannot_run_is_left_out_with_a_note(write_launch: Launch, capsys: p
     file = write_launch(f"{TALKER.format('', COUNT.format(1))}{missing}")
     assert main(["launch", file, "--quiet"]) == 0
     said = capsys.readouterr().err
-    assert f"{file}:1: node /driver is left out: package 'demo' has no file 'driver': a C++ node, or one" in said
-    assert f"{file}:2: node /other is left out: there is no package 'absent'" in said
+    assert (
+        f"{file}:1: node /driver is left out: package 'demo' has no file 'driver': a C++ node, or a missing one" in said
+    )
+    assert f"{file}:2: node /other is left out: unknown package 'absent'" in said
 
 
 @pytest.mark.parametrize(
     ("body", "said"),
     [
         ('<node pkg="demo" type="driver" name="driver" required="true"/>', "/driver is required, but package 'demo'"),
-        ('<node pkg="demo" type="driver" name="driver"/>', "has no node that can run here: "),
-        ("", "has no node that can run here: it has no <node>"),
+        ('<node pkg="demo" type="driver" name="driver"/>', "has no node that cfepy can run: "),
+        ("", "has no node that cfepy can run: it has no <node>"),
         ('<node pkg="demo" type="talker.py" name="t" args="\'"/>', '<node>: args="\'": No closing quotation'),
     ],
 )
@@ -90,7 +92,7 @@ def test_a_launch_file_by_its_package(
     assert main(["launch", "demo", "other.launch"]) == 2
     assert "demo other.launch: package 'demo' has no file 'other.launch'" in capsys.readouterr().err
     assert main(["launch", "dmo", "demo.launch"]) == 2
-    assert "dmo demo.launch: there is no package 'dmo'; did you mean demo?" in capsys.readouterr().err
+    assert "dmo demo.launch: unknown package 'dmo'; did you mean demo?" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("here", ["", "src", "src/stack/demo/scripts", "src/other"])
@@ -144,10 +146,10 @@ def test_even_a_short_run_is_one_of_the_nodes(write_launch: Launch, capsys: pyte
 @pytest.mark.parametrize(
     ("file", "text", "said"),
     [
-        ("node.py", "import rospy\n", "is a program and no mission; `cfepy node` runs"),
-        ("node", "#!/usr/bin/env python\n", "is a program and no mission"),
-        ("mission.yaml", "board: linux\n", "is neither a startup script nor a launch file"),
-        ("run.bag", "#ROSBAG V2.0\n!\0\0", "is neither a startup script nor a launch file"),
+        ("node.py", "import rospy\n", "is a program, not a mission; use `cfepy node`"),
+        ("node", "#!/usr/bin/env python\n", "is a program, not a mission"),
+        ("mission.yaml", "board: linux\n", "is not a startup script or a launch file"),
+        ("run.bag", "#ROSBAG V2.0\n!\0\0", "is not a startup script or a launch file"),
     ],
 )
 def test_what_is_no_mission(
@@ -161,10 +163,10 @@ def test_what_is_no_mission(
 
 def test_hints_at_what_was_meant(write_launch: Launch, demo: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", write_launch(TALKER.format("", "")), "n=3"]) == 2
-    assert "'n=3' is no argument for it; write NAME:=VALUE" in capsys.readouterr().err
+    assert "invalid argument 'n=3'; expected NAME:=VALUE" in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main(["node", str(demo / "scripts/talker.py"), "--xyzzy"])
-    assert "unrecognized arguments: --xyzzy; what the node itself is to get comes after --" in capsys.readouterr().err
+    assert "unrecognized arguments: --xyzzy; put the options of the node itself after --" in capsys.readouterr().err
 
 
 @pytest.mark.slow
@@ -183,7 +185,7 @@ def test_a_launch_file_where_a_mission_is_meant(write_launch: Launch, capsys: py
         row.split()[1:] for row in capsys.readouterr().out.splitlines()
     ]
     assert main(["mids", file, "--lock"]) == 2
-    assert "has no topics.lock" in capsys.readouterr().err
+    assert "cannot have a topics.lock" in capsys.readouterr().err
     assert main(["check", file]) == 0
     with_argument = write_launch(f'<arg name="n"/>{TALKER.format("", COUNT.format("$(arg n)"))}')
     capsys.readouterr()
@@ -196,7 +198,7 @@ def test_a_launch_file_where_a_mission_is_meant(write_launch: Launch, capsys: py
     assert main(["run", "lab", "--arg", "n:=1"]) == 2
     other = write_launch('<node pkg="demo" type="talker.py" name="a"/>\n<node pkg="none" type="x" name="b"/>')
     assert main(["check", other]) == 1
-    assert f"{other}:2: node /b is left out: there is no package 'none'" in capsys.readouterr().out
+    assert f"{other}:2: node /b is left out: unknown package 'none'" in capsys.readouterr().out
     assert main(["check", write_launch("<nod")]) == 1
     assert f"{other}:1: " in capsys.readouterr().out
 
@@ -250,8 +252,8 @@ URDF = """
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ('xyz="1 0 x"', "joint turn: xyz='1 0 x': give three numbers"),
-        ('xyz="1 0"', "joint turn: xyz='1 0': give three numbers"),
+        ('xyz="1 0 x"', "joint turn: xyz must be three numbers, not '1 0 x'"),
+        ('xyz="1 0"', "joint turn: xyz must be three numbers, not '1 0'"),
         ("<", "not well-formed"),
     ],
 )
@@ -265,7 +267,7 @@ def test_a_robot_description_with_a_mistake(
     )
     assert main(["launch", file]) == 1
     (line,) = printed(capsys.readouterr().out, "state")
-    assert "robot_description is no URDF: " in line
+    assert "robot_description is not a URDF: " in line
     assert said in line
 
 

@@ -82,9 +82,9 @@ def test_what_is_no_performance_data_has_no_picture(tmp_path: Path, capsys: pyte
     out = str(tmp_path / "x.json")
     log = str(DATA / "cfe_es_syslog.log")
     assert main(["log", log, "--perfetto", out]) == 2
-    assert "--perfetto: is for performance data, and this is the system log" in capsys.readouterr().err
+    assert "--perfetto: requires performance data; this file is the system log" in capsys.readouterr().err
     assert main(["log", log, log, "--perfetto", out]) == 2
-    assert "--perfetto: is for one file" in capsys.readouterr().err
+    assert "--perfetto: takes one file, not 2" in capsys.readouterr().err
 
 
 def test_a_bad_file_does_not_hide_the_good_ones(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -97,7 +97,7 @@ def test_a_bad_file_does_not_hide_the_good_ones(tmp_path: Path, capsys: pytest.C
     assert "CFE_TBL.CritReg" in out
     cannot_be_read, cut_off, table = err.splitlines()
     assert "nowhere: cannot be read" in cannot_be_read
-    assert "is cut off: record 40 has 5 of 8 bytes" in cut_off
+    assert "is truncated: record 40 has 5 of 8 bytes" in cut_off
     assert "cfepy tbl show" in table
 
 

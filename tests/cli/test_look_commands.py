@@ -47,7 +47,7 @@ def test_the_trace_is_filtered_by_time_task_and_topic(journal: Path, capsys: Cap
     assert main(["trace", str(journal), "--topic", "/nobody"]) == 0
     out, error = capsys.readouterr()
     assert out == ""
-    assert "nothing of that kind happened" in error
+    assert "no matching record in the trace" in error
 
 
 def test_a_ros_topic_is_named(tmp_path: Path, capsys: Capture) -> None:
@@ -101,11 +101,14 @@ def test_a_replay_that_is_another_run_is_told(journal: Path, tmp_path: Path, cap
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["trace", "JOURNAL", "--seed", "3"], "--seed: JOURNAL is a journal, which says that itself"),
-        (["report", "JOURNAL", "--for", "3"], "--for: JOURNAL is a journal"),
-        (["trace", "MISSION", "--from-disk"], "--from-disk: is for the replay of a journal"),
-        (["trace", "MISSION", "--perfetto", "x.json", "--from", "1"], "--from: is for the text"),
-        (["trace", "nowhere"], "nowhere: no startup script"),
+        (
+            ["trace", "JOURNAL", "--seed", "3"],
+            "--seed: only valid for a mission; the journal JOURNAL contains this setting",
+        ),
+        (["report", "JOURNAL", "--for", "3"], "--for: only valid for a mission; the journal JOURNAL"),
+        (["trace", "MISSION", "--from-disk"], "--from-disk: only valid for a journal"),
+        (["trace", "MISSION", "--perfetto", "x.json", "--from", "1"], "--from: cannot be combined with --perfetto"),
+        (["trace", "nowhere"], "nowhere: unknown mission"),
         (["report", "MISSION", "-o", "nowhere/page.html"], "nowhere/page.html: --output: cannot be written"),
         (["trace", "MISSION", "--perfetto", "nowhere/x.json"], "nowhere/x.json: --perfetto: cannot be written"),
         (["trace", "MISSION", "--schedule", "chess"], "chess"),

@@ -53,7 +53,7 @@ def test_nothing_of_the_example_is_left() -> None:
 def test_nothing_is_overwritten(capsys: pytest.CaptureFixture[str]) -> None:
     Path("thermal").mkdir()
     assert main(["new", "app", "thermal"]) == 2
-    assert "thermal: is there already" in capsys.readouterr().err
+    assert "thermal: already exists" in capsys.readouterr().err
     assert list(Path("thermal").iterdir()) == []
 
 

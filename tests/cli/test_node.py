@@ -55,8 +55,8 @@ def test_a_node_by_its_package(demo: Path, monkeypatch: pytest.MonkeyPatch, caps
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["no.py"], "no.py: there is no such script; give one, or a package and the name of a node in it"),
-        (["no_package", "node"], "no_package node: there is no package 'no_package'"),
+        (["no.py"], "no.py: script not found; give one, or a package and the name of a node in it"),
+        (["no_package", "node"], "no_package node: unknown package 'no_package'"),
     ],
 )
 def test_no_such_node(capsys: pytest.CaptureFixture[str], words: list[str], said: str) -> None:

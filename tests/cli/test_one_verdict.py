@@ -79,10 +79,10 @@ CASES = {
     "event that the script expects": Case(
         app("cfe.evs.send_event(7, 3, 'bad')"), script="expect event PROG 7 ERROR within 1\n"
     ),
-    "step": Case(QUIET, "there was no event of PROG", script="expect event PROG 7 within 0.5\n"),
-    "step that is not reached": Case(QUIET, "the run was over before", script="at 20 send CFE_ES_NOOP\n"),
+    "step": Case(QUIET, "no event of PROG was sent", script="expect event PROG 7 within 0.5\n"),
+    "step that is not reached": Case(QUIET, "the run ended earlier", script="at 20 send CFE_ES_NOOP\n"),
     "wait that never ends": Case(ROS + "    threading.Event().wait()\n", startup=NODE),
-    "wait that nobody can end": Case(app("cfe.os.bin_sem_take(cfe.os.bin_sem_create('NEVER', 0))"), "waits for ever"),
+    "wait that nobody can end": Case(app("cfe.os.bin_sem_take(cfe.os.bin_sem_create('NEVER', 0))"), "waits forever"),
     "not there": Case(
         QUIET, "OTHER could not be started", APP.replace("!", "CFE_APP, other, M, OTHER, 50, 8192, 0, 0;\n!")
     ),

@@ -214,7 +214,7 @@ def test_greenlet_that_is_not_installed(
 ) -> None:
     monkeypatch.setitem(sys.modules, "greenlet", None)
     assert main([*words[command], "--tasks", "greenlet"]) == 2
-    assert "--tasks: greenlet tasks need the library greenlet: pip install 'cfepy[fast]'" in capsys.readouterr().err
+    assert "--tasks: greenlet tasks require the library greenlet: pip install 'cfepy[fast]'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("way", LIBRARY)
@@ -222,7 +222,7 @@ def test_greenlet_that_is_not_installed_in_the_library(
     way: str, words: dict[str, list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "greenlet", None)
-    with pytest.raises(pilot.UsageError, match="greenlet tasks need the library greenlet"):
+    with pytest.raises(pilot.UsageError, match="greenlet tasks require the library greenlet"):
         LIBRARY[way](RunPlan((str(tmp_path),), tasks="greenlet"))
 
 
@@ -242,7 +242,7 @@ def test_faults_that_do_not_fit_or_never_strike(
     quick = ["--seeds", "1", "--jobs", "1", "--no-stuck"] if command == "explore" else []
     main([*words[command], *short, *quick, "--faults", str(plan)])
     said = capsys.readouterr().err
-    assert "no application is called NOBODY" in said
+    assert "unknown application NOBODY" in said
     assert "fault lost (" in said
     assert ") never happened: " in said
 
@@ -269,12 +269,15 @@ def test_a_script_with_a_mistake(
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (["topic", "list", "drive.bag"], "--seed: drive.bag is a bag, which is not flown"),
-        (["cmd", "127.0.0.1", "CFE_ES_NOOP"], "--seed: 127.0.0.1:1234 is a computer, which is not flown"),
-        (["tlm", "127.0.0.1"], "--seed: is for a mission, and none is named"),
-        (["console", "--udp", "127.0.0.1"], "--seed: 127.0.0.1 is a computer, which is not flown"),
-        (["param", "list", "capture"], "--seed: is for a mission that flies; say how long"),
-        (["trace", "run.cfepy"], "--seed: run.cfepy is a journal, which says that itself"),
+        (["topic", "list", "drive.bag"], "--seed: only valid for a mission, and drive.bag is a bag"),
+        (
+            ["cmd", "127.0.0.1", "CFE_ES_NOOP"],
+            "--seed: only valid for a mission, and 127.0.0.1:1234 is a remote target",
+        ),
+        (["tlm", "127.0.0.1"], "--seed: requires a mission, and none is named"),
+        (["console", "--udp", "127.0.0.1"], "--seed: only valid for a mission, and 127.0.0.1 is a remote target"),
+        (["param", "list", "capture"], "--seed: requires a mission that runs; say how long"),
+        (["trace", "run.cfepy"], "--seed: only valid for a mission; the journal run.cfepy contains this setting"),
     ],
 )
 def test_what_is_not_flown_takes_no_option_of_a_run(

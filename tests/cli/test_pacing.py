@@ -79,7 +79,7 @@ def test_an_answer_is_not_cut_in_two_by_what_its_calls_cost() -> None:
 
 @pytest.mark.parametrize("factor", [0, -1, float("nan")])
 def test_a_factor_that_makes_no_sense(factor: float) -> None:
-    with Kernel("thread") as kernel, pytest.raises(ValueError, match="more than 0"):
+    with Kernel("thread") as kernel, pytest.raises(ValueError, match="greater than 0"):
         Pacer(kernel, kernel.run, factor)
 
 

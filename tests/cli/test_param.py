@@ -38,7 +38,7 @@ def test_what_a_mission_starts_with(mission: str, capsys: pytest.CaptureFixture[
     assert said(capsys, "list", mission, "robot").split() == ["/robot/axes", "/robot/rate"]
     assert said(capsys, "get", mission, "/robot/rate") == "10\n"
     assert said(capsys, "dump", mission, "/robot") == "rate: 10\naxes:\n- x\n- y\n"
-    assert said(capsys, "get", mission, "/none", status=1) == "cfepy: there is no parameter /none\n"
+    assert said(capsys, "get", mission, "/none", status=1) == "cfepy: unknown parameter /none\n"
 
 
 def test_what_there_is_after_some_time(mission: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -49,7 +49,7 @@ def test_what_there_is_after_some_time(mission: str, capsys: pytest.CaptureFixtu
 
 def test_a_node_whose_name_only_its_script_knows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     mission = write_mission(tmp_path, STARTUP, n=NODE, mission_yaml="nodes: {N: {params: {gain: 1}}}\n")
-    assert "cfepy: N has parameters of its own" in said(capsys, "list", mission)
+    assert "cfepy: N sets parameters under a name that only a run shows" in said(capsys, "list", mission)
     assert "/n/gain" in said(capsys, "list", mission, "--for", "2")
 
 
@@ -63,7 +63,7 @@ def test_files_for_the_ground(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert "params01.tbl" in said(capsys, "set", out, "/robot/rate", "2.5")
     assert "params02.tbl" in said(capsys, "set", out, "/new", "{a: true}")
     said(capsys, "delete", out, "/robot/axes")
-    assert said(capsys, "delete", out / "params01.tbl", "/text", status=2).endswith("with the files of all\n")
+    assert said(capsys, "delete", out / "params01.tbl", "/text", status=2).endswith("with the files of all tables\n")
     assert said(capsys, "set", out, "/new/a", "true") == "nothing changes\n"
     assert said(capsys, "dump", out, "/robot") == "rate: 2.5\n"
     assert said(capsys, "get", out, "/new") == "a: true\n"
@@ -76,15 +76,18 @@ def test_files_for_the_ground(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 @pytest.mark.parametrize(
     ("arguments", "error"),
     [
-        (("set", "p/params01.tbl", "/a", "2001-01-01"), "value: is a date, which is no value of a ROS parameter"),
+        (
+            ("set", "p/params01.tbl", "/a", "2001-01-01"),
+            "value: must be a value that ROS parameters can have, not a date",
+        ),
         (("set", "p/params01.tbl", "/a", "[1"), "is not YAML"),
-        (("delete", "p/params01.tbl", "/none"), "params01.tbl: there is no parameter /none"),
+        (("delete", "p/params01.tbl", "/none"), "params01.tbl: unknown parameter /none"),
         (
             ("set", "p/params01.tbl", "/a", "x" * 20000),
-            "the parameter tables are full: /a takes more than all 127 rows",
+            "the parameter tables are full: /a needs more than all 127 rows",
         ),
-        (("set", "robot.yaml", "/a", "1"), "robot.yaml: is no table file"),
-        (("list", "empty"), "empty: there is no file of a parameter table in it"),
+        (("set", "robot.yaml", "/a", "1"), "robot.yaml: is not a table file"),
+        (("list", "empty"), "empty: contains no file of a parameter table"),
         (("get", "no_such_mission", "/a"), "no_such_mission"),
     ],
 )

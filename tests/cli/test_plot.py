@@ -25,11 +25,14 @@ def test_a_picture(kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (["/phase.data", "-o", "x.jpg"], "x.jpg: --output: is no picture; give a name that ends with .png, .svg, .pdf"),
+        (
+            ["/phase.data", "-o", "x.jpg"],
+            "x.jpg: --output: must be a picture with a name that ends with .png, .svg, .pdf",
+        ),
         (["/joint_state.position", "-o", "{}/x.png"], "did you mean /joint_states?"),
         (["/joint_states.name", "-o", "{}/x.png"], "/joint_states: name: cannot be drawn: neither numbers nor a text"),
         (["/phase.data", "-o", "/no/such/x.png"], "/no/such/x.png: --output: cannot be written"),
-        (["/phase.data", "-o", "{}/x.png", "--from", "9s"], "nothing was sent from 9 s on"),
+        (["/phase.data", "-o", "{}/x.png", "--from", "9s"], "no message was sent after 9 s"),
     ],
 )
 def test_bad_usage(words: list[str], why: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -42,7 +45,7 @@ def test_bad_usage(words: list[str], why: str, tmp_path: Path, capsys: pytest.Ca
 def test_a_size_that_is_none(size: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["plot", *CAPTURE, "/phase.data", "--size", size])
-    assert "is not like 10x4.5" in capsys.readouterr().err
+    assert "expected WIDTHxHEIGHT such as 10x4.5" in capsys.readouterr().err
 
 
 def test_without_matplotlib(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -83,7 +83,7 @@ def test_other_files_on_disk_are_told_and_not_used(tmp_path: Path, capsys: pytes
     assert main(["replay", "a.cfepy", "--quiet", "--from-disk"]) == 1
     said = capsys.readouterr().err
     assert re.search(r"not the run of a\.cfepy: the same up to record \d+ at \d", said)
-    assert "this is what the replay did next" in said
+    assert "the replay continued with" in said
     assert f"other files than then: {tmp_path}/mission/adder.py" in said
 
 
@@ -149,7 +149,7 @@ def test_a_journal_without_an_end_says_so(tmp_path: Path, capsys: pytest.Capture
     assert main(["replay", "a.cfepy", "--quiet"]) == 1
     said = capsys.readouterr().err
     assert "the journal has no end" in said
-    assert "the journal is cut off, and the rest of the run is not known" in said
+    assert "the journal is truncated, and the rest of the run is not known" in said
 
 
 @pytest.mark.parametrize("command", [["replay", "x"], ["diff", "x", "x"], ["replay", "startup.scr"]])
@@ -239,7 +239,7 @@ def test_diff_of_traces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     said = capsys.readouterr().out
     assert re.search(r"the first [\d,]+ lines are alike; line [\d,]+ differs", said)
     assert main(["diff", "1.txt", "1.cfepy"]) == 2
-    assert "one is a journal and the other is not" in capsys.readouterr().err
+    assert "cannot compare a journal with a trace" in capsys.readouterr().err
 
 
 def test_info_runs_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -254,7 +254,7 @@ def test_info_runs_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
 
 def test_runs_that_are_compared_are_not_recorded(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", race(tmp_path), "--check-determinism", "--record", "a.cfepy"]) == 2
-    assert "--record: does not go with --check-determinism" in capsys.readouterr().err
+    assert "--record: cannot be combined with --check-determinism" in capsys.readouterr().err
 
 
 def test_a_replay_that_ends_before_the_boot_does_says_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -270,9 +270,9 @@ def test_a_replay_that_ends_before_the_boot_does_says_why(tmp_path: Path, capsys
         if kind in ("header", "file"):
             writer.write(kind, body)
     writer.close()
-    assert said_of("a.cfepy") == "0.1 virtual seconds; there the recorded run ended"
+    assert said_of("a.cfepy") == "0.1 virtual seconds; the recorded run ended there"
     assert said_of("a.cfepy", "--until", "0.05") == "0.05 virtual seconds; the replay ended there"
-    assert said_of("cut.cfepy") == "0 virtual seconds; there the journal ends, --until SECONDS goes on"
+    assert said_of("cut.cfepy") == "0 virtual seconds; the journal ends there; continue with --until SECONDS"
 
 
 def test_a_replay_of_a_node_that_still_runs_says_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -280,4 +280,4 @@ def test_a_replay_of_a_node_that_still_runs_says_why(tmp_path: Path, capsys: pyt
     main(["node", "--for", "1", "--record", "a.cfepy", "spin.py"])
     assert "the node still runs after 1 virtual seconds; --for runs longer" in capsys.readouterr().err
     main(["replay", "a.cfepy"])
-    assert "the node still runs after 1 virtual seconds; there the recorded run ended" in capsys.readouterr().err
+    assert "the node still runs after 1 virtual seconds; the recorded run ended there" in capsys.readouterr().err

@@ -160,12 +160,12 @@ def test_a_run_that_is_over_before_it_is_asked(mission: str, capsys: Capture) ->
     Path(mission, "frames.py").write_text("import rospy\nrospy.init_node('frames')\nrospy.sleep(1)\n", encoding="utf-8")
     node = str(Path(mission, "frames.py"))
     assert main(["rosnode", "list", node, "--at", "5"]) == 1
-    assert "the run was over before 5 s, when rosnode was to list; see --at" in capsys.readouterr().err
+    assert "the run ended before 5 s, the time of rosnode list; give an earlier --at" in capsys.readouterr().err
 
 
 def test_a_bag_has_no_nodes(capsys: Capture) -> None:
     assert main(["rosnode", "list", BAG]) == 2
-    assert "is a bag, which has no nodes; give a mission" in capsys.readouterr().err
+    assert "a bag has no nodes; give a mission" in capsys.readouterr().err
 
 
 # -- tf ----------------------------------------------------------------------------------------------------------------
@@ -195,7 +195,7 @@ def test_frames_as_a_tree_and_for_graphviz(mission: str, tmp_path: Path, capsys:
 def test_a_pdf_without_graphviz(mission: str, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
     monkeypatch.setenv("PATH", "")
     assert main(["tf", "frames", mission, "--for", "1", "--pdf", "frames.pdf"]) == 2
-    assert "--pdf: needs graphviz, whose command `dot` is not installed" in capsys.readouterr().err
+    assert "--pdf: requires graphviz, and its command `dot` is not installed" in capsys.readouterr().err
     assert not Path("frames.pdf").exists()
 
 
@@ -212,7 +212,7 @@ def test_a_tool_that_dies_ends_the_run(mission: str, tmp_path: Path, capsys: Cap
     plan = tmp_path / "plan.yaml"
     plan.write_text("faults:\n  - crash: GROUND_NODE\n    at: 1.0\n", encoding="utf-8")
     assert main(["rosnode", "list", mission, "--for", "2", "--faults", str(plan)]) == 1
-    assert "the run was over before 2 s, when rosnode was to list" in capsys.readouterr().err
+    assert "the run ended before 2 s, the time of rosnode list" in capsys.readouterr().err
 
 
 @pytest.mark.slow

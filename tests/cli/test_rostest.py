@@ -45,7 +45,7 @@ def test_the_time_limit_is_virtual(write_launch: Launch, capsys: pytest.CaptureF
     slow = '<param name="sleeps" value="100"/>'
     assert main(["rostest", write_launch(TALKER + CHECK.format('time-limit="120"', "hello", slow))]) == 0
     assert main(["rostest", write_launch(TALKER + CHECK.format('time-limit="20"', "hello", slow))]) == 1
-    assert "[demo.check.time_limit][FAILURE]\n    did not end in its 20 virtual seconds" in capsys.readouterr().out
+    assert "[demo.check.time_limit][FAILURE]\n    did not end within its 20 virtual seconds" in capsys.readouterr().out
 
 
 def test_a_test_without_results_says_what_it_printed(
@@ -81,7 +81,7 @@ def test_a_test_is_retried_with_another_seed(demo: Path, write_launch: Launch) -
 
 def test_a_file_without_tests(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["rostest", write_launch(TALKER)]) == 2
-    assert "has no <test>; `cfepy launch` runs what it has" in capsys.readouterr().err
+    assert "missing <test>; use `cfepy launch` to run a launch file without tests" in capsys.readouterr().err
 
 
 @pytest.mark.slow

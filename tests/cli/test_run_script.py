@@ -52,7 +52,7 @@ def test_stop_on_failure(make_mission: Write, script: Path, capsys: pytest.Captu
     assert run(make_mission("Quiet"), script, BAD, "--stop-on-failure", "--for", "5") == 1
     shown = capsys.readouterr().out
     assert "1.000 virtual s in " in shown
-    assert f"FAILED     1.000  {script}:2: at 2 expect app QUIET RUNNING: the run was over before" in shown
+    assert f"FAILED     1.000  {script}:2: at 2 expect app QUIET RUNNING: the run ended earlier" in shown
 
 
 @pytest.mark.parametrize(("seconds", "status"), [("1.5", 1), ("3", 0)])
@@ -68,7 +68,7 @@ def test_a_mistake_in_the_script_is_bad_usage(
 ) -> None:
     assert run(make_mission("Quiet"), script, "at 1 send CFE_ES_NOOP\nsned CFE_ES_NOOP\n") == 2
     shown = capsys.readouterr()
-    assert shown.err == f"cfepy: {script}:2: 'sned' is no step; did you mean send?\n"
+    assert shown.err == f"cfepy: {script}:2: invalid step 'sned'; did you mean send?\n"
     assert shown.out == ""
 
 

@@ -40,15 +40,15 @@ def test_a_sweep_writes_what_it_found(tmp_path: Path, capsys: pytest.CaptureFixt
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["--rate", "0..10"], "--rate: '0..10' does not go up from more than 0"),
-        (["--set", "rate"], "'rate' is not like /arm/rate=20,50"),
-        (["--set", "/left/rate=1..2:0"], "--set: '1..2:0' does not go up in steps"),
+        (["--rate", "0..10"], "--rate: invalid range '0..10'; it must rise from a number greater than 0"),
+        (["--set", "rate"], "invalid parameter setting 'rate'; expected /NAME=VALUES, such as /arm/rate=20,50"),
+        (["--set", "/left/rate=1..2:0"], "--set: invalid range '1..2:0'; it must rise in steps"),
         (
             ["--rate", "50", "--set", "/left/rate=10"],
-            "--set: /left/rate is what the rate sets; leave --rate or this out",
+            "--set: /left/rate is already set by --rate; leave one of them out",
         ),
-        (["--picture", "a.txt"], "--picture: is no picture"),
-        (["--jobs", "1", "--cluster", "local:1"], "--jobs: says how many processes run here"),
+        (["--picture", "a.txt"], "--picture: must be a picture"),
+        (["--jobs", "1", "--cluster", "local:1"], "--jobs: cannot be combined with --cluster"),
     ],
 )
 def test_what_cannot_be_swept(words: list[str], told: str, capsys: pytest.CaptureFixture[str]) -> None:

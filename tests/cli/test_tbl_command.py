@@ -93,7 +93,7 @@ def test_tables_of_a_missions_own_apps(tmp_path: Path, capsys: pytest.CaptureFix
     assert main(["tbl", "build", str(source)]) == 2
     assert main(["tbl", "build", str(source), "--mission", str(tmp_path)]) == 0
     assert read((tmp_path / "points.tbl").read_bytes()).data == bytes.fromhex("ffff0100") + bytes(12)
-    assert "nobody declares a table LIMITS.Points" in capsys.readouterr().err
+    assert "unknown table LIMITS.Points" in capsys.readouterr().err
 
 
 def test_an_app_that_cannot_be_read_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -220,9 +220,9 @@ def test_no_mark_when_the_yaml_says_so(tmp_path: Path) -> None:
     ("arguments", "words"),
     [
         (["show", "nowhere.tbl"], "nowhere.tbl: cannot be read: No such file"),
-        (["show", str(DATA / "cfe_evs.log")], "is no table file: subtype is 16"),
+        (["show", str(DATA / "cfe_evs.log")], "is not a table file: the subtype of a table file must be 8, not 16"),
         (["build", "nowhere.yaml"], "nowhere.yaml: cannot be read"),
-        (["show", str(SAMPLE), "--mission", "nowhere"], "no startup script"),
+        (["show", str(SAMPLE), "--mission", "nowhere"], "unknown mission"),
         (["show", str(SAMPLE), "--layout", "nowhere.yaml"], "nowhere.yaml: cannot be read"),
     ],
 )
@@ -242,7 +242,7 @@ def test_layout_file_without_layout(tmp_path: Path, capsys: pytest.CaptureFixtur
     source = tmp_path / "rows.yaml"
     source.write_text("table: A.B\nrows: []\n", encoding="utf-8")
     assert main(["tbl", "show", str(SAMPLE), "--layout", str(source)]) == 2
-    assert f"{source}:1: gives no layout" in capsys.readouterr().err
+    assert f"{source}:1: missing layout" in capsys.readouterr().err
 
 
 def test_the_yaml_of_the_documentation_is_good(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -67,18 +67,18 @@ def test_a_run_that_is_shown_is_the_same_run(mission: str, capsys: pytest.Captur
 @pytest.mark.parametrize(
     ("options", "why"),
     [
-        (["--foxglove", "x"], "--foxglove: 'x' is not like 9090"),
-        (["--foxglove", "8765", "--viewer-token", "short"], "--viewer-token: a token has at least 8"),
+        (["--foxglove", "x"], "--foxglove: invalid address 'x'; expected a form such as 9090"),
+        (["--foxglove", "8765", "--viewer-token", "short"], "--viewer-token: a token must have at least 8"),
         (["--foxglove", "198.51.100.1:8765"], r"--foxglove: 198\.51\.100\.1:8765 cannot be opened"),
-        (["--viewer-token", "long-enough"], "--viewer-token: nobody can connect"),
-        (["--foxglove", "0", "--check-determinism"], "--foxglove: runs that are compared are not shown"),
-        (["--rosbridge", "x"], "--rosbridge: 'x' is not like 9090"),
-        (["--rosbridge", "9090", "--viewer-token", "short"], "--viewer-token: a token has at least 8"),
+        (["--viewer-token", "long-enough"], "--viewer-token: requires a viewer port"),
+        (["--foxglove", "0", "--check-determinism"], "--foxglove: cannot be combined with --check-determinism"),
+        (["--rosbridge", "x"], "--rosbridge: invalid address 'x'; expected a form such as 9090"),
+        (["--rosbridge", "9090", "--viewer-token", "short"], "--viewer-token: a token must have at least 8"),
         (["--rosbridge", "198.51.100.1:9090"], r"--rosbridge: 198\.51\.100\.1:9090 cannot be opened"),
-        (["--viewer-origin", "https://example.org"], "--viewer-origin: nobody can connect"),
-        (["--foxglove", "0", "--viewer-origin", "foo"], "--viewer-origin: 'foo' is no origin of a page"),
-        (["--rosbridge", "0", "--viewer-origin", "foo"], "--viewer-origin: 'foo' is no origin of a page"),
-        (["--rosbridge", "0", "--check-determinism"], "--rosbridge: runs that are compared are not shown"),
+        (["--viewer-origin", "https://example.org"], "--viewer-origin: requires a viewer port"),
+        (["--foxglove", "0", "--viewer-origin", "foo"], "--viewer-origin: invalid origin 'foo'"),
+        (["--rosbridge", "0", "--viewer-origin", "foo"], "--viewer-origin: invalid origin 'foo'"),
+        (["--rosbridge", "0", "--check-determinism"], "--rosbridge: cannot be combined with --check-determinism"),
     ],
 )
 def test_what_is_wrong_is_told(mission: str, options: list[str], why: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -102,7 +102,7 @@ def test_one_token_is_made_for_all_servers(
     monkeypatch.delenv("CFEPY_VIEWER_TOKEN", raising=False)
     assert main(["run", mission, "--for", "1", "--quiet", "--foxglove", "0.0.0.0:0", "--rosbridge", "0.0.0.0:0"]) == 0
     shown = capsys.readouterr()
-    assert len(re.findall(r"viewers need the token \S{24} ", shown.err)) == 1
+    assert len(re.findall(r"viewers require the token \S{24} ", shown.err)) == 1
     assert "token" not in shown.out
 
 
@@ -197,4 +197,4 @@ def test_a_session_of_the_console_serves_viewers_also_while_time_stands_still(
 
 def test_a_computer_elsewhere_is_shown_by_nobody(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["console", "--udp", "127.0.0.1", "--rosbridge", "0"]) == 2
-    assert "--rosbridge: 127.0.0.1 is a computer, which is not flown" in capsys.readouterr().err
+    assert "--rosbridge: only valid for a mission, and 127.0.0.1 is a remote target" in capsys.readouterr().err

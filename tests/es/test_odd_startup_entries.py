@@ -76,7 +76,7 @@ def test_check_tells_of_entries_without_names() -> None:
     notes = check((app("") + app("APP", "") + LIB.replace("LIB, 0", ", 0") + "!").encode())
     assert [note.is_warning for note in notes] == [True, True, True]
     assert [note.explanation.split(":")[0].split(";")[0] for note in notes] == [
-        "the application has no name",
+        "the name of the application is missing",
         "the symbol is ''",
-        "the library has no name",
+        "the name of the library is missing",
     ]

@@ -96,19 +96,19 @@ def test_entry_numbers_and_text_lines() -> None:
 
 def test_bad_lines_explain_themselves() -> None:
     bad = {result.number: result for result in parse(BAD_SCRIPT) if isinstance(result, BadLine)}
-    assert bad[7].explanation == "the entry has 3 of 8 fields"
+    assert bad[7].explanation == "the entry must have 8 fields, not 3"
     assert bad[8].status == status.CFE_ES_ERR_APP_CREATE
-    assert "at most 19 fit" in bad[11].explanation
-    assert "9 fields" in bad[12].explanation
-    assert "163 characters" in bad[13].explanation
-    assert "no comments" in bad[15].explanation
+    assert "at most 19 characters" in bad[11].explanation
+    assert "not 9" in bad[12].explanation
+    assert "not 163" in bad[13].explanation
+    assert "comments are only allowed after" in bad[15].explanation
     assert bad[15].source == "#comment"
 
 
 def test_check_tells_of_the_lost_entry_too() -> None:
     notes = check(BAD_SCRIPT)
     assert [note.line for note in notes] == [7, 8, 11, 13, 14, 16, 17]
-    assert "has no ';' and is lost" in notes[-1].explanation
+    assert "is ignored, because its ';' is missing" in notes[-1].explanation
 
 
 def test_check_of_a_good_script_is_silent() -> None:
@@ -118,10 +118,10 @@ def test_check_of_a_good_script_is_silent() -> None:
 @pytest.mark.parametrize(
     ("script", "text"),
     [
-        (app(priority=b"high"), "the priority 'high' is read as 0"),
+        (app(priority=b"high"), "invalid priority 'high', which cFE reads as 0"),
         (app(priority=b"300"), "the priority 300 is cut to 255"),
-        (app(stack=b"010000"), "the stack size '010000' is read as 4096"),
-        (app(name="Ü".encode() + b"X"), "bytes that are not ASCII"),
+        (app(stack=b"010000"), "invalid stack size '010000', which cFE reads as 4096"),
+        (app(name="Ü".encode() + b"X"), "characters that are not ASCII"),
         (app().replace(b"HK_AppMain", b"A_Symbol_Beyond_20_Chars"), "is cut to 'A_Symbol_Beyond_20_'"),
     ],
 )

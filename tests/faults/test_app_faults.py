@@ -157,7 +157,7 @@ def test_a_node_that_respawns_is_no_exception(tmp_path: Path) -> None:
     mission_yaml = "nodes: {TALKER: {respawn: true, respawn_delay: 0.5 s}}"
     crash = {"crash": "TALKER", "at": 1.8}
     mission = fly(tmp_path, crash, startup=NODE_STARTUP, talker=TALKER, mission_yaml=mission_yaml)
-    assert told(mission, "launch: TALKER has ended with exit status 139 and is started again")
+    assert told(mission, "launch: TALKER ended with exit status 139 and is restarted")
     assert mission.record.history["TALKER"].deaths == 0
     assert goes_on(mission)
 

@@ -55,16 +55,16 @@ def test_work_takes_so_many_times_as_long(tmp_path: Path) -> None:
 
 def test_only_one_task(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"compute": "TAKER", "for": 0.01, "task": "OTHER*"})
-    assert row(mission, "compute-1")["never"] == "nothing that it is about happened"
+    assert row(mission, "compute-1")["never"] == "no matching occasion occurred"
 
 
 @pytest.mark.parametrize(
     ("fault", "why"),
     [
-        ({"compute": "A"}, "compute needs one of for, times, such as `for: 0.02`"),
-        ({"compute": "A", "for": 1, "times": 2}, "cannot go with for"),
-        ({"compute": "A", "message": "/x", "times": 2}, "cannot go with message"),
-        ({"compute": "A", "for": 0}, "write a number of seconds of more than that"),
+        ({"compute": "A"}, "compute requires one of for, times, such as `for: 0.02`"),
+        ({"compute": "A", "for": 1, "times": 2}, "cannot be combined with for"),
+        ({"compute": "A", "message": "/x", "times": 2}, "cannot be combined with message"),
+        ({"compute": "A", "for": 0}, "must be a number of seconds greater than 0"),
     ],
 )
 def test_what_cannot_be(fault: dict[str, object], why: str) -> None:
@@ -86,9 +86,7 @@ def test_a_task_that_is_not_there_is_found_by_the_check(tmp_path: Path) -> None:
     )
     spec = read_mission(str(write_mission(tmp_path, startup, source=SOURCE, taker=TAKER)))
     plan = FaultPlan.from_dict({"faults": [{"compute": "TAKER", "for": 1, "task": "TAKE"}]})
-    assert [error.text for error in check_plan(plan, spec, look_at(spec))] == [
-        "no task is called TAKE; did you mean TAKER?"
-    ]
+    assert [error.text for error in check_plan(plan, spec, look_at(spec))] == ["unknown task TAKE; did you mean TAKER?"]
 
 
 NODES = """

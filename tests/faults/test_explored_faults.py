@@ -104,7 +104,7 @@ def test_fifo_has_none(tmp_path: Path, kind: str) -> None:
     flown = fly(plan)
     (row,) = flown.mission.record.rows("faults")
     assert (row["times"], row["explored"]) == (0, True)
-    assert row["never"] == "no schedule asked for it; cfepy explore tries those that do"
+    assert row["never"] == "no schedule selected it; cfepy explore tries schedules that do"
     without = fly(replace(plan, faults=None))
     assert flown.trace == without.trace
 
@@ -159,11 +159,11 @@ def test_early_and_late_occasions_have_their_chance() -> None:
 @pytest.mark.parametrize(
     ("fault", "text"),
     [
-        ("{drop: /a, explored: 1, at: 2}", "cannot go with"),
-        ("{drop: /a, explored: 1, probability: 0.5}", "cannot go with explored"),
-        ("{drop: /a, explored: 1, count: 2}", "cannot go with explored"),
-        ("{reset: processor, explored: 0}", "is 0"),
-        ("{fill: PIPE, explored: 1}", "is no option of fill"),
+        ("{drop: /a, explored: 1, at: 2}", "cannot be combined with"),
+        ("{drop: /a, explored: 1, probability: 0.5}", "cannot be combined with explored"),
+        ("{drop: /a, explored: 1, count: 2}", "cannot be combined with explored"),
+        ("{reset: processor, explored: 0}", "must be a whole number of at least 1, not 0"),
+        ("{fill: PIPE, explored: 1}", "unknown option of fill"),
     ],
 )
 def test_what_cannot_be_explored(fault: str, text: str) -> None:

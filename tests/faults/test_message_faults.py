@@ -143,7 +143,7 @@ def test_a_field_is_set(tmp_path: Path) -> None:
 
 def test_a_field_that_is_not_there_is_told(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"corrupt": NUMBER, "number": 2, "fields": {"Valu": 1}})
-    why = "NUMBER_TLM has no field Valu that can be set so"
+    why = "cannot set Valu of NUMBER_TLM: the field is missing or has another type"
     assert told(mission, "cfepy fault") == [f"cfepy fault corrupt-1: did not happen: {why}"]
     assert row(mission, "corrupt-1")["never"] == why
     assert values(mission)[:3] == [0, 1, 2]
@@ -197,9 +197,9 @@ def test_the_trace_is_the_same_on_both_contexts_and_each_time(tmp_path: Path) ->
 def test_a_queue_that_nobody_has_says_what_to_take_for_a_pipe(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"fail": "OS_QueueGet", "number": 1}, {"fail": "OS_MutSemTake", "app": "TAKER"})
     reasons = [each["never"] for each in mission.record.rows("faults")]
-    text = "pipes are not read by it here: let CFE_SB_ReceiveBuffer fail"
-    assert reasons[0] == f"nobody that it is about called os.queue_get; {text}"
-    assert reasons[1] == "nobody that it is about called os.mut_sem_take"
+    text = "pipes are read without it: use a fault of CFE_SB_ReceiveBuffer"
+    assert reasons[0] == f"no matching task called os.queue_get; {text}"
+    assert reasons[1] == "no matching task called os.mut_sem_take"
 
 
 def test_what_never_happened_says_why(tmp_path: Path) -> None:
@@ -210,9 +210,9 @@ def test_what_never_happened_says_why(tmp_path: Path) -> None:
         {"drop": NUMBER, "number": 900},
     )
     reasons = [each["never"] for each in mission.record.rows("faults")]
-    assert reasons[0] == "no such message was sent to anybody"
-    assert "but not in its window of time" in reasons[1]
-    assert "none" in reasons[2] or "no time was one" in reasons[2]
+    assert reasons[0] == "no matching message was delivered"
+    assert "but never within its time window" in reasons[1]
+    assert "none" in reasons[2] or "but never at one" in reasons[2]
 
 
 def test_faults_go_on_after_a_reset(tmp_path: Path) -> None:

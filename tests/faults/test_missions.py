@@ -79,9 +79,9 @@ def test_a_prepared_plan_says_what_is_not_in_the_mission() -> None:
     spec = read_mission("lab")
     prepared = prepare(LOST, spec)
     assert prepared.injector.plan == plan_of(LOST, spec)
-    assert ["no application is called NOBODY" in problem.text for problem in prepared.problems] == [True]
+    assert ["unknown application NOBODY" in problem.text for problem in prepared.problems] == [True]
     texts = [problem.text for problem in prepare(LOST, spec, flies=True).problems]
-    assert ["no message is called /no_such_topic" in texts[0], "no application" in texts[1]] == [True, True]
+    assert ["unknown message /no_such_topic" in texts[0], "unknown application" in texts[1]] == [True, True]
     assert prepare("seed:3", spec, flies=True).problems == ()
 
 

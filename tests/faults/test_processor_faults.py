@@ -104,7 +104,7 @@ def test_a_full_pipe_overflows_and_takes_messages_again(tmp_path: Path) -> None:
 
 def test_a_pipe_that_is_not_there(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"fill": "NO_PIPE", "at": 1.9})
-    assert row(mission, "fill-1")["never"] == "there is no pipe NO_PIPE at 1.9 s"
+    assert row(mission, "fill-1")["never"] == "the pipe NO_PIPE does not exist at 1.9 s"
 
 
 # -- memory ------------------------------------------------------------------------------------------------------------
@@ -145,7 +145,7 @@ def test_a_file_is_damaged_before_it_is_loaded(tmp_path: Path) -> None:
     assert (tmp_path / "data.txt").read_bytes() == b"abcdef"
     assert row(mission, "corrupt_file-1")["at_s"] == [0.0]
     late = fly(tmp_path, {"corrupt_file": "/cf/none", "at": 1}, startup=STARTUP, worker=loader)
-    assert row(late, "corrupt_file-1")["never"] == "there is no file /cf/none at 1 s"
+    assert row(late, "corrupt_file-1")["never"] == "the file /cf/none does not exist at 1 s"
 
 
 @pytest.mark.slow

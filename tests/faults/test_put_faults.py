@@ -97,7 +97,7 @@ def test_events_meet_the_fault_too(tmp_path: Path) -> None:
 def test_what_never_matched(tmp_path: Path) -> None:
     mission = fly(tmp_path, PUT | {"object": "NO_PIPE"}, PUT | {"app": "TAKER", "object": "OTHER_PIPE"})
     reasons = [each["never"] for each in mission.record.rows("faults")]
-    assert reasons == ["nobody that it is about called os.queue_put"] * 2
+    assert reasons == ["no matching task called os.queue_put"] * 2
     assert not sb_events(mission)
     assert values(mission) == values(fly(tmp_path))
 

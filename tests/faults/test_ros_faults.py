@@ -86,7 +86,7 @@ def test_a_field_of_a_ros_message(tmp_path: Path) -> None:
     assert numbers(mission)[:4] == [0, 77, 2, 3]
     nevers = [each["never"] for each in mission.record.rows("faults")]
     assert nevers[0] is None
-    assert "no field date" in nevers[1]
+    assert "cannot set date" in nevers[1]
     assert "/numbers: " in nevers[2]
 
 
@@ -170,4 +170,4 @@ def test_a_node_of_a_launch_file_comes_back(tmp_path: Path) -> None:
         mission.run_for(4)
         lines = mission.console.lines
         assert sum("begins" in line for line in lines) == 2
-        assert any("exit status 139 and is started again" in line for line in lines)
+        assert any("exit status 139 and is restarted" in line for line in lines)

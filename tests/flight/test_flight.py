@@ -121,19 +121,19 @@ def test_it_goes_on_over_resets(flight: Flight) -> None:
 
 
 def test_mistakes_are_told_at_once(flight: Flight) -> None:
-    with pytest.raises(ExpectationError, match="there is no topic /jum yet; did you mean /jump"):
+    with pytest.raises(ExpectationError, match=r"unknown topic /jum \(so far\); did you mean /jump"):
         flight.publish("/jum", data=1)
-    with pytest.raises(ExpectationError, match=r"nobody subscribes to /count at 0\.6"):
+    with pytest.raises(ExpectationError, match=r"/count has no subscriber at 0\.6"):
         flight.publish("/count", data=1)
-    with pytest.raises(UsageError, match="/jump carries std_msgs/Int32, and this is a std_msgs/String"):
+    with pytest.raises(UsageError, match="/jump has type std_msgs/Int32, not std_msgs/String"):
         flight.publish("/jump", flight.message_class("std_msgs/String")())
-    with pytest.raises(UsageError, match="no std_msgs/Int32: "):
+    with pytest.raises(UsageError, match="invalid std_msgs/Int32: "):
         flight.publish("/jump", number=1)
-    with pytest.raises(ExpectationError, match="nobody offers the service /rest; did you mean /reset"):
+    with pytest.raises(ExpectationError, match="unknown service /rest; did you mean /reset"):
         flight.call_service("/rest")
-    with pytest.raises(UsageError, match="number: no such field; there is data"):
+    with pytest.raises(UsageError, match="number: unknown field; near it are data"):
         flight.expect_message("/count", number=3)
-    with pytest.raises(UsageError, match="'INFO' is no type of event"):
+    with pytest.raises(UsageError, match="invalid event type 'INFO'"):
         flight.expect_event(type="INFO")
     with pytest.raises(CfeError):
         flight.send(b"\x18\x06\xc0\x00\x00\x10\x00\x00")

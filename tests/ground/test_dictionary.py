@@ -108,7 +108,7 @@ def test_an_app_that_cannot_be_executed_is_a_problem_that_unknown_names_tell_of(
     source = "COMMANDS = (undefined,)\ndef Main(cfe):\n    pass\n"
     found = dictionary_of(read_mission(write_mission(tmp_path, startup, own=source)))
     assert found.problems == [f"{tmp_path / 'own.py'} could not be read: NameError: name 'undefined' is not defined"]
-    with pytest.raises(UsageError, match=r"no command is called OWN_SET; .*own\.py could not be read"):
+    with pytest.raises(UsageError, match=r"unknown command OWN_SET; .*own\.py could not be read"):
         found.command("OWN_SET")
 
 
@@ -131,13 +131,13 @@ def small() -> Dictionary:
 def test_an_unknown_name_comes_with_those_that_are_like_it(small: Dictionary, name: str) -> None:
     with pytest.raises(UsageError) as error:
         small.command(name)
-    assert str(error.value) == f"no command is called {name}; did you mean APP_SET?"
+    assert str(error.value) == f"unknown command {name}; did you mean APP_SET?"
 
 
 def test_telemetry_by_name_and_by_number(small: Dictionary) -> None:
     assert small.telemetry_of("APP_HK_TLM") is small.telemetry_of("0x883") is small.telemetry_of("2179") is HK
     assert small.telemetry_of("0x0999").name == "0x0999"
-    with pytest.raises(UsageError, match="no telemetry packet is called APP_HK; did you mean APP_HK_TLM"):
+    with pytest.raises(UsageError, match="unknown telemetry packet APP_HK; did you mean APP_HK_TLM"):
         small.telemetry_of("APP_HK")
 
 
@@ -155,7 +155,7 @@ def test_packets_that_cannot_be_read_say_why(small: Dictionary) -> None:
     assert small.decode(bytes(command(0x1882, 4))).problem == "its layout is not known"
     short = small.decode(bytes(telemetry(0x0883, b"x")))
     assert (short.name, short.values) == ("APP_HK_TLM", {})
-    assert "needs 4 bytes" in short.problem
+    assert "requires 4 bytes" in short.problem
     assert small.decode(bytes(telemetry(0x0883))[:9]).problem == "9 bytes are too few for a header of 16"
 
 
@@ -165,7 +165,7 @@ def test_topics_are_read_when_their_type_is_known(mission: str) -> None:
     watch = PacketWatch(seen.append, lambda each: each == 0x0950)
     with Mission(spec, console=Console(quiet=True), attachments=[watch]) as flight:
         flight.run_for(2)
-        assert found.decode(seen[0].packet).problem == "the type of its messages is not known"
+        assert found.decode(seen[0].packet).problem == "the message type is unknown"
         found.learn(topics_of(flight))
     decoded = found.decode(seen[0].packet)
     assert (decoded.name, decoded.values, seen[0].sender) == ("/count", {"data": 7}, "TALKER")
@@ -187,7 +187,7 @@ def test_what_is_no_whole_message_of_a_topic_is_refused() -> None:
     with pytest.raises(UsageError, match="no std_msgs/UInt32"):
         topic.read(bytes(telemetry(0x0950, b"x")))
     packet[2] = 0x40  # the first of several
-    with pytest.raises(UsageError, match="a segment"):
+    with pytest.raises(UsageError, match="one segment"):
         topic.read(bytes(packet))
     assert Topic("/raw", 0x0951, "std_msgs/UInt8MultiArray", raw=True).read(b"packet") == {"data": b"packet"}
 

@@ -106,15 +106,15 @@ def test_bus_files() -> None:
 def test_a_cut_file_gives_its_whole_records_and_says_so() -> None:
     dump = read_dump((DATA / "cfe_sb_pipe.dat").read_bytes()[:-1], "x")
     assert len(dump.records) == 10
-    assert dump.problem == "is cut off: record 10 has 59 of 60 bytes"
+    assert dump.problem == "is truncated: record 10 has 59 of 60 bytes"
 
 
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        (b"cFE1", "is no file of cFE: a cFE file header has 64 bytes"),
+        (b"cFE1", "is not a cFE file: a cFE file must have a header of 64 bytes"),
         (b"\x7fELF" + bytes(60), 'begins with 7f 45 4c 46, not with "cFE1"'),
-        (FileHeader("x", 99).pack(), "has the subtype 99"),
+        (FileHeader("x", 99).pack(), "unknown subtype 99"),
         (FileHeader("x", SUBTYPE_TBL_IMG).pack(), "cfepy tbl show some.log"),
     ],
 )

@@ -123,7 +123,7 @@ def test_a_recording_whose_name_looks_like_an_option_is_played(tmp_path: Path, m
         ("--rate 0", "must be more than 0"),
         ("--rate", "expected one argument"),
         ("--no-such", "unrecognized arguments: --no-such"),
-        ("more.bag", "more.bag is no option; --play names the bag"),
+        ("more.bag", "unexpected more.bag; name the bag with --play"),
         ("--topics '/a", "No closing quotation"),
     ],
 )
@@ -149,7 +149,7 @@ def test_packets_of_a_raw_topic_are_played_as_they_were_recorded(tmp_path: Path)
 
 def test_options_need_a_bag(tmp_path: Path) -> None:
     (tmp_path / "hears.py").write_text(HEARS, encoding="utf-8")
-    with pytest.raises(UsageError, match="give the bag, too"):
+    with pytest.raises(UsageError, match="requires --play FILE"):
         RunPlan((str(tmp_path / "hears.py"),), NODE, play_options="--rate 2").spec()
 
 

@@ -43,5 +43,5 @@ def test_without_them_nodes_and_own_applications_do_not_fly(
         mission.run_for(1)
         lines = mission.console.lines
     assert not [each for each in lines if each.endswith(" ran")]
-    assert [each for each in lines if "fly them with CPython" in each]
+    assert [each for each in lines if "run them with CPython" in each]
     assert [each for each in lines if "HK Initialized" in each]

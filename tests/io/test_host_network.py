@@ -203,7 +203,7 @@ def test_only_this_computer_is_reached(tmp_path: Path) -> None:
 
         stranger.run_while(missing)
         assert received == [LOOPBACK.encode()]
-        assert stranger.told == ["datagrams for 10.0.0.7 are dropped: only 127.0.0.1 is connected"]
+        assert stranger.told == ["datagrams for 10.0.0.7 are dropped, because only 127.0.0.1 is connected"]
 
 
 def test_a_port_that_is_taken(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The file of a journal: what is in it, and what happens to one that is cut off, damaged, or from elsewhere."""
+"""The file of a journal: what is in it, and what happens to one that is truncated, damaged, or from elsewhere."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_one_that_is_cut_off_anywhere_is_replayed_as_far_as_it_goes(run: Path) -
     for size in range(len(whole) - 1, 0, -len(whole) // 12):
         run.write_bytes(whole[:size])
         if size < first_frame:
-            with pytest.raises(JournalError, match=r"is cut off|is no journal"):
+            with pytest.raises(JournalError, match=r"is truncated|is not a journal"):
                 read_journal(run)
             continue
         cut = read_journal(run)
@@ -145,7 +145,7 @@ def test_a_length_that_no_frame_has_is_damage_and_not_a_cut_off_end(
 
 def test_other_files_and_other_formats_are_told(run: Path, tmp_path: Path) -> None:
     (tmp_path / "text").write_text("CFE_APP, x", encoding="utf-8")
-    with pytest.raises(JournalError, match="is no journal"):
+    with pytest.raises(JournalError, match="is not a journal"):
         read_journal(tmp_path / "text")
     with pytest.raises(JournalError, match="cannot be read: No such file"):
         read_journal(tmp_path / "nothing")
@@ -259,7 +259,7 @@ def test_secrets_are_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 def test_a_run_that_fails_to_begin_writes_no_results(tmp_path: Path) -> None:
     with pytest.raises(UsageError):
         record(plan_for("no such mission", 1), tmp_path / "run.cfepy")
-    with pytest.raises(JournalError, match="cut off"):
+    with pytest.raises(JournalError, match="truncated"):
         read_journal(tmp_path / "run.cfepy")
 
 

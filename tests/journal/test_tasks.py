@@ -23,7 +23,7 @@ def test_a_run_on_greenlets_is_replayed_on_threads_where_there_are_none(
     assert again.verdict.same
     assert (again.flown.mission.tasks, again.flown.trace) == ("thread", flown.trace)
     assert main(["replay", str(journal), "--quiet"]) == 0
-    assert "greenlet is not installed here: replayed on threads" in capsys.readouterr().err
+    assert "greenlet is not installed: replayed on threads" in capsys.readouterr().err
     assert main(["replay", str(journal), "--quiet", "--tasks", "greenlet"]) == 2
     assert "pip install 'cfepy[fast]'" in capsys.readouterr().err
 

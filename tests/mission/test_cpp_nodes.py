@@ -42,18 +42,22 @@ def test_what_is_said(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "error"),
     [
-        ("strict", "tight", "2: cpp_nodes.profile: is 'tight'; the profiles are host, pool, strict"),
-        ("65536", "0", "3: cpp_nodes.arena_bytes: is 0, it must be a whole number of at least 4096"),
-        ("65536", "8 GiB", "3: cpp_nodes.arena_bytes: is '8 GiB', it must be a whole number"),
-        ("text: 20", "text: true", "5: cpp_nodes.capacities.text: is True, it must be a whole number of at least 1"),
-        ("name: 7", "name: -7", "7: cpp_nodes.capacities.sensor_msgs/JointState.name: is -7, it must be a whole"),
+        ("strict", "tight", "2: cpp_nodes.profile: unknown profile 'tight'; expected one of host, pool, strict"),
+        ("65536", "0", "3: cpp_nodes.arena_bytes: must be a whole number of at least 4096, not 0"),
+        ("65536", "8 GiB", "3: cpp_nodes.arena_bytes: must be a whole number"),
+        ("text: 20", "text: true", "5: cpp_nodes.capacities.text: must be a whole number of at least 1, not True"),
+        ("name: 7", "name: -7", "7: cpp_nodes.capacities.sensor_msgs/JointState.name: must be a whole"),
         (
             "name: 7",
             "name: 16777216",
-            "7: cpp_nodes.capacities.sensor_msgs/JointState.name: is 16777216, it must be at",
+            "7: cpp_nodes.capacities.sensor_msgs/JointState.name: must be at most ",
         ),
-        ("sensor_msgs/J", "J", "7: cpp_nodes.capacities.JointState: is no message type; write it with its package"),
-        ("  capacities", "  capacity", "5: cpp_nodes.capacity: is not known here; known are profile, arena_bytes, cap"),
+        ("sensor_msgs/J", "J", "7: cpp_nodes.capacities.JointState: is not a message type; write it with its package"),
+        (
+            "  capacities",
+            "  capacity",
+            "5: cpp_nodes.capacity: unknown field; known fields are profile, arena_bytes, cap",
+        ),
     ],
 )
 def test_errors_say_where(tmp_path: Path, old: str, new: str, error: str) -> None:

@@ -235,8 +235,8 @@ def test_a_worker_that_gets_no_sentinel_while_the_main_program_joins_it(tmp_path
     (wait,) = found.alone
     assert (wait.app, wait.task, wait.place, found.circles) == ("PAIR", "PAIR.pair.2.2", "pair.py:12", [])
     assert wait.text == (
-        "PAIR.pair.2.2 waits for ever for the end of Queue.get() at pair.py:12, "
-        f"since {wait.since_ns / 1e9:.6f} s; nobody is left who could end that"
+        "PAIR.pair.2.2 waits forever for the end of Queue.get() at pair.py:12, "
+        f"since {wait.since_ns / 1e9:.6f} s; no remaining task can end this wait"
     )
 
 

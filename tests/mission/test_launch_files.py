@@ -77,10 +77,10 @@ def test_the_mission_file_has_the_last_word(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("launch: [none.launch]", "mission.yaml:1: launch[0]: is {folder}/none.launch, which is no file"),
-        ("launch: [{args: {a: 1}}]", "mission.yaml:1: launch[0]: needs a file"),
-        ("launch: [{file: a, arg: {}}]", "mission.yaml:1: launch[0].arg: is not known here"),
-        ("launch: [bad.launch]", "bad.launch:1: <node>: has no 'pkg'"),
+        ("launch: [none.launch]", "mission.yaml:1: launch[0]: file not found: {folder}/none.launch"),
+        ("launch: [{args: {a: 1}}]", "mission.yaml:1: launch[0]: missing file"),
+        ("launch: [{file: a, arg: {}}]", "mission.yaml:1: launch[0].arg: unknown field"),
+        ("launch: [bad.launch]", "bad.launch:1: <node>: missing 'pkg'"),
     ],
 )
 def test_errors_have_a_place(folder: Path, text: str, said: str) -> None:

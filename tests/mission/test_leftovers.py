@@ -123,7 +123,7 @@ def test_one_that_nobody_closed_ends_when_nobody_has_it(tasks: str) -> None:
 
 def test_a_closed_one_does_not_go_on() -> None:
     mission = fly(0.1)
-    with pytest.raises(RuntimeError, match="this mission was closed"):
+    with pytest.raises(RuntimeError, match="this mission is closed"):
         mission.run_for(0.1)
 
 

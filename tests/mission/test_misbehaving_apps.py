@@ -54,7 +54,7 @@ def test_a_library_whose_init_fails_is_not_loaded(tmp_path: Path, statement: str
     [
         ("async def Main(cfe):\n    pass", "Main of /cf/app.so is async: calling it runs nothing"),
         ("def Main(cfe):\n    yield", "Main of /cf/app.so is a generator (it has a yield): calling it runs nothing"),
-        ("def Main():\n    pass", "Main of /cf/app.so does not take one argument, the handle of the services"),
+        ("def Main():\n    pass", "Main of /cf/app.so must take one argument, the handle of the services"),
         ("def Main(cfe, more):\n    pass", "write `def Main(cfe):`"),
     ],
 )
@@ -75,7 +75,7 @@ def test_an_exception_without_a_text_is_told_all_the_same(tmp_path: Path, body: 
     source = f"class Own(Exception):\n    def __str__(self): {body}\n\ndef Main(cfe):\n{READY}    raise Own\n"
     mission = fly(tmp_path, source)
     assert "app_0_1.Own: <exception str() failed>" in text_of(mission)
-    assert error_of(mission) == "Own: its text cannot be had"
+    assert error_of(mission) == "Own: its text is not available"
 
 
 def test_text_that_utf8_cannot_hold(tmp_path: Path) -> None:
@@ -133,7 +133,7 @@ def Main(cfe):
 def test_the_clock_stays_a_whole_number(tmp_path: Path, time: str) -> None:
     mission = fly(tmp_path, f"def Main(cfe):\n{READY}    cfe.os.task_delay({time})\n")
     assert type(mission.kernel.now) is int
-    assert "a time is a whole number, an int, not " in text_of(mission)
+    assert "time must be an int, not " in text_of(mission)
 
 
 @pytest.mark.parametrize("statement", ["raise ValueError('tick')", "import sys; sys.exit()"])

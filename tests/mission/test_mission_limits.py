@@ -39,9 +39,11 @@ def test_a_mission_raises_and_lowers() -> None:
 
 def test_a_board_is_the_most_that_there_is() -> None:
     assert MissionLimits({"os_max_tasks": 20}).config(RX64M, has_nodes=True).os_max_tasks == 20
-    with pytest.raises(UsageError, match=r"limits.os_max_tasks: is 33, the board rx64m has 32; lower it"):
+    with pytest.raises(
+        UsageError, match=r"limits.os_max_tasks: must be at most 32 on the board rx64m, not 33; lower it"
+    ):
         MissionLimits({"os_max_tasks": 33}).config(RX64M, has_nodes=True)
-    with pytest.raises(UsageError, match=r"limits.nodes: is 5, which takes es_max_applications: 38; the board"):
+    with pytest.raises(UsageError, match=r"limits.nodes: is 5, which requires es_max_applications: 38, but the board"):
         MissionLimits(nodes=5).config(RX64M, has_nodes=True)
 
 
@@ -76,21 +78,25 @@ def test_check_says_which_line_asks_for_too_much_and_which_limit_to_raise(tmp_pa
     startup = "".join(f"CFE_APP, n, __main__, N{number}, 100, 4096, 0, 0;\n" for number in range(27)) + "!\n"
     mission = write_mission(tmp_path, startup, n="import rospy\n")
     assert [(found.line, found.text) for found in check_mission(mission)] == [
-        (27, "N26 is one application too many, linux takes 26; start fewer, or raise limits.es_max_applications in "
-         "the mission file")
+        (27, "N26 exceeds the limit: linux allows 26 application entries; start fewer, "
+         "or raise limits.es_max_applications in the mission file")
     ]  # fmt: skip
     (tmp_path / "mission.yaml").write_text(
         "limits:\n  os_max_tasks: 40\n  os_max_pipes: 3\n  sb_max_pipes: 70000\n", encoding="utf-8"
     )
     texts = [f"{found.line}: {found.text}" for found in check_mission(mission, "rx64m")]
-    assert any(text.startswith("3: limits.os_max_pipes: is not known here") for text in texts), texts
-    assert "4: limits.sb_max_pipes: is 70000, it must be at most 65534" in texts
-    assert "2: limits.os_max_tasks: is 40, the board rx64m has 32; lower it, or take another board" in texts
+    assert any(text.startswith("3: limits.os_max_pipes: unknown field") for text in texts), texts
+    assert "4: limits.sb_max_pipes: must be at most 65534, not 70000" in texts
+    assert (
+        "2: limits.os_max_tasks: must be at most 32 on the board rx64m, not 40; lower it, or use another board" in texts
+    )
 
 
 def test_a_wrong_limit_stops_a_run_with_file_and_line(tmp_path: Path) -> None:
     mission = write_mission(tmp_path, "!\n", mission_yaml="board: rx64m\nlimits:\n  sb_max_pipes: 99\n")
-    with pytest.raises(UsageError, match=r"mission.yaml:3: limits.sb_max_pipes: is 99, the board rx64m has 32"):
+    with pytest.raises(
+        UsageError, match=r"mission.yaml:3: limits.sb_max_pipes: must be at most 32 on the board rx64m, not 99"
+    ):
         Mission(read_mission(mission), console=Console(quiet=True))
 
 

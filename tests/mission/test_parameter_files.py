@@ -37,14 +37,26 @@ def test_one_file_needs_no_list_and_nodes_have_files_too(tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("text", "content", "error"),
     [
-        ("params_from: [no.yaml]\n", "", r"mission.yaml:1: params_from\[0\]: there is no file .*no.yaml"),
-        ("params_from: [{namespace: a}]\n", "", r"mission.yaml:1: params_from\[0\]: names no file"),
-        ("params_from: 3\n", "", r"mission.yaml:1: params_from: is 3, it must be a list"),
-        ("params_from: one.yaml\n", "a:\n  b: 2001-01-01\n", r"one.yaml:2: a.b: is a date, which is no value"),
-        ("params_from: one.yaml\n", "a:\n\nb: 1\n", r"one.yaml:1: a: is nothing, which is no value"),
-        ("params_from: one.yaml\n", "a: [1, 3000000000]\n", r"one.yaml:1: a\[1\]: is 3000000000; a ROS parameter is"),
-        ("params_from: one.yaml\n", "[1]\n", r"one.yaml:1: is \[1\], it must be a mapping"),
-        ("params: {a: {b: }}\n", "", r"mission.yaml:1: params.a.b: is nothing"),
+        ("params_from: [no.yaml]\n", "", r"mission.yaml:1: params_from\[0\]: file not found: .*no.yaml"),
+        ("params_from: [{namespace: a}]\n", "", r"mission.yaml:1: params_from\[0\]: missing file"),
+        ("params_from: 3\n", "", r"mission.yaml:1: params_from: must be a list, not 3"),
+        (
+            "params_from: one.yaml\n",
+            "a:\n  b: 2001-01-01\n",
+            r"one.yaml:2: a.b: must be a value that ROS parameters can have, not a date",
+        ),
+        (
+            "params_from: one.yaml\n",
+            "a:\n\nb: 1\n",
+            r"one.yaml:1: a: must be a value that ROS parameters can have, not nothing",
+        ),
+        ("params_from: one.yaml\n", "a: [1, 3000000000]\n", r"one.yaml:1: a\[1\]: must be an integer of 32 bits"),
+        ("params_from: one.yaml\n", "[1]\n", r"one.yaml:1: must be a mapping"),
+        (
+            "params: {a: {b: }}\n",
+            "",
+            r"mission.yaml:1: params.a.b: must be a value that ROS parameters can have, not nothing",
+        ),
     ],
 )
 def test_errors_say_file_and_line(tmp_path: Path, text: str, content: str, error: str) -> None:

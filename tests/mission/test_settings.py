@@ -26,7 +26,7 @@ def test_another_one_is_the_masters() -> None:
 
 def test_a_name_that_may_be_nobodys_is_told() -> None:
     (note,) = with_settings(PUBSUB, [("/lft/rate", "50")]).notes
-    assert note == "--set /lft/rate: no node is called /lft; did you mean /left?"
+    assert note == "--set /lft/rate: unknown node /lft; did you mean /left?"
 
 
 @pytest.mark.parametrize(

@@ -105,19 +105,19 @@ def test_they_are_read_with_their_units(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("entry", "says"),
     [
-        ("apps: {WORKER: {response: 2}}", "2: deadlines.apps.WORKER.response: is 2; write a time with its unit"),
-        ("apps: {WORKER: {response: 2 parsec}}", "with its unit, such as 500 us"),
+        ("apps: {WORKER: {response: 2}}", "2: deadlines.apps.WORKER.response: must be a time with a unit"),
+        ("apps: {WORKER: {response: 2 parsec}}", "with a unit, such as 500 us"),
         ("apps: {WORKER: {response: 0 ms}}", "must be from 1 ns"),
-        ("apps: {WORKER: {period: 0 Hz, jitter: 1 ms}}", "deadlines.apps.WORKER.period: is 0 Hz"),
-        ("apps: {WORKER: {period: 5 ms}}", "period without a jitter"),
-        ("apps: {WORKER: {response: 1 ms, jitter: 1 ms}}", "give the period, too"),
-        ("apps: {WORKER: {}}", "needs a response or a period"),
-        ("apps: {WORKER: {latency: 1 ms}}", "is not known here; known are response, period, jitter, task"),
-        ("topics: {/odom: {}}", "needs one of latency, at_least_every, at_most_every"),
-        ("topics: {/odom: {rate: 1 Hz}}", "is not known here"),
-        ("topics: {/odom: {at_least_every: 1 ms, at_most_every: 2 ms}}", "no message can be in time for both"),
-        ("topics: {0xZZ: {latency: 1 ms}}", "is no MsgId"),
-        ("nodes: {}", "known are apps, topics"),
+        ("apps: {WORKER: {period: 0 Hz, jitter: 1 ms}}", "deadlines.apps.WORKER.period: must be from"),
+        ("apps: {WORKER: {period: 5 ms}}", "missing jitter of the period"),
+        ("apps: {WORKER: {response: 1 ms, jitter: 1 ms}}", "requires a period"),
+        ("apps: {WORKER: {}}", "missing response or period"),
+        ("apps: {WORKER: {latency: 1 ms}}", "unknown field; known fields are response, period, jitter, task"),
+        ("topics: {/odom: {}}", "requires one of latency, at_least_every, at_most_every"),
+        ("topics: {/odom: {rate: 1 Hz}}", "unknown field"),
+        ("topics: {/odom: {at_least_every: 1 ms, at_most_every: 2 ms}}", "must not be shorter than at_most_every"),
+        ("topics: {0xZZ: {latency: 1 ms}}", "is not a MsgId"),
+        ("nodes: {}", "known fields are apps, topics"),
         ("apps: 3", "must be a mapping"),
     ],
 )
@@ -136,7 +136,7 @@ def test_check_finds_applications_that_are_not_there(tmp_path: Path) -> None:
     text = "deadlines:\n  apps:\n    WORKR: {response: 1 ms}\n    CFE_ES: {response: 1 ms}\n"
     (finding,) = check_mission(mission(tmp_path, text))
     assert finding.line == 3
-    assert finding.text == "deadlines.apps.WORKR: no application is called WORKR; did you mean WORKER?"
+    assert finding.text == "deadlines.apps.WORKR: unknown application WORKR; did you mean WORKER?"
 
 
 @pytest.mark.parametrize(

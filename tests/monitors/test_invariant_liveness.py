@@ -35,7 +35,7 @@ def violations(folder: Path, invariant: str, seconds: float = 2.0) -> list[str]:
 @pytest.mark.parametrize(
     ("invariant", "told"),
     [
-        ("{topic: /beat, again: 0.2 s, after: 0.5 s}", ["1.550008 s: nothing within 0.2 s again (/beat)"]),
+        ("{topic: /beat, again: 0.2 s, after: 0.5 s}", ["1.550008 s: no further message within 0.2 s (/beat)"]),
         ("{topic: /beat, again: 1 s, after: 0.5 s}", []),
         ("{topic: /beat, again: 0.15 s, when: msg.data % 2, after: 0.7 s}", None),
         ("{topic: /beat, eventually: msg.data == 7}", []),
@@ -46,7 +46,7 @@ def violations(folder: Path, invariant: str, seconds: float = 2.0) -> list[str]:
 def test_what_has_to_come(tmp_path: Path, invariant: str, told: list[str] | None) -> None:
     found = violations(tmp_path, invariant)
     if told is None:
-        assert found[0].endswith("nothing within 0.15 s again (msg.data % 2)")
+        assert found[0].endswith("no further message within 0.15 s (msg.data % 2)")
     else:
         assert len(found) == len(told)
         for line, begin in zip(found, told, strict=True):
@@ -54,7 +54,7 @@ def test_what_has_to_come(tmp_path: Path, invariant: str, told: list[str] | None
 
 
 def test_it_must_come_from_the_beginning_on(tmp_path: Path) -> None:
-    assert violations(tmp_path, "{topic: /beat, again: 0.3 s}")[0].startswith("0.300000 s: nothing within")
+    assert violations(tmp_path, "{topic: /beat, again: 0.3 s}")[0].startswith("0.300000 s: no further message within")
 
 
 @pytest.mark.parametrize("wrong", ["{topic: /beat, again: 0}", "{topic: /beat, again: 1, eventually: msg.data}"])

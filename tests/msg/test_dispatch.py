@@ -41,11 +41,11 @@ def test_bad_packets_are_told_apart() -> None:
 
 def test_one_handler_each() -> None:
     commands, _ = table()
-    with pytest.raises(CfeError, match="handler already"):
+    with pytest.raises(CfeError, match="already has a handler"):
         commands.add(0x1806, 0, 8, print)
-    with pytest.raises(CfeError, match="handler already"):
+    with pytest.raises(CfeError, match="already has a handler"):
         commands.add(0x1808, 0, 8, print)
-    with pytest.raises(CfeError, match="handler already"):
+    with pytest.raises(CfeError, match="already has a handler"):
         commands.add_message(0x1806, 8, print)
 
 

@@ -281,7 +281,7 @@ def test_a_universe_can_be_used_from_the_host_without_a_script():
         queue = universe.importer.load("queue").Queue()
         queue.put(1)
         assert queue.get_nowait() == 1
-        with pytest.raises(RuntimeError, match="only its tasks can wait"):
+        with pytest.raises(RuntimeError, match="only tasks of the node can wait"):
             queue.get(timeout=1)
         with pytest.raises(RuntimeError, match="only a task can sleep"):
             universe.importer.load("time").sleep(1)

@@ -36,7 +36,7 @@ def test_commands_on_the_virtual_file_system(bench: Bench) -> None:
     ("command", "complaint"),
     [
         ("format c:", b"sh: format: not found\n"),
-        ("cat /ram/none", b"cat: OS_ERROR (-1): there is no file /ram/none\n"),
+        ("cat /ram/none", b"cat: OS_ERROR (-1): file /ram/none does not exist\n"),
         ("cp /ram/x", b"cp: OS_ERROR (-1): takes 2 paths\n"),
         ("echo 'open", b"sh: No closing quotation\n"),
     ],

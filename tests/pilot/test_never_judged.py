@@ -25,22 +25,22 @@ TALKER = """
 """
 DEMANDS = {
     "invariants: {few: {topic: /enrgy, holds: msg.data < 3}}": "invariant 'few' (mission.yaml:1) was never judged: "
-    "nothing came of /enrgy; did you mean /energy?",
+    "no message of /enrgy was sent; did you mean /energy?",
     "invariants: {few: {topic: /energy, holds: msg.data < 3, when: msg.data > 9}}": "invariant 'few' (mission.yaml:1) "
     "was never judged",
     "deadlines: {topics: {/enrgy: {latency: 1 ms}}}": "the deadline latency of /enrgy was never measured: "
-    "nothing came of /enrgy; did you mean /energy?",
+    "no message of /enrgy was sent; did you mean /energy?",
     "deadlines: {topics: {/energy: {latency: 1 ms}}}": "the deadline latency of /energy was never measured",
     "deadlines: {topics: {'0x0895': {at_most_every: 1 Hz}}}": "the deadline at_most_every of 0x0895 was never "
-    "measured: nothing came of 0x0895",
+    "measured: no message of 0x0895 was sent",
     "deadlines: {apps: {TALKR: {response: 1 ms}}}": "the deadline response of TALKR was never measured: "
-    "there is no application TALKR; did you mean TALKER?",
-    "results: {/enrgy: last}": "the result /enrgy (last) never came: nothing came of /enrgy; did you mean /energy?",
-    "results: {/ram/x.txt: file}": "the result /ram/x.txt (file) never came: there is no such file",
-    "results: {TALKR: output}": "the result TALKR (output) never came: there is no application TALKR; "
-    "did you mean TALKER?",
+    "unknown application TALKR; did you mean TALKER?",
+    "results: {/enrgy: last}": "the result /enrgy (last) never came: no message of /enrgy "
+    "was sent; did you mean /energy?",
+    "results: {/ram/x.txt: file}": "the result /ram/x.txt (file) never came: the file does not exist",
+    "results: {TALKR: output}": "the result TALKR (output) never came: unknown application TALKR; did you mean TALKER?",
     "results: {/energy: last}": "",
-    "results: {/silent: last}": "the result /silent (last) never came: nothing came of /silent",
+    "results: {/silent: last}": "the result /silent (last) never came: no message of /silent was sent",
     "invariants: {few: {topic: /energy, holds: msg.data < 3}}": "",
 }
 
@@ -90,7 +90,7 @@ def test_commands_tell_of_an_invariant_that_was_never_judged(
 def test_explore_tells_of_a_measure_that_measured_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = str(mission(tmp_path, ""))
     main(["explore", folder, "--for", "1.5", "--seeds", "1", "--jobs", "1", "--quiet", "--worst", "age:/enrgy"])
-    told = "nothing was measured of age:/enrgy: nothing came of /enrgy; did you mean /energy?"
+    told = "no value of age:/enrgy was measured: no message of /enrgy was sent; did you mean /energy?"
     assert told in capsys.readouterr().out
 
 
@@ -99,7 +99,10 @@ def test_sweep_is_not_clean_when_its_topic_never_came(tmp_path: Path, capsys: py
     folder = str(mission(tmp_path, ""))
     words = ["--for", "1.5", "--board", "linux", "--measure", "/enrgy", "--jobs", "1", "--quiet", "--csv", "-"]
     main(["sweep", folder, *words])
-    assert "no message was measured of /enrgy: nothing came of /enrgy; did you mean /energy?" in capsys.readouterr().out
+    assert (
+        "no message of /enrgy was measured: no message of /enrgy was sent; did you mean /energy?"
+        in capsys.readouterr().out
+    )
 
 
 def test_page_tells_of_an_invariant_that_was_never_judged(tmp_path: Path) -> None:

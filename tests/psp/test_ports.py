@@ -67,5 +67,5 @@ def test_a_profile_declares_ports(tmp_path: Path) -> None:
     file.write_text("name: b\nports:\n  - {name: gpio, address: 0x8C000, size: 1 KiB}\n", encoding="utf-8")
     assert load_profile(file).ports == (PortRange("gpio", GPIO, 1024),)
     file.write_text("name: b\nports:\n  - {name: gpio, size: 64}\n", encoding="utf-8")
-    with pytest.raises(UsageError, match="has no address"):
+    with pytest.raises(UsageError, match="missing address"):
         load_profile(file)

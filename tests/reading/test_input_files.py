@@ -61,7 +61,7 @@ def test_a_regular_file_is_read(tmp_path: Path) -> None:
     file = tmp_path / "x"
     file.write_bytes(b"a" * 200_000)
     assert read_limited(file, 200_000) == b"a" * 200_000
-    with pytest.raises(UsageError, match="more than 199,999 bytes"):
+    with pytest.raises(UsageError, match="more than the limit of 199,999 bytes"):
         read_limited(file, 199_999)
     (tmp_path / "empty").touch()
     assert read_limited(tmp_path / "empty", 0) == b""
@@ -71,7 +71,7 @@ def test_a_regular_file_is_read(tmp_path: Path) -> None:
 def test_a_file_with_holes_is_refused_before_it_is_read(tmp_path: Path) -> None:
     with (tmp_path / "x").open("wb") as file:
         file.truncate(1 << 40)
-    with pytest.raises(UsageError, match="more than 10 bytes"):
+    with pytest.raises(UsageError, match="more than the limit of 10 bytes"):
         read_limited(tmp_path / "x", 10)
     assert beginning_of(tmp_path / "x", 4) == bytes(4)
 
@@ -99,7 +99,7 @@ def test_what_is_not_there_is_an_error_of_the_system(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("path", ["a\0b", "\0", "/tmp/\0"])
 def test_a_name_with_a_nul_is_not_a_path(path: str) -> None:
-    with pytest.raises(UsageError, match="not a path that a file can have"):
+    with pytest.raises(UsageError, match="invalid path"):
         read_limited(path, 10)
 
 
@@ -119,7 +119,7 @@ def test_a_file_that_has_nothing_to_say_yet_is_not_waited_for(tmp_path: Path, mo
     reader, writer = os.pipe()
     os.set_blocking(reader, False)
     monkeypatch.setattr("cfepy.reading.input_files.open_input", lambda path, handed: os.fdopen(reader, "rb"))
-    with pytest.raises(UsageError, match="nothing to read yet"):
+    with pytest.raises(UsageError, match="not ready for reading"):
         read_limited(tmp_path, 10)
     os.close(writer)
 

@@ -13,5 +13,5 @@ def test_boards_are_found() -> None:
 
 
 def test_an_unknown_kind_says_where_it_looked() -> None:
-    with pytest.raises(UsageError, match="no nonsense"):
+    with pytest.raises(UsageError, match="nonsense missing"):
         shipped("nonsense")

@@ -124,5 +124,5 @@ for text in ("$(arg z)", "$(frob)"):
         "True 1b",
         "n_cfepy_1 n_cfepy_1",
         "ArgException z",
-        "SubstitutionException $(frob) is n",
+        "SubstitutionException unknown subs",
     ]

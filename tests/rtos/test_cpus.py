@@ -72,7 +72,7 @@ def test_where_nothing_can_be_told_there_is_none() -> None:
 @pytest.mark.parametrize("wanted", ["", "on", "-1", "99", "1.0"])
 def test_words_that_mean_nothing(wanted: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(cpus.VARIABLE, wanted)
-    with pytest.raises(UsageError, match=r"CFEPY_PIN=.*is not auto, off or a CPU"):
+    with pytest.raises(UsageError, match=r"invalid CFEPY_PIN=.*expected auto, off or a CPU"):
         Seat().choose(MANY[0])
 
 

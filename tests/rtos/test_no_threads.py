@@ -19,7 +19,7 @@ def test_what_the_user_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
         kernel.spawn("first", lambda: kernel.delay(10))
         drain()
         monkeypatch.setattr(_thread, "start_new_thread", refuse)
-        with pytest.raises(UsageError, match=r"refuses another thread.*ulimit -u.*--tasks greenlet"):
+        with pytest.raises(UsageError, match=r"cannot start another thread.*ulimit -u.*--tasks greenlet"):
             kernel.spawn("second", lambda: None)
         monkeypatch.undo()
         assert [task.name for task in kernel.tasks] == ["first"]

@@ -118,9 +118,9 @@ def test_run_cannot_be_called_from_a_task(kernel: Kernel) -> None:
 
 
 def test_the_host_must_not_wait(kernel: Kernel) -> None:
-    with pytest.raises(RuntimeError, match="only a task"):
+    with pytest.raises(RuntimeError, match="requires a task"):
         kernel.delay(1)
-    with pytest.raises(RuntimeError, match="only a task"):
+    with pytest.raises(RuntimeError, match="requires a task"):
         Queue(kernel, 1).get()
 
 

@@ -157,7 +157,7 @@ def test_a_finalizer_that_the_collection_of_garbage_runs_is_ended(
     watch = watched(kernel)
     kernel.spawn("litterer", litter)
     watch.begin()
-    with pytest.raises(StallError, match="a finalizer has not come to an end since 10") as stalled:
+    with pytest.raises(StallError, match="a finalizer has not finished since 10") as stalled:
         kernel.run(30_000_000_000)
     watch.end()
     assert "__del__" in stalled.value.lines[0]
@@ -282,7 +282,7 @@ def test_who_waits_for_something_outside_is_told_once_and_left_alone(make_kernel
     os.close(reader)
     os.close(writer)
     assert len(told) == 1
-    assert told[0].startswith("cfepy: task asking has waited for something outside of the simulation since 0.0000")
+    assert told[0].startswith("cfepy: task asking has been waiting for something outside the simulation since 0.0000")
 
 
 @pytest.mark.slow
@@ -296,7 +296,7 @@ def test_what_cannot_be_struck_is_left_behind() -> None:
         stuck = kernel.spawn("stuck", lambda: os.read(reader, 1))
         kernel.spawn("late", lambda: kernel.delay(1))
         watch.begin()
-        with pytest.raises(StallError, match="stuck has waited for something outside"):
+        with pytest.raises(StallError, match="stuck has been waiting for something outside"):
             kernel.run()
         assert kernel.stuck == [stuck]
         kernel.shutdown()

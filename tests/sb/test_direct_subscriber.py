@@ -38,6 +38,6 @@ def test_a_bus_without_room_for_the_msgid_says_so() -> None:
     bench = Bench("thread")
     for msg_id in range(0x0800, 0x0800 + bench.bus.config.sb_max_msg_ids):
         Outlet(bench.bus, msg_id, "out", lambda packet: None)
-    with pytest.raises(CfeError, match="no room for MsgId"):
+    with pytest.raises(CfeError, match="no free entry for MsgId"):
         Outlet(bench.bus, 0x1FF0, "out", lambda packet: None)
     bench.kernel.shutdown()

@@ -41,12 +41,12 @@ def test_a_move_has_a_text(text: str, move: Move) -> None:
 @pytest.mark.parametrize(
     ("text", "wrong"),
     [
-        ("moves:A", "'A' is no move"),
-        ("moves:A@x=B", "'A@x=B' is no move"),
-        ("moves:A@1/nowhere=B", "'A@1/nowhere=B' is no move"),
-        ("moves:A@1/0=B", "'A@1/0=B' is no move"),
-        ("moves:A=B,", "'' is no move"),
-        ("moves:A=B:C=D", "no schedule is called"),
+        ("moves:A", "invalid move 'A'"),
+        ("moves:A@x=B", "invalid move 'A@x=B'"),
+        ("moves:A@1/nowhere=B", "invalid move 'A@1/nowhere=B'"),
+        ("moves:A@1/0=B", "invalid move 'A@1/0=B'"),
+        ("moves:A=B,", "invalid move ''"),
+        ("moves:A=B:C=D", "invalid schedule 'moves:A=B:C=D'; expected moves:TASK@MS/FUNCTION.CALL=TASK"),
     ],
 )
 def test_a_text_that_is_no_move(text: str, wrong: str) -> None:

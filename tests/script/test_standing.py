@@ -86,7 +86,7 @@ def test_what_is_given_up_is_told_no_more_but_guards_stay(told: Told) -> None:
 
 
 def test_a_mistake_does_nothing(told: Told) -> None:
-    with pytest.raises(UsageError, match="no command is called NOPE"):
+    with pytest.raises(UsageError, match="unknown command NOPE"):
         told.add("send CFE_ES_NOOP\nsend NOPE")
     assert told.verdicts == []
 

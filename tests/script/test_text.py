@@ -72,31 +72,31 @@ def test_every_kind_of_step_is_understood(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("sned CFE_ES_NOOP", "'sned' is no step; did you mean send?"),
-        ("at noon send CFE_ES_NOOP", "'noon' is not a number of seconds; give 0 to 1e+09"),
-        ("at 2", "what to do is missing at the end of the line"),
-        ("send", "the command's name is missing at the end of the line"),
-        ("send CFE_ES_NOP", "no command is called CFE_ES_NOP; did you mean CFE_ES_NOOP"),
+        ("sned CFE_ES_NOOP", "invalid step 'sned'; did you mean send?"),
+        ("at noon send CFE_ES_NOOP", "invalid number of seconds 'noon'; expected 0 to 1e+09"),
+        ("at 2", "unexpected end of line; a step such as send or expect is missing"),
+        ("send", "unexpected end of line; the command's name is missing"),
+        ("send CFE_ES_NOP", "unknown command CFE_ES_NOP; did you mean CFE_ES_NOOP"),
         ("send CFE_ES_NOOP X=1", "X: CFE_ES_NOOP has no fields"),
         ("send SAMPLE_APP_DISPLAY_PARAM ValU32=-1", "ValU32: -1 does not fit u32"),
-        ("send raw 18zz", "'18zz' are no bytes"),
-        ("reset warm", "'warm' is no kind of reset; there are processor, power-on"),
-        ("expect evnt CFE_ES", "'evnt' is no thing to expect; did you mean event?"),
-        ("expect event", "the application's name is missing"),
-        ("expect event CFE_ES 3 EROR", "'EROR' is no type of event; did you mean ERROR?"),
-        ('expect event CFE_ES 3 "No-op', 'a quote is opened and not closed: "No-op'),
-        ("expect tlm SAMPLE_APP_HK", "no telemetry packet is called SAMPLE_APP_HK; did you mean SAMPLE_APP_HK_TLM?"),
-        ("expect tlm SAMPLE_APP_HK_TLM Counter == 1", "Counter: no such field; "),
-        ("expect tlm SAMPLE_APP_HK_TLM CommandCounter = 1", "'=' is no sign; there are ==, !=, <, <=, >, >="),
-        ("expect tlm SAMPLE_APP_HK_TLM CommandCounter ==", "the value is missing"),
-        ("expect tlm SAMPLE_APP_HK_TLM CommandCounter == x", "CommandCounter: 'x' is not a number"),
-        ("expect app SAMPLE_APP RUNING", "'RUNING' is no state of an application; did you mean RUNNING?"),
-        ("expect file x.log", "'x.log' is no path of the mission's file system"),
-        ("expect file /ram/x size big", "'big' is no number of bytes"),
-        ("expect console", "the text is missing"),
-        ("expect app SAMPLE_APP within", "the time is missing"),
-        ("expect app SAMPLE_APP within 1 2", "'2' is too much"),
-        ("end now", "'now' is too much"),
+        ("send raw 18zz", "invalid bytes '18zz'"),
+        ("reset warm", "invalid kind of reset 'warm'; expected processor, power-on"),
+        ("expect evnt CFE_ES", "invalid condition 'evnt'; did you mean event?"),
+        ("expect event", "unexpected end of line; the application's name is missing"),
+        ("expect event CFE_ES 3 EROR", "invalid type of event 'EROR'; did you mean ERROR?"),
+        ('expect event CFE_ES 3 "No-op', 'unclosed quote: "No-op'),
+        ("expect tlm SAMPLE_APP_HK", "unknown telemetry packet SAMPLE_APP_HK; did you mean SAMPLE_APP_HK_TLM?"),
+        ("expect tlm SAMPLE_APP_HK_TLM Counter == 1", "Counter: unknown field; "),
+        ("expect tlm SAMPLE_APP_HK_TLM CommandCounter = 1", "invalid sign '='; expected ==, !=, <, <=, >, >="),
+        ("expect tlm SAMPLE_APP_HK_TLM CommandCounter ==", "unexpected end of line; the value is missing"),
+        ("expect tlm SAMPLE_APP_HK_TLM CommandCounter == x", "CommandCounter: invalid number 'x'"),
+        ("expect app SAMPLE_APP RUNING", "invalid application state 'RUNING'; did you mean RUNNING?"),
+        ("expect file x.log", "invalid path 'x.log'; a path in the mission's file system begins with /cf"),
+        ("expect file /ram/x size big", "invalid size 'big'; expected a number of bytes"),
+        ("expect console", "unexpected end of line; the text is missing"),
+        ("expect app SAMPLE_APP within", "unexpected end of line; the time is missing"),
+        ("expect app SAMPLE_APP within 1 2", "unexpected '2' after the end of the step"),
+        ("end now", "unexpected 'now'"),
     ],
 )
 def test_a_mistake_is_told_with_its_place(tmp_path: Path, line: str, said: str) -> None:
@@ -111,7 +111,7 @@ def test_times_do_not_go_back(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_no_script(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="has no steps"):
+    with pytest.raises(UsageError, match="has no steps; add at least one, such as `at 5 send CFE_ES_NOOP`"):
         script(tmp_path, "# nothing\n")
     spec = read_mission(write_mission(tmp_path, STARTUP))
     with pytest.raises(UsageError, match="cannot be read"):

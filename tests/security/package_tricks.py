@@ -123,7 +123,7 @@ def _doubled(first: str, again: str, times: int = 60) -> str:
 
 CHAIN = "".join(f"add_library(l{n} src/n.cpp)\ntarget_link_libraries(l{n} l{n + 1})\n" for n in range(8000))
 ROUND = '#include "../src/n.h"\n#include "../src/../src/n.h"\n#include "../src/m.h"\n'
-NAMED = "is not the name of a package"
+NAMED = "invalid package name"
 LINKED = "through a symbolic link"
 PIPE = "a device or a pipe"
 
@@ -143,15 +143,15 @@ PACKAGE_TRICKS = (
     with_(package("the list of files", "is not a file"), "is a pipe", pipe("out/.cfepy-convert.json")),
     package(
         "a source that ends CMake's list",
-        "CMake does not take",
+        "CMake does not allow",
         BUILT.replace("src/n.cpp", f'"src/n.cpp;execute_process(COMMAND touch {CANARY}).cpp"'),
         **{f"evil/src/n.cpp;execute_process(COMMAND touch {CANARY}).cpp": SOURCE},
     ),
     c_app(
-        "a name that leads out", "names the application", {"CMakeLists.txt": f"add_cfe_app(../{CANARY} fsw/src/a.c)"}
+        "a name that leads out", "invalid application name", {"CMakeLists.txt": f"add_cfe_app(../{CANARY} fsw/src/a.c)"}
     ),
-    c_app("a name with a NUL", "names the application", {"CMakeLists.txt": 'add_cfe_app("a\0b" fsw/src/a.c)'}),
-    c_app("a source elsewhere", "which is not there", {"CMakeLists.txt": "add_cfe_app(a /none/a.c)"}),
+    c_app("a name with a NUL", "invalid application name", {"CMakeLists.txt": 'add_cfe_app("a\0b" fsw/src/a.c)'}),
+    c_app("a source elsewhere", "names a missing file", {"CMakeLists.txt": "add_cfe_app(a /none/a.c)"}),
     # -- CMakeLists.txt
     cmake("a word without an end", HARMLESS, "a" * 50_000),
     cmake("words that are no commands", HARMLESS, "a (" * 20_000),
@@ -162,13 +162,11 @@ PACKAGE_TRICKS = (
     cmake("a text that doubles", "words of more than", _doubled("set(a x)", 'set(a "${a}${a}")')),
     cmake("a text of many of itself", "words of more than", _doubled("set(a x)", f'set(a "{"${a}" * 900}")', 3)),
     cmake("a list that is added to itself", "words of more than", _doubled("set(a x)", "list(APPEND a ${a})")),
-    cmake("a function that calls itself", "inside each other", "function(f)\nf()\nendfunction()\nf()"),
-    cmake(
-        "macros that call each other", "inside each other", "macro(f)\ng()\nendmacro()\nmacro(g)\nf()\nendmacro()\ng()"
-    ),
-    cmake("a folder inside itself", "inside each other", "add_subdirectory(.)"),
-    cmake("conditions 20,000 deep", "inside each other", "if(UNIX)\n" * 20_000 + "endif()\n" * 20_000),
-    cmake("brackets 20,000 deep", "inside each other", f"if({'(' * 20_000}UNIX{')' * 20_000})\nendif()"),
+    cmake("a function that calls itself", "nested", "function(f)\nf()\nendfunction()\nf()"),
+    cmake("macros that call each other", "nested", "macro(f)\ng()\nendmacro()\nmacro(g)\nf()\nendmacro()\ng()"),
+    cmake("a folder inside itself", "nested", "add_subdirectory(.)"),
+    cmake("conditions 20,000 deep", "nested", "if(UNIX)\n" * 20_000 + "endif()\n" * 20_000),
+    cmake("brackets 20,000 deep", "nested", f"if({'(' * 20_000}UNIX{')' * 20_000})\nendif()"),
     cmake("NOT again and again", HARMLESS, f"if({'NOT ' * 20_000}UNIX)\nendif()"),
     cmake("a version of 10,000 digits", HARMLESS, f"if({'1' * 10_000} VERSION_LESS {'2' * 10_000})\nendif()"),
     cmake("an empty component", HARMLESS, 'find_package(catkin REQUIRED "")\nproject("")\nset("")'),
@@ -184,7 +182,9 @@ PACKAGE_TRICKS = (
         f"add_definitions({'-Da ' * 999})\n" + "add_library(a)\n" * 999,
     ),
     with_(cmake("a pattern", "look at more than", f"file(GLOB x {'*/' * 30}*.cpp)"), "goes round", _circles),
-    with_(cmake("its file", "more than 1,048,576 bytes", ""), "of a terabyte", holes("evil/CMakeLists.txt")),
+    with_(
+        cmake("its file", "more than the limit of 1,048,576 bytes", ""), "of a terabyte", holes("evil/CMakeLists.txt")
+    ),
     with_(cmake("its file", HARMLESS, ""), "is a device", link("evil/CMakeLists.txt", "/dev/zero")),
     with_(cmake("its file", "", ""), "is a pipe", pipe("evil/CMakeLists.txt")),
     with_(package("a manifest", HARMLESS, words="check {}/src"), "is a pipe", pipe("evil/package.xml")),
@@ -291,7 +291,7 @@ PACKAGE_TRICKS = (
     Trick(
         "mission: parameters of a device",
         "check {}",
-        "there is no file",
+        "file not found",
         files_of({"startup.scr": "!\n", "mission.yaml": "params_from: [/dev/stdin]\n"}),
     ),
     Trick(

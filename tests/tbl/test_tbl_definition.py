@@ -58,5 +58,5 @@ def test_what_does_not_fit(kind: TableType, rows: Any, field: str) -> None:
 
 
 def test_an_image_of_another_size() -> None:
-    with pytest.raises(UsageError, match=r"APP\.Points has 12 bytes, this image has 11"):
+    with pytest.raises(UsageError, match=r"must have 12 bytes for APP\.Points, not 11"):
         POINTS.unpack(bytes(11))

@@ -23,7 +23,7 @@ def test_rows_are_filled_up_with_zeros() -> None:
 
 
 def test_faults_of_rows_name_row_and_field() -> None:
-    with pytest.raises(UsageError, match="there is room for 1"):
+    with pytest.raises(UsageError, match="must have at most 1"):
         pack_rows(ROW, [{}, {}], capacity=1)
     with pytest.raises(UsageError) as caught:
         pack_rows(ROW, [{}, {"A": 256}], capacity=2)

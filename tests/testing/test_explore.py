@@ -180,7 +180,7 @@ def test_a_test_that_explores_nothing_is_told(suite: Suite) -> None:
         """
     )
     result.assert_outcomes(failed=1, passed=1)
-    result.stdout.fnmatch_lines(["*@explore: the test boots no mission under the schedules*"])
+    result.stdout.fnmatch_lines(["*@explore: the test must boot a mission under the schedules*"])
 
 
 def test_several_missions_have_the_schedule_all(suite: Suite) -> None:
@@ -198,7 +198,7 @@ def test_several_missions_have_the_schedule_all(suite: Suite) -> None:
 
 
 def test_wrong_arguments() -> None:
-    with pytest.raises(UsageError, match="'fancy' is no policy; there are all, random, pct"):
+    with pytest.raises(UsageError, match="unknown policy 'fancy'; expected one of all, random, pct"):
         explore(policy="fancy")
     with pytest.raises(UsageError, match="seeds"):
         explore(seeds=0)
@@ -209,7 +209,7 @@ def test_wrong_arguments() -> None:
 
 def test_a_decorator_without_parentheses_is_told() -> None:
     bare: Any = explore
-    with pytest.raises(UsageError, match=r"@explore: needs parentheses: write @explore\(\)"):
+    with pytest.raises(UsageError, match=r"@explore: requires parentheses: write @explore\(\)"):
         bare(lambda mission: None)
 
 

@@ -93,4 +93,6 @@ def test_each_example_has_its_own_missions(suite: Suite) -> None:
 
 
 def test_an_example_that_is_none(suite: Suite) -> None:
-    suite(BIG, "--cfepy-example", "nonsense").stdout.fnmatch_lines(["*is no example; take it as the failure told it*"])
+    suite(BIG, "--cfepy-example", "nonsense").stdout.fnmatch_lines(
+        ["*not a valid example; copy the string printed with the failure*"]
+    )

@@ -188,9 +188,9 @@ def test_paths_are_seen_from_the_test_file(pytester: pytest.Pytester, missions: 
 @pytest.mark.parametrize(
     ("line", "says"),
     [
-        ("mission('nowhere')", "UsageError: nowhere: no startup script*no shipped mission*"),
-        ("mission('talk', board='linxu')", "*there is no board 'linxu'; did you mean linux?"),
-        ("mission('talk').send('CFE_ES_NOP')", "*no command is called CFE_ES_NOP; did you mean*"),
+        ("mission('nowhere')", "UsageError: nowhere: unknown mission; expected a startup script*"),
+        ("mission('talk', board='linxu')", "*unknown board 'linxu'; did you mean linux?"),
+        ("mission('talk').send('CFE_ES_NOP')", "*unknown command CFE_ES_NOP; did you mean*"),
         ("mission('talk').expect_event('CFE_ES', 999, within=1)", "*ExpectationError*"),
     ],
 )

@@ -73,5 +73,5 @@ def _cycles_of(text: str) -> int:
     except ValueError:
         rate = 0.0
     if not 1 <= rate <= FASTEST_CPU_HZ:
-        raise argparse.ArgumentTypeError(f"{text!r} is no clock rate in Hz, such as 120e6")
+        raise argparse.ArgumentTypeError(f"invalid clock rate {text!r}; expected a number of Hz, such as 120e6")
     return round(rate)

@@ -27,9 +27,11 @@ def run(arguments: argparse.Namespace) -> int:
     """
     path = Path(arguments.file)
     if path.suffix not in (".yaml", ".yml"):
-        raise UsageError(f"{arguments.file!r} is no name of a profile; write one like gr712.yaml", field="FILE.yaml")
+        raise UsageError(
+            f"invalid profile name {arguments.file!r}; expected a name such as gr712.yaml", field="FILE.yaml"
+        )
     if os.path.exists(path):
-        raise UsageError("is there already; give another name", file=path)
+        raise UsageError("already exists; give another name", file=path)
     text = _text(arguments, path.stem)
     with writing(path, "FILE.yaml"):
         path.write_text(text, encoding="utf-8")
@@ -64,5 +66,7 @@ def _text(arguments: argparse.Namespace, name: str) -> str:
 def _size(text: str, option: str) -> str:
     found = _SIZE.fullmatch(text)
     if found is None:
-        raise UsageError(f"{text!r} is no size; write bytes, or a number with KiB or MiB, such as 512KiB", field=option)
+        raise UsageError(
+            f"invalid size {text!r}; expected bytes, or a number with KiB or MiB, such as 512KiB", field=option
+        )
     return f"{found[1]} {found[2]}" if found[2] else found[1]

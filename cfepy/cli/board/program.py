@@ -26,7 +26,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     folder = arguments.folder
     if os.path.lexists(folder):
-        raise UsageError("is there already; give another name", file=folder)
+        raise UsageError("already exists; give another name", file=folder)
     with writing(folder, "FOLDER"):
         shutil.copytree(shipped("boards") / NAME, folder)
     print(f"{folder}: an application of a cFS mission; its folder there is apps/{NAME}, its line in the startup script")

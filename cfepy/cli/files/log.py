@@ -57,13 +57,13 @@ def run(arguments: argparse.Namespace) -> int:
 def _draw(arguments: argparse.Namespace) -> int:
     """Write performance data for Perfetto."""
     if len(arguments.files) != 1:
-        raise UsageError("is for one file", field="--perfetto")
+        raise UsageError(f"takes one file, not {len(arguments.files)}", field="--perfetto")
     if arguments.json is not None:
-        raise UsageError("is for what is shown; leave it out", field="--json")
+        raise UsageError("cannot be combined with --perfetto; leave it out", field="--json")
     (name,) = arguments.files
     dump = read_dump(_bytes(name), name)
     if not dump.about:
-        raise UsageError(f"is for performance data, and this is the {dump.kind}", file=name, field="--perfetto")
+        raise UsageError(f"requires performance data; this file is the {dump.kind}", file=name, field="--perfetto")
     write = PERF_LOG.need("--perfetto")
     path = arguments.perfetto
     about = {"file": name, **{key: dump.about[key] for key in PERF_FACTS}}

@@ -64,7 +64,7 @@ def _own_type(path: Path) -> TableType:
     said = root.mapping()
     own = table_yaml.own_type(said) if "table" in said else None
     if own is None:
-        raise root.fail("gives no layout; it needs `table`, `layout`, and `count` for more than one row")
+        raise root.fail("missing layout; add `table` and `layout`, and `count` for more than one row")
     return own
 
 

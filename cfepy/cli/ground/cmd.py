@@ -44,14 +44,14 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.show is not None:
         return _show(dictionary.command(arguments.show))
     if target is None or arguments.name is None:
-        raise UsageError("say where to, and which command: cfepy cmd MISSION|HOST NAME; --list shows the names")
+        raise UsageError("missing target or command name: cfepy cmd MISSION|HOST NAME; --list shows the command names")
     declared = dictionary.command(arguments.name)
     packet = packet_of(declared, arguments.fields)
     if arguments.hex:
         print(packet.hex())
         return ENDED_WELL
     if host is not None:
-        refuse_run_options(arguments, f"{host} is a computer, which is not flown; leave it out")
+        refuse_run_options(arguments, f"only valid for a mission, and {host} is a remote target; leave it out")
         return _send(host, declared, packet)
     assert plan is not None
     return _fly(plan, dictionary, declared, packet)
@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _send(host: RemoteHost, declared: Command, packet: bytes) -> int:
     if not udp.send(host.name, host.port, packet):
-        print(f"cfepy: {host}: nobody listens there; {declared.name} is lost", file=sys.stderr)
+        print(f"cfepy: {host}: no receiver is listening; {declared.name} was not delivered", file=sys.stderr)
         return FOUND_PROBLEMS
     print(f"{declared.name} sent to {host}, {len(packet)} bytes")
     return ENDED_WELL
@@ -104,7 +104,7 @@ def _fly(plan: RunPlan, dictionary: Dictionary, declared: Command, packet: bytes
         trial.run(run.run_until, seconds, _patience(plan))
         problems = run.problems()
         unstruck = never_happened(run.mission)
-    print(f"{trial.sent_ns / NS_PER_S:.3f} {declared.name} sent to {', '.join(trial.receivers) or 'nobody'}")
+    print(f"{trial.sent_ns / NS_PER_S:.3f} {declared.name} sent to {', '.join(trial.receivers) or 'no receiver'}")
     _say_what_followed(trial, dictionary)
     tell((*problems, *unstruck))
     return ENDED_WELL if trial.receivers and not trial.errors and not problems else FOUND_PROBLEMS

@@ -38,7 +38,7 @@ def host_of(text: str, port: int) -> RemoteHost | None:
         return None
     given = match[2] or match[4]
     if given is not None and not 0 < int(given) <= LAST_PORT:
-        raise UsageError(f"{given} is no port; give 1 to {LAST_PORT}", file=text)
+        raise UsageError(f"invalid port {given}; expected 1 to {LAST_PORT}", file=text)
     return RemoteHost(match[1] or match[3], port if given is None else int(given))
 
 
@@ -53,9 +53,9 @@ def check_is_mission(text: str) -> None:
             find_script(text)
     except UsageError as error:
         if text in dictionary_of(None).commands:
-            raise UsageError("is a command; say first where to: a mission, or a computer", file=text) from None
+            raise UsageError("this is a command name; put the mission or the host first", file=text) from None
         what = "an address such as 192.168.1.5, localhost, or NAME:PORT"
-        raise UsageError(f"{error.text}; a computer is {what}", file=text) from None
+        raise UsageError(f"{error.text}; a host must be {what}", file=text) from None
 
 
 def dictionary_for(mission: str | None) -> Dictionary:

@@ -195,7 +195,7 @@ def _parquet() -> Any:
     try:
         from pyarrow import parquet
     except ImportError:
-        raise UsageError("Parquet needs the library pyarrow: pip install 'cfepy[parquet]'") from None
+        raise UsageError("Parquet requires the library pyarrow: pip install 'cfepy[parquet]'") from None
     return parquet
 
 
@@ -204,7 +204,7 @@ def _write_parquet(file: str, table: ValueTable, arguments: argparse.Namespace) 
     import pyarrow
 
     if file == STDOUT:
-        raise UsageError("Parquet is no text; name a file", field="--output")
+        raise UsageError("Parquet cannot be written to standard output; name a file", field="--output")
     stamps = [stamp / NS_PER_S if stamp else None for stamp in table.stamps_ns.tolist()]
     columns: dict[str, Any] = {TIME: table.times_ns / NS_PER_S, STAMP: pyarrow.array(stamps, pyarrow.float64())}
     columns |= {name: pyarrow.array(column.tolist()) for name, column in table.columns.items()}

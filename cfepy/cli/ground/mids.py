@@ -28,7 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_json(arguments)
     plan, spec = survey_plan(arguments)
     if arguments.lock and spec.ros.spread:
-        text = "has no topics.lock: its topics get free MsgIds by themselves; a mission with `launch:` has one"
+        text = "cannot have a topics.lock, because its topics get free MsgIds; use a mission with `launch:`"
         raise UsageError(text, file=arguments.mission)
     if arguments.lock:
         return _lock(plan, spec)

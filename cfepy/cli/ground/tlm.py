@@ -189,9 +189,9 @@ def run(arguments: argparse.Namespace) -> int:
     host = host_of(words[0], TO_PORT) if words else None
     if host is None and words and _is_mission(words[0]):
         if arguments.enable is not None:
-            raise UsageError("a mission in virtual time sends to no computer; leave it out", field="--enable")
+            raise UsageError("only valid for a remote target; leave it out", field="--enable")
         return _fly(plan_of(arguments, words[:1]), words[1:], arguments)
-    refuse_run_options(arguments, "is for a mission, and none is named; leave it out", but=["seconds"])
+    refuse_run_options(arguments, "requires a mission, and none is named; leave it out", but=["seconds"])
     names = words if host is None else words[1:]
     dictionary = dictionary_for(arguments.mission)
     wanted = {dictionary.telemetry_of(name).msg_id for name in names}
@@ -215,7 +215,7 @@ def _listen(host: RemoteHost, dictionary: Dictionary, wanted: set[int], argument
     if shown:
         return ENDED_WELL
     hint = "" if arguments.enable is not None else "; TO_LAB sends nothing before it is asked to, see --enable"
-    return _nothing(f"no such packet came to port {host.port} in {arguments.seconds:g} s{hint}")
+    return _nothing(f"no matching packet arrived at port {host.port} in {arguments.seconds:g} s{hint}")
 
 
 def _nothing(text: str) -> int:
@@ -250,7 +250,9 @@ def _enable(address: str, dictionary: Dictionary) -> None:
     host = host_of(address, CI_PORT) or RemoteHost(address, CI_PORT)
     packet = packet_of(dictionary.command("TO_LAB_OUTPUT_ENABLE"), [f"dest_IP={udp.own_address(host.name)}"])
     if not udp.send(host.name, host.port, packet):
-        raise UsageError("nobody listens there, so TO_LAB cannot be asked to send", file=str(host))
+        raise UsageError(
+            "no receiver is listening, so telemetry cannot be enabled; start the mission first", file=str(host)
+        )
 
 
 # -- in virtual time ---------------------------------------------------------------------------------------------------
@@ -272,8 +274,8 @@ def _fly(plan: RunPlan, names: list[str], arguments: argparse.Namespace) -> int:
         )
     tell(problems)
     is_topic = any(name.startswith("/") for name in names)
-    hint = "; a topic is sent when somebody subscribes, `cfepy topic echo` shows it in any case" if is_topic else ""
-    return ENDED_WELL if shown else _nothing(f"no such packet was sent in {end_s:g} virtual seconds{hint}")
+    hint = "; a topic is sent only while it has a subscriber; `cfepy topic echo` subscribes to it" if is_topic else ""
+    return ENDED_WELL if shown else _nothing(f"no matching packet was sent in {end_s:g} virtual seconds{hint}")
 
 
 def _msg_id(spec: MissionSpec, dictionary: Dictionary, name: str) -> int:

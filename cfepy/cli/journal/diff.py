@@ -6,7 +6,7 @@ import argparse
 import contextlib
 import sys
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from io import TextIOWrapper
 from itertools import zip_longest
 from pathlib import Path
@@ -38,22 +38,19 @@ def compare_texts(one: str, other: str, before: int, stream: TextIO) -> bool:
         Whether they are alike.
 
     Raises:
-        UsageError: one is no text.
+        UsageError: one is not UTF-8 text.
     """
     latest: deque[str] = deque(maxlen=before)
     count = 0
-    try:
-        with _lines(one) as first, _lines(other) as second:
-            for mine, theirs in zip_longest(first, second, fillvalue=""):
-                count += 1
-                if mine != theirs:
-                    _show(count, latest, {one: mine, other: theirs}, stream)
-                    return False
-                latest.append(mine)
-    except UnicodeDecodeError:
-        raise UsageError("one of the two is neither a journal nor a trace", file=f"{one}, {other}") from None
+    with _lines(one) as first, _lines(other) as second:
+        for mine, theirs in zip_longest(_texts(first, one), _texts(second, other), fillvalue=""):
+            count += 1
+            if mine != theirs:
+                _show(count, latest, {one: mine, other: theirs}, stream)
+                return False
+            latest.append(mine)
     if not count:
-        print("nothing was compared: both are empty", file=stream)
+        print("nothing to compare: both files are empty", file=stream)
         return False
     print(f"the same run: all {count:,} lines are alike", file=stream)
     return True
@@ -61,6 +58,13 @@ def compare_texts(one: str, other: str, before: int, stream: TextIO) -> bool:
 
 def _lines(file: str) -> TextIO:
     return TextIOWrapper(open_input(file, handed=True), encoding="utf-8")
+
+
+def _texts(lines: TextIO, file: str) -> Iterator[str]:
+    try:
+        yield from lines
+    except UnicodeDecodeError:
+        raise UsageError("is not a journal or a trace", file=file) from None
 
 
 def _show(number: int, before: deque[str], sides: dict[str, str], stream: TextIO) -> None:
@@ -83,10 +87,10 @@ def run(arguments: argparse.Namespace) -> int:
     """
     paths = (arguments.one, arguments.other)
     if arguments.lines < 0:
-        raise UsageError(f"is {arguments.lines}; give 0 or more", field="--lines")
+        raise UsageError(f"must be 0 or more, not {arguments.lines}", field="--lines")
     kinds = {_is_journal(path) for path in paths}
     if len(kinds) > 1:
-        raise UsageError("one is a journal and the other is not; give two journals, or two files of --trace")
+        raise UsageError("cannot compare a journal with a trace; give two journals, or two files of --trace")
     if not kinds.pop():
         return ENDED_WELL if compare_texts(*paths, arguments.lines, sys.stdout) else FOUND_PROBLEMS
     return _Comparison(read_journal(paths[0]), read_journal(paths[1]), arguments.lines).run()
@@ -116,7 +120,7 @@ class _Comparison:
             what = "the same run" if is_same else "the same trace"
             print(f"{what}: all {one.end.records:,} records are alike\ntrace: {one.end.trace}")
             if not is_same:
-                print("and yet the numbers of the report are others: compare them (cfepy replay --json)")
+                print("but the numbers of the report differ; compare them with cfepy replay --json")
             return ENDED_WELL if is_same else FOUND_PROBLEMS
         index, agreed = self._first_difference()
         if index is None:
@@ -147,12 +151,12 @@ class _Comparison:
         """The replays are alike: then the journals are, or one of the replays is not what was recorded."""
         cut_off = [journal.path for journal in self._journals if journal.end is None]
         if cut_off:  # what the replays do beyond their ends is not what was recorded
-            text = "is cut off: its run" if len(cut_off) == 1 else "are cut off: their runs"
+            text = "is truncated: its run" if len(cut_off) == 1 else "are truncated: their runs"
             print(f"{' and '.join(cut_off)} {text} may have gone on otherwise")
             return FOUND_PROBLEMS
         if all(journal.end is not None and journal.end.reason in SUDDEN for journal in self._journals):
             return ENDED_WELL  # in the middle of something, after which there is nothing to compare
-        print("and yet the recorded runs were not: a replay is not what was recorded; `cfepy replay` says where")
+        print("but the recorded runs differ: a replay deviates from its recording; `cfepy replay` reports where")
         return FOUND_PROBLEMS
 
 

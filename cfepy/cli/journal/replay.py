@@ -88,11 +88,13 @@ def run(arguments: argparse.Namespace) -> int:
         show_info(journal, sys.stdout)
         return ENDED_WELL
     if journal.end is None:
-        known = f"the journal has no end, which was sudden; it goes to {_seconds(journal.known_until_ns)}"
-        print(f"cfepy: {known}: --until SECONDS goes on", file=sys.stderr)
+        known = (
+            f"the journal has no end record, because the run was killed; it reaches {_seconds(journal.known_until_ns)}"
+        )
+        print(f"cfepy: {known}; continue with --until SECONDS", file=sys.stderr)
     elif journal.end.reason in SUDDEN:
-        how = "a task did not give up the CPU" if journal.end.reason == STALLED else "Ctrl-C came"
-        text = f"{how}, and the run was broken off in the middle of a task; its end is not compared"
+        how = "a task did not give up the CPU" if journal.end.reason == STALLED else "Ctrl-C was pressed"
+        text = f"{how}, and the run was interrupted in the middle of a task; its end is not compared"
         print(f"cfepy: {text}", file=sys.stderr)
     with replaying(arguments, journal) as replay:
         status, replay = _fly(arguments, replay)
@@ -145,7 +147,7 @@ def _tasks(arguments: argparse.Namespace, plan: RunPlan) -> str | None:
     asked: str | None = arguments.tasks
     if arguments.pdb is not None:
         if task_kind(asked or plan.tasks).name != THREAD:
-            text = "tasks run on threads, since Python's debugger in one of them needs a thread of its own"
+            text = "tasks run on threads, because Python's debugger requires a thread of its own"
             print(f"cfepy: {text}", file=sys.stderr, flush=True)
         return THREAD
     if asked is None and _goes_back(arguments) and arguments.gdb is None and has_greenlets():
@@ -178,12 +180,12 @@ def _tell(replay: Replay, stream: TextIO) -> None:
     if verdict.difference is None:
         print(f"cfepy: {_same(journal, verdict)}", file=stream)
         if verdict.other_results:
-            print("cfepy: and yet the numbers of the report are others: compare them (--json)", file=stream)
+            print("cfepy: but the numbers of the report differ; compare them with --json", file=stream)
         return
     recorded = verdict.difference.before
     text = f"not the run of {journal.path}: the same up to record {agreed.records:,} at {_seconds(agreed.now_ns)}"
     print(f"cfepy: {text}, not up to record {recorded.records:,} at {_seconds(recorded.now_ns)}", file=stream)
-    print("cfepy: this is what the replay did next:", file=stream)
+    print("cfepy: the replay continued with:", file=stream)
     for line in verdict.difference.lines or ("nothing more",):
         print(f"  {line}", file=stream)
     for reason in replay.stage.reasons:
@@ -192,14 +194,14 @@ def _tell(replay: Replay, stream: TextIO) -> None:
 
 def _same(journal: Journal, verdict: ReplayVerdict) -> str:
     if not verdict.compared:
-        why = "it is cut off before its first checkpoint" if verdict.cut_off else "its first checkpoint comes later"
+        why = "it is truncated before its first checkpoint" if verdict.cut_off else "its first checkpoint comes later"
         return f"nothing was compared with {journal.path}: {why}"
     if verdict.whole and not verdict.other_results:
         return f"the same run as {journal.path}"
     if verdict.whole:
         return f"the same trace as {journal.path}"
     where = f"record {verdict.agreed.records:,} at {_seconds(verdict.agreed.now_ns)}"
-    rest = "; the journal is cut off, and the rest of the run is not known" if verdict.cut_off else ""
+    rest = "; the journal is truncated, and the rest of the run is not known" if verdict.cut_off else ""
     return f"the same run as {journal.path} up to {where}, where it was compared for the last time{rest}"
 
 

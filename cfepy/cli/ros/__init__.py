@@ -78,7 +78,7 @@ def _add_node(commands: _Actions[argparse.ArgumentParser]) -> None:
     node.add_argument("words", metavar="WORD", nargs="+", help=_NODE_WORDS)
     add_run_options(node, without=["launch_args"])
     add_flight(node)
-    node.set_defaults(module="cfepy.cli.ros.node", hint="; what the node itself is to get comes after --")
+    node.set_defaults(module="cfepy.cli.ros.node", hint="; put the options of the node itself after --")
 
 
 def _add_rostest(commands: _Actions[argparse.ArgumentParser]) -> None:

@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     print(f"\n{output}: {found.messages - left_out:,} messages")
     if left_out:
         names = ", ".join(each.topic for each in found.topics if each.left_out)
-        tell([f"left out, since a bag has messages of ROS 1 alone: {left_out:,} messages of {names}"])
+        tell([f"left out {left_out:,} messages of {names}: a bag can hold only messages of ROS 1"])
     return _tell_damage(found)
 
 
@@ -54,7 +54,7 @@ def _output_of(file: str, is_conversion: bool) -> str:
     if not is_conversion:
         return str(path.with_suffix(f".recovered{path.suffix if path.suffix in _OTHER else '.bag'}"))
     if path.suffix not in _OTHER:
-        raise UsageError("ends neither with .bag nor with .mcap; say with -o what is to be made of it", file=file)
+        raise UsageError("must end with .bag or .mcap; name the output file with -o", file=file)
     return str(path.with_suffix(_OTHER[path.suffix]))
 
 
@@ -63,9 +63,9 @@ def _spare(file: str, output: str, *, is_named: bool, is_conversion: bool) -> No
     if not os.path.exists(output):
         return
     if not is_named:
-        raise UsageError("is there already; say with -o what is to be written", file=output)
+        raise UsageError("already exists; name another output file with -o", file=output)
     if not is_conversion and os.path.exists(file) and os.path.samefile(file, output):
-        raise UsageError("is the damaged recording itself; give another name", file=output, field="-o")
+        raise UsageError("must not be the damaged recording itself; give another name", file=output, field="-o")
 
 
 def _tell_damage(found: RecordingSummary) -> int:

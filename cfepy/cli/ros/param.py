@@ -40,7 +40,7 @@ def _parameters(arguments: argparse.Namespace) -> Parameters:
     source: str = arguments.source
     if is_source_of_files(source):
         problems: list[str] = []
-        refuse_run_options(arguments, f"is for a mission, and {source} holds parameters; leave it out")
+        refuse_run_options(arguments, f"only valid for a mission, and {source} is a parameter file; leave it out")
         found = of_files(Path(source), problems)
         tell(problems)
         return found
@@ -51,10 +51,10 @@ def _parameters(arguments: argparse.Namespace) -> Parameters:
             run.run_until(run.course.until_ns)
             tell([*run.problems(), *never_happened(run.mission)])
             return present(run.mission)
-    refuse_run_options(arguments, "is for a mission that flies; say how long, such as --for 5", but=["launch_args"])
+    refuse_run_options(arguments, "requires a mission that runs; say how long, such as --for 5", but=["launch_args"])
     unknown: list[str] = []
     found = at_start(plan.spec(), unknown)
-    tell([f"{app} has parameters of its own, under a name that it gives itself; see --for" for app in unknown])
+    tell([f"{app} sets parameters under a name that only a run shows; add --for SECONDS" for app in unknown])
     return found
 
 
@@ -88,7 +88,7 @@ def _full(name: str | None) -> str:
 
 
 def _missing(name: str, parameters: Parameters) -> int:
-    tell([f"there is no parameter {_full(name)}{did_you_mean(_full(name), parameters.names(), before='; ')}"])
+    tell([f"unknown parameter {_full(name)}{did_you_mean(_full(name), parameters.names(), before='; ')}"])
     return FOUND_PROBLEMS
 
 

@@ -120,7 +120,7 @@ def read_results(file: Path, suite: str) -> TestResults:
     results = TestResults()
     suites = [tag for tag in root.iter("testsuite") if tag.find("testcase") is not None or tag is root]
     if not suites and root.tag != "testsuites":
-        raise ValueError(f"has <{root.tag}> where <testsuite> should be")
+        raise ValueError(f"unexpected <{root.tag}>; expected <testsuite>")
     for tag in suites:
         tests, errors, failures = (int(tag.get(name, 0)) for name in ("tests", "errors", "failures"))
         results.add(TestResults(tests, errors, failures, list(_cases(tag, suite))))
@@ -161,7 +161,7 @@ def run(arguments: argparse.Namespace) -> int:
         environ, results = dict(os.environ), Path(folder)
         plan = plan_of(file, args, environ, cwd=Path.cwd(), results=results, with_compiled=True)
         if not plan.tests:
-            raise UsageError("has no <test>; `cfepy launch` runs what it has", file=file)
+            raise UsageError("missing <test>; use `cfepy launch` to run a launch file without tests", file=file)
         build = builder(arguments.cpp_nodes)
         built, left_out = built_programs(plan, build)
         tell([*plan.notes, *left_out])
@@ -271,7 +271,7 @@ class _Runner:
             return broken(suite, "test_ran", f"{died[0]}{_last_lines(node, flown)}")
         if ros is None or node.app not in ros.monitor.statuses:
             limit = f"{test.time_limit_ns / NS_PER_S:g} virtual seconds"
-            text = f"did not end in its {limit}; give it more (time-limit), or look why"
+            text = f"did not end within its {limit}; raise time-limit, or find out why it hangs"
             return broken(suite, "time_limit", f"{text}{_last_lines(node, flown)}", FAILURE)
         try:
             return read_results(test.results, suite)

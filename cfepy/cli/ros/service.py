@@ -30,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: no such mission or service.
     """
     if is_bag(arguments.source):
-        raise UsageError("is a bag, which has no services; give a mission", file=arguments.source)
+        raise UsageError("a bag has no services; give a mission", file=arguments.source)
     if arguments.action == "call":
         return _call(arguments)
     services = _services(arguments)

@@ -146,6 +146,8 @@ Source = BagSource | FlightSource
 def source_of(arguments: argparse.Namespace) -> Source:
     """What the command line names: a bag or a mission."""
     if is_bag(arguments.source):
-        refuse_run_options(arguments, f"{arguments.source} is a bag, which is not flown; leave it out", but=["seconds"])
+        refuse_run_options(
+            arguments, f"only valid for a mission, and {arguments.source} is a bag; leave it out", but=["seconds"]
+        )
         return BagSource(arguments.source, arguments.seconds)
     return FlightSource(flight_plan(arguments))

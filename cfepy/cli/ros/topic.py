@@ -161,14 +161,16 @@ def _filter(expression: str | None) -> Callable[[Any], Any]:
     try:
         code = compile(expression, "--filter", "eval")
     except SyntaxError as error:
-        raise UsageError(f"{error.msg}; write something like 'm.data > 3'", field="--filter") from None
+        raise UsageError(
+            f"invalid expression: {error.msg}; write for instance 'm.data > 3'", field="--filter"
+        ) from None
 
     def wanted(message: Any) -> Any:
         try:
             return eval(code, {"m": message})
         except Exception as error:  # whatever the expression makes of the message
             raise UsageError(
-                f"{described(error)}; m is the whole message, here {message._type}", field="--filter"
+                f"{described(error)}; m is the message, here of type {message._type}", field="--filter"
             ) from None
 
     return wanted

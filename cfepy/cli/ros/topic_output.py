@@ -134,7 +134,7 @@ class Delay:
         """
         decoded = self._decoder.decode(message)
         if not decoded._has_header:
-            raise UsageError("its messages have no header", file=message.topic)
+            raise UsageError("the messages of this topic have no header", file=message.topic)
         if message.stamp_ns is not None:
             self._delays.append((message.stamp_ns - decoded.header.stamp.to_nsec()) / NS_PER_S)
         return True

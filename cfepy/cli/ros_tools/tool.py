@@ -112,7 +112,7 @@ def _alone(arguments: argparse.Namespace) -> int:
 
 def _rosnode(arguments: argparse.Namespace) -> int:
     if is_bag(arguments.source):
-        raise UsageError("is a bag, which has no nodes; give a mission", file=arguments.source)
+        raise UsageError("a bag has no nodes; give a mission", file=arguments.source)
     plan, action = flight_plan(arguments), arguments.action
     words = words_of(arguments, ["-c", str(arguments.pings)] if action == "ping" else [])
     at_s = (plan.virtual_s or DEFAULT_S) if arguments.at is None else arguments.at
@@ -121,7 +121,7 @@ def _rosnode(arguments: argparse.Namespace) -> int:
     spec = with_ground_node(plan.spec(), "ground_tool", ["rosnode", words, at_s])
     _fly(plan if flies_on else replace(plan, seconds=LONGEST_S), spec, console, flies_on=flies_on)
     if console.status is None:
-        tell([f"the run was over before {at_s:g} s, when rosnode was to {action}; see --at"])
+        tell([f"the run ended before {at_s:g} s, the time of rosnode {action}; give an earlier --at"])
         return FOUND_PROBLEMS
     return console.status
 
@@ -140,7 +140,9 @@ def _tf(arguments: argparse.Namespace) -> int:
 
 def _played(arguments: argparse.Namespace) -> tuple[RunPlan, MissionSpec]:
     """The run in which a bag is played and nothing else, with its time as ROS time."""
-    refuse_run_options(arguments, f"{arguments.source} is a bag, which is not flown; leave it out", but=["seconds"])
+    refuse_run_options(
+        arguments, f"only valid for a mission, and {arguments.source} is a bag; leave it out", but=["seconds"]
+    )
     with BagReader(arguments.source) as bag:
         whole_s = bag.length_ns / NS_PER_S + AFTER_BAG_S
     spec = empty_mission()
@@ -203,7 +205,7 @@ def drawn(dot: str, kind: str) -> bytes:
     except OSError as error:
         if not is_absent("dot", error):
             raise UsageError(f"dot cannot be started: {error.strerror}", field=f"--{kind}") from None
-        hint = "needs graphviz, whose command `dot` is not installed; --dot FILE writes what it takes"
+        hint = "requires graphviz, and its command `dot` is not installed; --dot FILE writes the input of `dot`"
         raise UsageError(hint, field=f"--{kind}") from None
     except subprocess.CalledProcessError as error:
         raise UsageError(f"dot: {error.stderr.decode(errors='replace').strip()}", field=f"--{kind}") from None

@@ -33,7 +33,10 @@ of objects in a frozenset), a file that changes, a library written in C, or a co
 processor for the time, or the host's kernel past libc"""
 _HASHES = """it hangs on PYTHONHASHSEED, but ordered sets do not cure it: hash() of a text, a frozenset, a set that a
 library makes (d.keys() & e)"""
-_TASKS = "it hangs on --tasks; threads and greenlets must not differ, so this is a fault of cfepy: please report it"
+_TASKS = (
+    "the difference depends on --tasks; runs on threads and greenlets must not differ, "
+    "so this is an error in cfepy: please report it"
+)
 _NOT_TOGETHER = ("realtime", "json", "save_files", "trace", "record", "bag")
 
 
@@ -63,10 +66,12 @@ def check(arguments: argparse.Namespace, plan: RunPlan) -> int:
     """
     for name, option in flight_add_ons.options():
         if getattr(arguments, name) not in (None, []):
-            raise UsageError("runs that are compared are not shown; leave one of the two out", field=option)
+            raise UsageError(
+                "cannot be combined with --check-determinism, which shows no run; leave one of them out", field=option
+            )
     for name in _NOT_TOGETHER:
         if getattr(arguments, name) is not None:
-            raise UsageError("does not go with --check-determinism", field=f"--{name.replace('_', '-')}")
+            raise UsageError("cannot be combined with --check-determinism", field=f"--{name.replace('_', '-')}")
     problems = compare(plan, arguments.check_determinism)
     tell(problems or ())
     return ENDED_WELL if problems == [] else FOUND_PROBLEMS

@@ -84,7 +84,7 @@ def failure(runs: Sequence[RunInProcess]) -> UsageError:
             run.said.seek(0)
             text = run.said.read().decode("utf-8", "replace").strip()
             return UsageError(text or f"a run ended with status {run.process.returncode}")
-    return UsageError("a run ended in the middle")
+    return UsageError("a compared run ended before it was complete")
 
 
 @dataclass(frozen=True, slots=True)

@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     _check_name(kind, name)
     folder = Path(name)
     if os.path.exists(folder):
-        raise UsageError("is there already; choose another name, nothing is overwritten", file=folder)
+        raise UsageError("already exists and is not overwritten; choose another name", file=folder)
     if arguments.c:
         _check_c(kind, name)
     files = mission_files(name) if kind != "app" else c_app_files(name) if arguments.c else app_files(name)
@@ -93,17 +93,20 @@ def mission_files(folder: str) -> Files:
 def _check_name(kind: str, name: str) -> None:
     longest = LONGEST[kind]
     if not re.fullmatch(r"[a-z][a-z0-9_]*", name) or len(name) > longest:
-        text = f"{name!r} cannot be used; take 1 to {longest} lower-case letters, digits and '_', a letter first"
+        text = (
+            f"invalid name {name!r}; expected 1 to {longest} lower-case letters, "
+            "digits and '_', beginning with a letter"
+        )
         raise UsageError(text, field="NAME")
     if keyword.iskeyword(name) or name in sys.stdlib_module_names or name in TAKEN:
-        raise UsageError(f"{name!r} means something else already; choose another name", field="NAME")
+        raise UsageError(f"the name {name!r} is already taken; choose another name", field="NAME")
 
 
 def _check_c(kind: str, name: str) -> None:
     if kind != "app":
-        raise UsageError("makes an application: cfepy new app NAME --c", field="--c")
+        raise UsageError("only valid for an application: cfepy new app NAME --c", field="--c")
     if name.startswith(OF_CFE):
-        raise UsageError(f"{name!r} would make names in C that are cFE's own; choose another name", field="NAME")
+        raise UsageError(f"C names made from {name!r} would clash with cFE's own; choose another name", field="NAME")
 
 
 def _rendered(template: str, name: str, folder: str) -> bytes:

@@ -144,7 +144,7 @@ class Outputs:
         usual = RunPlan(plan.words)  # what a run is on decides nothing of it
         self._command = plan.command_line(tasks=usual.tasks, stall=usual.stall)
         if self._bag is None and self._bag_topics:
-            raise UsageError("says what goes into a bag; give the bag, too: --bag FILE", field="--bag-topics")
+            raise UsageError("requires --bag FILE", field="--bag-topics")
 
     def __enter__(self) -> Outputs:
         recorder = self._trace_file

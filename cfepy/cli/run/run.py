@@ -163,7 +163,7 @@ def _explain(flown: Flown, longer: str) -> None:
     tell((*told_problems(flown), *results.never_happened))
     if results.script_problems:
         script = mission.spec.script
-        tell([f'the console says why, and "cfepy check {script}" what can be seen without running it'])
+        tell([f'the console output shows the reason; "cfepy check {script}" checks the mission without running it'])
     if flown.interrupted:
         tell([f"ended by Ctrl-C or SIGTERM after {results.virtual_s:g} virtual seconds"])
     elif results.booted_s is None and not mission.over and flown.stall is None:

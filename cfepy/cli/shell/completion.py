@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rospy_shim.types.msgs.packages import Packages
 
 COMMANDS_OF, TELEMETRY_OF = "cfepy.cli.ground.cmd", "cfepy.cli.ground.tlm"
-NEEDS = "needs the library argcomplete: pip install 'cfepy[completion]'"
+NEEDS = "requires the library argcomplete: pip install 'cfepy[completion]'"
 _MISSIONS = (*LAUNCH_FILES, ".scr", ".py", ".bag", ".cfepy")
 _FILES = ("FILE", "FILE|-", "FILE|seed:N", "PATH", "BAG", "FILE.yaml", "FILE.tbl", "A", "B", "DIR", "FILE.tbl|DIR")
 _Complete = Callable[..., Iterable[str]]

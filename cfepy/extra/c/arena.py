@@ -60,7 +60,9 @@ class Arena:
                 continue
             self._drop_left(base + REGION // 2, base + REGION)
             return base
-        raise MemoryError(f"{(high - low) // REGION} processors with compiled applications live in this process")
+        raise MemoryError(
+            f"{(high - low) // REGION} is the limit of processors with compiled applications in one process"
+        )
 
     def map(self, size: int, shares: bool = False, is_last: bool = False) -> int:
         """New memory of zeros, readable and writable; its address.
@@ -76,7 +78,7 @@ class Arena:
         if address is None:
             address = self._end - room - PAGE if is_last else self._top
             if self._top + room + PAGE > self._end:
-                raise MemoryError(f"no {size} bytes are left for compiled applications")
+                raise MemoryError(f"not enough memory for {size} more bytes of compiled applications")
             if is_last:
                 self._end = address
             else:

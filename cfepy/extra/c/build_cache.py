@@ -19,7 +19,7 @@ from pathlib import Path
 from cfepy.status import UsageError
 
 VARIABLE = "CFEPY_CACHE"
-_ADVICE = f"set {VARIABLE} to a folder that can be written and has room"
+_ADVICE = f"set {VARIABLE} to a writable folder with free space"
 
 
 def cache_folder() -> Path:
@@ -75,7 +75,7 @@ def _fallback(reason: str) -> Path:
         text = f"cannot be made: {error.strerror} (and {reason}); {_ADVICE}"
         raise UsageError(text, file=folder) from None
     else:
-        text = f"{reason}; cfepy keeps what it builds in {folder} ({VARIABLE} names another folder)"
+        text = f"{reason}; cfepy keeps built files in {folder} (set {VARIABLE} for another folder)"
         print(f"cfepy: {text}", file=sys.stderr, flush=True)
     return folder
 
@@ -89,6 +89,6 @@ def _check_owned(folder: Path, owner: int) -> None:
     found = folder.lstat()
     theirs = hasattr(os, "getuid") and (found.st_uid != owner or found.st_mode & 0o022)
     if not stat.S_ISDIR(found.st_mode) or theirs:
-        raise UsageError(f"is not a folder that you alone can write; {_ADVICE}", file=folder)
+        raise UsageError(f"must be a folder that only you can write; {_ADVICE}", file=folder)
     if not os.access(folder, os.W_OK | os.X_OK):
         raise UsageError(f"cannot be written: {os.strerror(errno.EACCES)}; {_ADVICE}", file=folder)

@@ -114,6 +114,6 @@ _INSTEAD = {
 def _absent(name: str) -> Callable[[], object]:
     def fail() -> None:
         instead = f"; {_INSTEAD[name]}" if name in _INSTEAD else ""
-        raise CFault(f"{name}() was called, which neither cfepy nor a library of the mission has{instead}")
+        raise CFault(f"{name}() was called, but cfepy and the libraries of the mission do not define it{instead}")
 
     return fail

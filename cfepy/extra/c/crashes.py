@@ -28,10 +28,10 @@ class CFault(Exception):
 
 _BAD_ADDRESSES = frozenset({signal_number("SIGSEGV"), signal_number("SIGBUS")})
 _WORDS = {
-    signal_number("SIGSEGV"): "SIGSEGV (no such memory, or not to be written)",
+    signal_number("SIGSEGV"): "SIGSEGV (invalid or read-only memory)",
     signal_number("SIGBUS"): "SIGBUS (a bad address)",
     signal_number("SIGFPE"): "SIGFPE (such as a division by zero)",
-    signal_number("SIGILL"): "SIGILL (no such instruction)",
+    signal_number("SIGILL"): "SIGILL (invalid instruction)",
     signal_number("SIGTRAP"): "SIGTRAP (a trap that the compiler put there)",
 }
 _NEAR_STACK = 1 << 16
@@ -57,7 +57,11 @@ def explained(fault: CFault, place_of: Callable[[int], str], about: Callable[[in
     at = caller - 1 if caller else pc  # a return address: the call is before it
     where = place_of(at)
     if caller:
-        where = f"a call by {where} of what is no function" if pc == address else f"a function that {where} called"
+        where = (
+            f"a call by {where} of an address that is not a function"
+            if pc == address
+            else f"a function that {where} called"
+        )
     used = ""
     if number in _BAD_ADDRESSES:
         block = about(address)

@@ -136,7 +136,7 @@ def elf_file(stream: BytesIO) -> Any:
     try:
         from elftools.elf.elffile import ELFFile
     except ImportError:
-        raise UsageError("compiled applications need pyelftools: pip install 'cfepy[c]'") from None
+        raise UsageError("compiled applications require pyelftools: pip install 'cfepy[c]'") from None
     return ELFFile(stream)
 
 
@@ -165,7 +165,7 @@ def _read(elf: Any, data: bytes, name: str) -> SharedObject:
     if elf.elfclass != 64 or not elf.little_endian or machine != platform.machine():
         raise ElfError(f"{name} is {found}; this computer runs 64-bit little-endian {platform.machine()}")
     if elf["e_type"] != "ET_DYN":
-        raise ElfError(f"{name} is no shared object ({elf['e_type']}): link it with -shared")
+        raise ElfError(f"{name} is not a shared object ({elf['e_type']}); link it with -shared")
     made = SharedObject(PurePath(name).name, data, machine)
     made.headers = (elf["e_phoff"], elf["e_phnum"])
     dynamic = None
@@ -180,7 +180,7 @@ def _read(elf: Any, data: bytes, name: str) -> SharedObject:
         elif head.p_type == "PT_GNU_EH_FRAME":
             made.unwinding = head.p_vaddr
     if dynamic is None or not made.segments:
-        raise ElfError(f"{name} has nothing to load: link it with -shared")
+        raise ElfError(f"{name} has no loadable segment; link it with -shared")
     _read_dynamic(made, dynamic)
     _check_bounds(made)
     return made
@@ -190,7 +190,7 @@ def _check_bounds(made: SharedObject) -> None:
     """Refuse a file whose parts do not lie in it, or in its memory: the loader takes them as they are."""
     size, in_file = made.size, len(made.data)
     if size > LARGEST:
-        raise ElfError(f"{made.name} wants {size:,} bytes of memory; at most {LARGEST:,} can be loaded")
+        raise ElfError(f"{made.name} requires {size:,} bytes of memory; at most {LARGEST:,} can be loaded")
     segments = all(
         each.file_size <= each.memory_size and each.offset + each.file_size <= in_file for each in made.segments
     )
@@ -199,7 +199,7 @@ def _check_bounds(made: SharedObject) -> None:
     functions = all(each.address <= size for each in made.symbols if each.is_defined and each.kind == "STT_FUNC")
     at, initial, total, _ = made.thread_local or (0, 0, 0, 0)
     if not (segments and words and arrays and functions and initial <= total <= LARGEST and at + initial <= size):
-        raise ElfError(f"{made.name}: damaged ELF file: a part of it lies outside of the file, or of its memory")
+        raise ElfError(f"{made.name}: damaged ELF file: a segment is outside the file or its memory")
 
 
 def _read_dynamic(made: SharedObject, dynamic: Any) -> None:
@@ -218,7 +218,7 @@ def _read_dynamic(made: SharedObject, dynamic: Any) -> None:
     names = made.initial(tags["DT_STRTAB"], tags["DT_STRSZ"])
     made.symbols = list(symbols_in(made.initial(tags["DT_SYMTAB"], dynamic.num_symbols() * _SYMBOL.size), names))
     if "DT_REL" in tags:
-        raise ElfError(f"{made.name} has relocations without addends (DT_REL), which no processor here has")
+        raise ElfError(f"{made.name} has relocations without addends (DT_REL), which are not supported")
     made.relocations += _packed(made, made.initial(tags.get("DT_RELR", 0), tags.get("DT_RELRSZ", 0)))
     for table, size in (("DT_RELA", "DT_RELASZ"), ("DT_JMPREL", "DT_PLTRELSZ")):
         raw = made.initial(tags.get(table, 0), tags.get(size, 0))

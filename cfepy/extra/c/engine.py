@@ -37,7 +37,7 @@ def engine() -> ModuleType:
     """
     if sys.platform != "linux" or platform.machine() not in MACHINES:
         here = f"{sys.platform} on {platform.machine()}"
-        raise UsageError(f"compiled applications run on Linux on {' and '.join(MACHINES)}; this is {here}")
+        raise UsageError(f"compiled applications require Linux on {' or '.join(MACHINES)}; this is {here}")
     name = "cfepy.extra.c._engine"
     beside = importlib.util.find_spec(name)
     path = Path(beside.origin) if beside is not None and beside.origin else built()
@@ -91,8 +91,8 @@ def _compile(sources: list[Path], target: Path) -> None:
             if not is_absent(command[0], error):
                 raise UsageError(f"{command[0]} cannot be started: {error.strerror}") from None
             raise UsageError(
-                f"compiled applications need a C compiler, once: {command[0]} is not there. Install one (on Debian "
-                "`apt-get install gcc python3-dev`), or say with CC which one to take"
+                f"compiled applications require a C compiler once, and {command[0]} is not installed; install "
+                "one (on Debian `apt-get install gcc python3-dev`), or set CC to another compiler"
             ) from None
         except subprocess.CalledProcessError as error:
             hint = " (on Debian, Python's headers are in python3-dev)" if "Python.h" in error.stderr else ""

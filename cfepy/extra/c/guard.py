@@ -90,7 +90,7 @@ class Guard:
         """
         address = int(self._own.take(size, alignment))
         if not address:
-            raise MemoryError(f"no {size} bytes are left for blocks with a guard")
+            raise MemoryError(f"not enough memory for {size} more bytes of guarded blocks")
         self._known[address] = BlockLabel(what, app)
         return address
 

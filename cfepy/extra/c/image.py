@@ -171,11 +171,11 @@ class Image:
         name = self.source.name
         if kind == _FIXED_OFFSET:
             raise ElfError(
-                f"{name} has thread-local variables at fixed places of a thread (the initial-exec model), which a "
-                "library that is loaded later cannot have: compile it with -fPIC -ftls-model=global-dynamic"
+                f"{name} has thread-local variables in the initial-exec model, which a library loaded at run "
+                "time cannot have; compile it with -fPIC -ftls-model=global-dynamic"
             )
         if self.source.machine == "x86_64" and word.kind == _X86_DESCRIPTOR:
-            raise ElfError(f"{name} finds its thread-local variables by descriptors: compile it with -mtls-dialect=gnu")
+            raise ElfError(f"{name} uses TLS descriptors; compile it with -mtls-dialect=gnu")
         if kind is None:
             raise ElfError(f"{name}: relocation {word.kind} of {self.source.machine} is not supported")
 

@@ -72,7 +72,7 @@ class ThreadLocals:
         self._heap.owner = 0  # it goes with its task, not with whoever uses it first
         block = int(self._heap.take(size + alignment))
         if not block:
-            raise MemoryError(f"no {size} bytes are left for thread-local variables")
+            raise MemoryError(f"not enough memory for {size} more bytes of thread-local variables")
         at = block + (start - block) % max(alignment, 1)
         self._memory.poke(at, first.ljust(size, b"\0"))
         return block, at

@@ -59,7 +59,9 @@ def host_library(name: str) -> SharedObject:
     """
     file = find_library(name)
     if file is None:
-        raise ElfError(f"{name} is not on this computer; an object that is linked with {STATIC} does not need it")
+        raise ElfError(
+            f"library {name} not found on this computer; link the object with {STATIC} so that it is not needed"
+        )
     return read_shared_object(read_limited(file, OBJECT_BYTES), file.name)
 
 
@@ -163,7 +165,7 @@ class LinkedWith:
         for image in self._seen():
             if name in image.thread_locals:
                 return self.module_of(image), image.thread_locals[name]
-        raise ElfError(f"no library has the thread-local variable {name}")
+        raise ElfError(f"undefined thread-local variable {name}")
 
     def thread_local_function(self) -> int:
         return self._exports.calls.address(DESCRIPTOR)

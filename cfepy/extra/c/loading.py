@@ -61,10 +61,12 @@ class CompiledLoader:
         try:
             missing = self.runtime.missing(source)
             if missing:
-                self._console.write(f"OS_ModuleLoad: {file} needs what nobody has: {', '.join(missing)}")
+                self._console.write(f"OS_ModuleLoad: {file} has undefined symbols: {', '.join(missing)}")
             profile = abi_profile(source)
             if profile.contradicts(self.runtime.omit_deprecated):
-                self._console.write(f"OS_ModuleLoad: {file} was built {profile.value}; the mission says otherwise")
+                self._console.write(
+                    f"OS_ModuleLoad: {file} was built {profile.value}, but the mission specifies otherwise"
+                )
             return self.runtime.load(source)
         except (ElfError, MemoryError) as error:
             raise self._failed(error) from error

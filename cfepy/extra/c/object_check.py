@@ -64,8 +64,8 @@ def _check_needs(
             yield MissionProblem(script, entry.line, text + "; move that line up", is_warning=True)
         wanted -= exported
     if wanted:
-        text = f"{entry.name} needs {_listed(wanted)}, which neither cfepy nor a library of the mission has"
-        yield MissionProblem(script, entry.line, text + "; a call of it is a fault", is_warning=True)
+        text = f"{entry.name} needs {_listed(wanted)}, but cfepy and the libraries of the mission do not define them"
+        yield MissionProblem(script, entry.line, text + "; calling it is a fault", is_warning=True)
 
 
 def _exported(folder: Path, entry: StartupEntry) -> set[str]:
@@ -102,15 +102,18 @@ def check_profiles(script: Path, entries: list[StartupEntry], said: MissionSecti
         except ElfError:
             continue  # told with the line that names the file
         if profile.contradicts(omits):
-            text = f"was built {profile.value}, and the mission is for the other: build it with the option"
-            text += f" OMIT_DEPRECATED={_word(omits)}, or write {_line(not omits)} into the mission file"
+            text = f"was built {profile.value}, but the mission requires the opposite; build it with the option"
+            text += f" OMIT_DEPRECATED={_word(omits)}, or add {_line(not omits)} to the mission file"
             yield MissionProblem(file, 0, text)
         elif profile is AbiProfile.UNKNOWN:
             unknown.append(file.name)
     if unknown and not _says_profile(said):
-        text = f"whether {', '.join(unknown)} have OMIT_DEPRECATED cannot be told, without debug data of table handles;"
+        text = (
+            f"cannot determine whether {', '.join(unknown)} have OMIT_DEPRECATED, "
+            "because debug data of table handles is missing;"
+        )
         text += (
-            f" {_word(omits)} is taken: write {_line(omits)} into the mission file if that is right, or compile with -g"
+            f" {_word(omits)} is assumed; add {_line(omits)} to the mission file if that is right, or compile with -g"
         )
         yield MissionProblem(script, 0, text, is_warning=True)
 

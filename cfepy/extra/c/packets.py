@@ -59,7 +59,7 @@ class PacketImages:
             return 0
         address = int(self._heap.take(size))
         if not address:
-            raise MemoryError(f"no {size} bytes are left for messages of compiled applications")
+            raise MemoryError(f"not enough memory for {size} more bytes of messages of compiled applications")
         self._buffers[address] = buffer
         return address
 
@@ -105,7 +105,7 @@ class PacketImages:
         if buffer is None:
             if self._gone is not None and address in self._gone:
                 raise CFault(f"the message buffer 0x{address:x} is used after it was {self._gone[address]}")
-            raise CfeError(CFE_SB_BUFFER_INVALID, f"0x{address:x} is no buffer that an application holds")
+            raise CfeError(CFE_SB_BUFFER_INVALID, f"0x{address:x} is not a buffer that an application holds")
         return buffer
 
     def _check(self, address: int, function: str) -> None:

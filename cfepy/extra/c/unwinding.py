@@ -86,7 +86,7 @@ class FrameInfo:
         reader = self._reader(start)
         version, frames, counted, table = reader.take("<4B")
         if (version, counted, table) != (1, _U32, _FROM_TABLE | _I32):
-            raise BadFrameInfo(f"a table of the form {version} {counted:#x} {table:#x}")
+            raise BadFrameInfo(f"unknown form of table {version} {counted:#x} {table:#x}")
         reader.pointer(frames)
         [count] = reader.take("<I")
         pairs = [start + each for each in reader.take(f"<{2 * count}i")]
@@ -173,7 +173,7 @@ class _Reader:
     def pointer(self, encoding: int) -> int:
         here = self.address
         if encoding & 0x0F not in _FORMS or encoding & 0x70 not in (0, _FROM_HERE):
-            raise BadFrameInfo(f"a pointer of the form {encoding:#x}")
+            raise BadFrameInfo(f"unknown form of pointer {encoding:#x}")
         [value] = self.take(_FORMS[encoding & 0x0F])
         return value + (here if encoding & _FROM_HERE else 0)
 
@@ -181,7 +181,7 @@ class _Reader:
         """The beginning of an entry: where it ends."""
         [size] = self.take("<I")
         if size in (0, 0xFFFFFFFF):
-            raise BadFrameInfo(f"an entry of {size} bytes")
+            raise BadFrameInfo(f"invalid entry size: {size} bytes")
         return self.address + size
 
     @property

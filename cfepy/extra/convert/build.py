@@ -438,7 +438,7 @@ class _Compiler:
         used = self._made.with_suffix(".d").read_text(encoding="utf-8", errors="replace").split()
         wrong = next((each for each in used if each.startswith(SYSTEM_ROS)), None)
         if wrong is not None:
-            text = f"includes {wrong} of the ROS on this computer, for which there is no cFE [system-ros]"
+            text = f"includes {wrong} of the ROS on this computer, which is not available on cFE [system-ros]"
             raise UsageError(text, file=self._unit.source)
         os.replace(self._made, self._unit.object)
         return said

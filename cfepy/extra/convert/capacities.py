@@ -48,15 +48,15 @@ class Capacities:
         if place not in self.fields and item not in BUILTINS:
             kind, _, name = place.partition(".")
             raise UsageError(
-                f"{place} is an array of {item}, and has no capacity; the strict profile needs one, for each item "
-                f"takes its memory whether it is used or not: in the mission file, under cpp_nodes, "
+                f"missing capacity of {place}, an array of {item}; the strict profile reserves memory for "
+                "each item. Add to cpp_nodes in the mission file: "
                 f"`capacities: {{{kind}: {{{name}: 8}}}}`"
             )
         return self._checked(place, self.fields.get(place, self.array))
 
     def _checked(self, place: str, number: int) -> int:
         if isinstance(number, bool) or not isinstance(number, int) or not 0 < number <= MOST_ITEMS:
-            raise UsageError(f"{place}: a capacity is a number from 1 to {MOST_ITEMS:,}, not {number!r}")
+            raise UsageError(f"{place}: a capacity must be a number from 1 to {MOST_ITEMS:,}, not {number!r}")
         return number
 
 
@@ -103,8 +103,8 @@ def _wrong(kind: str, name: str, number: int, library: Library) -> str | None:
         if library.has(kind):
             return f"cannot be read: {error}"
         near = [f"{package}/{each}" for each in library.names(package) or ()]
-        packages = "put its package beside those of the nodes, or on ROS_PACKAGE_PATH"
-        return f"is of {kind}, which is no known message type; {did_you_mean(kind, near, packages)}"
+        packages = "put its package next to the packages of the nodes, or on ROS_PACKAGE_PATH"
+        return f"unknown message type {kind}; {did_you_mean(kind, near, packages)}"
     return _wrong_field(spec, name, number)
 
 
@@ -113,9 +113,9 @@ def _wrong_field(spec: Spec, name: str, number: int) -> str | None:
     has = f"fields of {spec.full_name} with a capacity: {', '.join(variable[:_SHOWN]) or 'none'}"
     each = next((each for each in spec.fields if each.name == name.removesuffix("[]")), None)
     if each is None:
-        return f"is no field of {spec.full_name}; {did_you_mean(name, variable, has)}"
+        return f"unknown field of {spec.full_name}; {did_you_mean(name, variable, has)}"
     if name not in variable:
-        own = "" if each.base in BUILTINS else f"; give those of {each.base}"
+        own = "" if each.base in BUILTINS else f"; give the capacities of {each.base} instead"
         return f"cannot have a capacity: {each.name} is {each.type}, which has a fixed size{own}; {has}"
     constants = [constant for constant in spec.constants if constant.type == "string"]
     is_only_text = [each.type for each in spec.fields].count("string") == 1 and each.type == "string"

@@ -83,9 +83,9 @@ def _description(script: Path, name: str) -> dict[str, Any]:
     try:
         done = subprocess.run(command, capture_output=True, text=True, env=environ, timeout=_TIMEOUT_S, check=False)
     except subprocess.TimeoutExpired:
-        raise UsageError(f"has not ended after {_TIMEOUT_S} s", file=script) from None
+        raise UsageError(f"did not end within {_TIMEOUT_S} s", file=script) from None
     if done.returncode:
-        raise UsageError(f"failed: {(done.stderr.strip().splitlines() or ['it says nothing'])[-1]}", file=script)
+        raise UsageError(f"failed: {(done.stderr.strip().splitlines() or ['no output'])[-1]}", file=script)
     found: dict[str, Any] = json.loads(done.stdout)
     return found
 

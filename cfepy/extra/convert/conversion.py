@@ -114,7 +114,7 @@ def task_of(words: Sequence[str], environ: Mapping[str, str]) -> ConversionTask:
         task = _of_launch(*launch_file(words), environ)
     if not task.nodes:
         why = "; ".join(task.notes) or "none of its nodes is C++ whose sources are here"
-        raise UsageError(f"has nothing to convert: {why}", file=task.made_from)
+        raise UsageError(f"has no node that can be converted: {why}", file=task.made_from)
     return task
 
 

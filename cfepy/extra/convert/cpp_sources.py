@@ -57,7 +57,7 @@ def collect(sources: Iterable[Path], includes: Sequence[Path]) -> SourceSet:
         size += len(found.contents[file])
         if size > CPP_FILES_BYTES or len(found.contents) > CPP_FILES:
             most = f"{CPP_FILES:,} files or {CPP_FILES_BYTES:,} bytes"
-            raise UsageError(f"includes headers of more than {most}, with those that they include", file=waiting[0])
+            raise UsageError(f"includes headers of more than {most}, counting nested includes", file=waiting[0])
         text = found.texts[file] = without_comments(found.contents[file].decode("utf-8", "replace"))
         for name in dict.fromkeys(includes_of(text)):
             beside = file.parent / name
@@ -117,5 +117,5 @@ def main_form(sources: Iterable[Path], where: Path) -> bool:
     found = [match for text in texts for match in _MAIN.finditer(text)]
     if len(found) != 1:
         what = "no main function" if not found else f"{len(found)} main functions"
-        raise UsageError(f"its sources have {what} [main-form]", file=where)
+        raise UsageError(f"its sources must have one main function, not {what} [main-form]", file=where)
     return found[0][2] is None

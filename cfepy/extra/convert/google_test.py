@@ -66,5 +66,7 @@ def google_test_folder() -> Path:
         for folder in (Path(place), Path(place) / "googletest"):
             if (folder / SOURCE).is_file():
                 return folder
-    text = "are not there: tests in C++ need them (on Debian `apt-get install libgtest-dev`)"
-    raise UsageError(f"the sources of GoogleTest {text}, or say with {ROOT} where they are [gtest]", file=said)
+    text = "are not installed; tests in C++ require them (on Debian `apt-get install libgtest-dev`)"
+    raise UsageError(
+        f"the sources of GoogleTest {text}. Install them, or set {ROOT} to their folder [gtest]", file=said
+    )

@@ -287,7 +287,7 @@ def _check_name(spec: Spec) -> None:
     package, _, name = spec.full_name.partition("/")
     for word in (package, name):
         if not re.fullmatch(r"[A-Za-z]\w*", word, re.ASCII) or word in _KEYWORDS:
-            raise UsageError(f"{spec.full_name} cannot be a name in C++", file=spec.file)
+            raise UsageError(f"{spec.full_name} is not a valid name in C++", file=spec.file)
 
 
 def _known_to_wire(first: str, *lines: str) -> Iterator[str]:

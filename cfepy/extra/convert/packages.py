@@ -267,7 +267,7 @@ def _files(target: CppTarget) -> list[Path]:
         if file.suffix not in SUFFIXES:
             continue
         if not os.path.isfile(file):
-            raise UsageError(f"{target.name} is made of {name}, which is not there", file=target.folder / FILE)
+            raise UsageError(f"{target.name} has a missing source: {name}", file=target.folder / FILE)
         found.append(Path(*file.parts))
     return found
 

@@ -233,7 +233,7 @@ def cmake_word(text: str, of: Path, before: str = "") -> str:
     if _PLAIN_WORD.fullmatch(text):
         return before + text
     if not text.isprintable() or text.endswith("\\") or any(each in text for each in _DIVIDING):
-        raise UsageError(f"{text!r} has a character that CMake does not take in a word; give it another name", file=of)
+        raise UsageError(f"{text!r} has a character that CMake does not allow in a word; choose another name", file=of)
     return f'"{before}' + re.sub(r'([\\"$])', r"\\\1", text) + '"'
 
 

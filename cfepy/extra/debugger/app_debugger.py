@@ -90,7 +90,7 @@ class AppDebugger(pdb.Pdb):
 
     def _goes(self, way: Callable[[LineWay], bool]) -> bool:
         if self.way_back is None:
-            self.message("there is no way back without cfepy replay --back")
+            self.message("going back requires cfepy replay --back")
             return False
         return way(self.way_back) and bool(self.do_continue(""))
 

@@ -65,7 +65,7 @@ class Breakpoint(Attachment):
         if self._has_hit:
             return None
         why = self._watch.why_not() if isinstance(self._watch, _AtPredicate) else ""
-        return f"--break {self._text!r} stopped nowhere{why}"
+        return f"--break {self._text!r} never matched{why}"
 
     def _stop(self, what: str) -> None:
         self._has_hit = True
@@ -85,7 +85,9 @@ def _meant(text: str, spec: MissionSpec, hit: Hit) -> Attachment:
 
 def _at_event(text: str, app: str, which: str, hit: Hit) -> Attachment:
     if which.isalpha() and which not in EVENT_TYPES:
-        raise UsageError(f"{text!r}: {which} is no type of event; there are {', '.join(EVENT_TYPES)}", field="--break")
+        raise UsageError(
+            f"{text!r}: invalid event type {which}; expected one of {', '.join(EVENT_TYPES)}", field="--break"
+        )
 
     def take(seen: Seen) -> None:
         event = DecodedEvent.of(seen)
@@ -101,8 +103,8 @@ def _at_packet(name: str, dictionary: Dictionary, hit: Hit) -> Attachment:
     try:
         msg_id = dictionary.telemetry_of(name).msg_id if command is None else command.msg_id
     except UsageError:
-        hint = did_you_mean(name, [*dictionary.commands, *dictionary.telemetry], f"write {FORMS}")
-        raise UsageError(f"{name!r} is no packet of this mission; {hint}", field="--break") from None
+        hint = did_you_mean(name, [*dictionary.commands, *dictionary.telemetry], f"expected {FORMS}")
+        raise UsageError(f"unknown packet {name!r}; {hint}", field="--break") from None
 
     def take(seen: Seen) -> None:
         decoded = dictionary.decode(seen.packet)
@@ -120,7 +122,7 @@ class _AtPredicate(Attachment):
         try:
             self._predicate = Predicate.read(Marked(text, Path("--break"), 1, ""), NAMES)
         except UsageError as error:
-            raise UsageError(f"{error.text}; write {FORMS}", field="--break") from None
+            raise UsageError(f"{error.text}; expected {FORMS}", field="--break") from None
         dictionary = dictionary_of(spec)
         packets = tuple(dict.fromkeys([*dictionary.telemetry, *dictionary.commands]))
         self._watch = MessageWatch(spec, self._take, topics=("*",), packets=packets)
@@ -150,7 +152,7 @@ class _AtPredicate(Attachment):
         if self._applies or not self._errors:
             return ""
         topics = sorted(self._errors, key=lambda topic: not topic.startswith("/"))[:MOST_REASONS]
-        return "; it applies to no message: " + "; ".join(f"{topic}: {self._errors[topic]}" for topic in topics)
+        return "; it does not apply to any message: " + "; ".join(f"{topic}: {self._errors[topic]}" for topic in topics)
 
 
 def _told(heard: Heard) -> str:
@@ -185,11 +187,11 @@ class VariableCondition:
         try:
             tree = ast.parse(text, mode="eval")
         except (SyntaxError, ValueError):
-            raise UsageError(f"{text!r} is no Python expression", field="--back-to") from None
+            raise UsageError(f"invalid Python expression {text!r}", field="--back-to") from None
         calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
         harmful = [each for each in calls if not (isinstance(each.func, ast.Name) and each.func.id in _HARMLESS)]
         if harmful or any(isinstance(node, ast.NamedExpr | ast.Await | ast.Yield) for node in ast.walk(tree)):
-            raise UsageError(f"{text!r} may change the run: leave out calls", field="--back-to")
+            raise UsageError(f"calls are not allowed in {text!r}, because they could change the run", field="--back-to")
         self._code: CodeType = compile(tree, "--back-to", "eval")
 
     def holds(self, frame: FrameType | None) -> bool:

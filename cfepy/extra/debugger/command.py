@@ -42,7 +42,7 @@ def fly_with_debugger(
         The exit status, and the last of the replays.
     """
     if arguments.gdb is not None and (arguments.back or arguments.back_to is not None):
-        raise UsageError("gdb stays in one flight, and there is no way back from it", field="--back")
+        raise UsageError("cannot be combined with --gdb", field="--back")
     if _may_fork(arguments, replay):
         return _in_other_processes(replay, lambda keepers: _fly_all(arguments, replay, view, looking_on, keepers))
     return _fly_all(arguments, replay, view, looking_on, None)
@@ -67,7 +67,7 @@ def _fly_all(
         replay = replay.anew()
         replay.attachments += looking_on
     if journey is not None and journey.is_silent:
-        tell(["the run did not come there again: it goes another way each time, and there is no way back in it"])
+        tell(["cannot go back: the second run did not reach this point, so the run is not deterministic"])
     tell(debugger.missed)
     return status, replay
 
@@ -100,7 +100,7 @@ def _in_other_processes(replay: Replay, flights: Callable[[Keepers], tuple[int, 
     signal.signal(signal.SIGINT, usual)
     os.waitpid(child, 0)
     if not answer:
-        raise UsageError("the process of the run ended by itself", field="--back")
+        raise UsageError("the process of the run ended unexpectedly", field="--back")
     status, verdict, problems, error = pickle.loads(answer)
     if error is not None:
         raise UsageError(error)
@@ -140,7 +140,7 @@ def debugger_of(
     """
     spec = replay.stage.spec()
     if arguments.pdb is not None and arguments.gdb is not None:
-        raise UsageError("one debugger at a time: --pdb or --gdb", field="--gdb")
+        raise UsageError("cannot be combined with --pdb", field="--gdb")
     app = None if arguments.pdb is None else _application(arguments.pdb, spec, "--pdb")
     gdb = None
     if arguments.gdb is not None:
@@ -171,8 +171,8 @@ def _application(name: str, spec: MissionSpec, option: str) -> str:
         if app in apps or app in CORE_APPS:
             return str(app)
     known = [*apps, *nodes]
-    hint = did_you_mean(plain, known, f"there are {', '.join(known)}")
-    raise UsageError(f"the mission has no application {name!r}; {hint}", field=option)
+    hint = did_you_mean(plain, known, f"expected one of {', '.join(known)}")
+    raise UsageError(f"unknown application {name!r}; {hint}", field=option)
 
 
 class DebugView(View):

@@ -43,7 +43,7 @@ BACK = """
   b, back        back to the thing that happened before
   rc             back to the last breakpoint
   bt WHAT        back to the last time at which WHAT, as of --break, happened, or an expression about variables held"""
-NO_WAY = "there is no way back"
+NO_WAY = "cannot go back"
 
 
 class Debugger(Observer):

@@ -80,7 +80,7 @@ class GdbSession:
             return
         gdb = shutil.which("gdb")
         if gdb is None:
-            raise UsageError("gdb is not installed", field="--gdb")
+            raise UsageError("requires gdb, which is not installed", field="--gdb")
         mission.stall_watch.limit_s = 0
         folder = Path(self._folder.enter_context(tempfile.TemporaryDirectory(prefix="cfepy-gdb-")))
         script = folder / "commands"
@@ -93,7 +93,9 @@ class GdbSession:
         while not _is_traced():
             if self._waited(LOOK_S) is not None:
                 raise UsageError(
-                    "gdb ended without tracing this process; may it? (kernel.yama.ptrace_scope)", field="--gdb"
+                    "gdb ended without tracing this process; check that tracing is "
+                    "permitted (kernel.yama.ptrace_scope)",
+                    field="--gdb",
                 )
         self._waited(SETTLE_S)
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-NOTHING_BEFORE = "that has not been, before this moment"
+NOTHING_BEFORE = "no match before this point of the run"
 
 
 class RunMoment(NamedTuple):

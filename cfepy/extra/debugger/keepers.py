@@ -143,7 +143,7 @@ class Keepers:
                 os.write(chosen.orders, len(order).to_bytes(LENGTH_BYTES, "little") + order)
                 end_process(0)
             self._all = self._all[: self._all.index(chosen)]
-        raise LookupError("no process is there to go on from")
+        raise LookupError("no process to continue from")
 
     def dismiss(self) -> None:
         """None is needed any more."""

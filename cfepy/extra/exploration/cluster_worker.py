@@ -113,5 +113,5 @@ def check_versions(address: str, there: Mapping[str, str], here: Mapping[str, st
     """
     if there != here:
         texts = [", ".join(f"{name} {version}" for name, version in each.items()) for each in (there, here)]
-        text = f"worker {address} has {texts[0]}, who asks has {texts[1]}; install the same on all of them"
+        text = f"worker {address} has {texts[0]}, but the client has {texts[1]}; install the same on all computers"
         raise UsageError(text, field="--cluster")

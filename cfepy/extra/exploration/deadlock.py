@@ -202,8 +202,8 @@ def stuck_for_good(
 
 def _failure(left: Left, usual_ns: int | None) -> Failure:
     app, what = left.place
-    under_fifo = "it never waits there" if usual_ns is None else f"nobody waits there for longer than {_s(usual_ns)} s"
-    text = f"{left.task} waits for ever for {what}, since {_s(left.since_ns)} s; under fifo {under_fifo}"
+    under_fifo = "it never waits there" if usual_ns is None else f"the longest wait there is {_s(usual_ns)} s"
+    text = f"{left.task} waits forever for {what}, since {_s(left.since_ns)} s; under fifo {under_fifo}"
     return Failure(STUCK, app, text, task=left.task)
 
 

@@ -99,9 +99,9 @@ class ForkServer:
 
     def __init__(self, body: Callable[[LateSchedule], Any], options: Schedule) -> None:
         if not options.from_ns:
-            raise ValueError("schedules part from an instant on: give one, such as from=600ms")
+            raise ValueError("missing option `from` of the schedule; add it, such as from=600ms")
         if not hasattr(os, "fork"):
-            raise ValueError("this system cannot fork a process: leave out what forks")
+            raise ValueError("this system cannot fork processes, so a fork server is not available")
         self.options = options.at({})
         self._body = body
         self._requests = _Channel()
@@ -122,7 +122,7 @@ class ForkServer:
             Exception: what the body raised.
         """
         if schedule.at({}) != self.options:
-            raise ValueError(f"schedule {schedule} has other options than {self.options}")
+            raise ValueError(f"schedule {schedule} must have the options of {self.options}")
         try:
             self._requests.send(schedule)
             answer = self._answers.receive()

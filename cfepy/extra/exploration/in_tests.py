@@ -215,5 +215,5 @@ class ExploredTest:
 
 
 def _complain() -> None:
-    text = "the test boots no mission under the schedules; it has to, or a function-scoped fixture of it"
+    text = "the test must boot a mission under the schedules, itself or in a function-scoped fixture"
     raise UsageError(text, field="@explore")

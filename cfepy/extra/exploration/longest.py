@@ -70,7 +70,7 @@ class MeasuredTrial(Trial):
                 found = Failure(LONGEST, self.measure.text, text, longest.at_ns, task=longest.task, cause=LONGEST)
                 verdict = replace(verdict, failures=(*verdict.failures, found))
         if longest is None and tried.booted_ns is not None:
-            text = f"nothing was measured of {self.measure.text}"
+            text = f"no value of {self.measure.text} was measured"
             tried = tried._replace(notes=(*tried.notes, f"{text}{_why_nothing(self.measure, watch.mission)}"))
         return tried._replace(verdict=verdict)
 

@@ -191,7 +191,7 @@ def ship(plan: RunPlan, files: Sequence[str]) -> Shipment:
     size = sum(os.path.getsize(path) for path in files)
     if size > LIMIT:
         text = (
-            f"has {size >> 20} MiB of files, more than {LIMIT >> 20} MiB; take out of its folder what it does not need"
+            f"must have at most {LIMIT >> 20} MiB of files, not {size >> 20} MiB; remove unneeded files from its folder"
         )
         raise UsageError(text, file=plan.words[0], field="--cluster")
     plan = replace(plan, words=_absolute(plan))

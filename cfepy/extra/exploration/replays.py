@@ -112,7 +112,7 @@ def _campaign(path: str) -> tuple[RunPlan, dict[str, Any]]:
     try:
         return RunPlan.from_dict(campaign["plan"]), search if isinstance(search, dict) else {}
     except (KeyError, TypeError, ValueError, AttributeError):
-        raise UsageError("does not say which mission it is about; explore it anew", file=path, line=1) from None
+        raise UsageError("does not name its mission; explore the mission again", file=path, line=1) from None
 
 
 def _same(verdict: Verdict, group: str) -> Failure | None:

@@ -96,7 +96,7 @@ class ResultsFile:
         try:
             lock_file(self._file.fileno())
         except OSError:
-            text = "another cfepy is writing this file; wait for it, or name another file"
+            text = "is being written by another cfepy process; wait for it, or name another file"
             raise UsageError(text, file=self.path, field=OPTION) from None
 
     def _read(self, identity: dict[str, Any]) -> None:
@@ -265,7 +265,7 @@ def _check(head: dict[str, Any], identity: dict[str, Any], path: Path) -> None:
     if parts:
         more = [f"and {len(parts) - SHOWN} more"] if len(parts) > SHOWN else []
         told = "; ".join(parts[:SHOWN] + more)
-        text = f"has the results of another campaign ({told}); name another file, or delete this one"
+        text = f"contains the results of another campaign ({told}); name another file, or delete this one"
         raise UsageError(text, file=path, line=1, field=OPTION)
 
 
@@ -284,5 +284,5 @@ def _foreign(path: Path) -> UsageError:
 
 
 def _damaged(path: Path, line: int) -> UsageError:
-    text = "is not a line of a results file; name another file, or delete what follows the line before"
+    text = "is not a valid line of a results file; name another file, or delete this line and all that follow"
     return UsageError(text, file=path, line=line, field=OPTION)

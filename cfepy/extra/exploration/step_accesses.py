@@ -50,7 +50,10 @@ def check_visible(spec: MissionSpec) -> None:
     compiled = [entry.name for entry in spec.entries if find_compiled(entry.path, spec.folder) is not None]
     compiled += spec.ros.compiled
     if compiled:
-        text = f"orders needs to see what tasks touch, and {compiled[0]} is compiled; take another policy, such as dfs"
+        text = (
+            f"the policy orders must observe all accesses, and {compiled[0]} is "
+            "compiled; use another policy, such as dfs"
+        )
         raise UsageError(text, field="--policy")
 
 

@@ -112,7 +112,7 @@ class PointNumbers:
             return self.problem or self.trouble.splitlines()[-1]
         for topic in self.topics:
             if not topic.sent:
-                return f"no message was measured of {topic.name}{topic.hint}"
+                return f"no message of {topic.name} was measured{topic.hint}"
             if topic.lost:
                 return f"{topic.name} lost {topic.lost} of {topic.sent}"
             if rate_hz is not None and topic.delivered_hz < rate_hz * (1 - RATE_TOLERANCE):

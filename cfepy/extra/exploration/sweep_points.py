@@ -36,7 +36,9 @@ def values_of(text: str, option: str) -> list[str]:
         match = _RANGE.fullmatch(part.strip())
         if match is None:
             if not part.strip() or ".." in part:
-                raise UsageError(f"{part!r} is no value and no range such as 10..1000 or 10..50:10", field=option)
+                raise UsageError(
+                    f"invalid value {part!r}; expected a value, or a range such as 10..1000 or 10..50:10", field=option
+                )
             found.append(part.strip())
         else:
             found += _range(part, match, option)
@@ -47,11 +49,14 @@ def _range(part: str, match: re.Match[str], option: str) -> list[str]:
     first, last = float(match[1]), float(match[2])
     if match[3] is None:
         if not 0 < first <= last:
-            raise UsageError(f"{part!r} does not go up from more than 0; give a step, as in 0..50:10", field=option)
+            raise UsageError(
+                f"invalid range {part!r}; it must rise from a number greater than 0, or have a step as in 0..50:10",
+                field=option,
+            )
         return [f"{each:.12g}" for each in _preferred(first, last)]
     step = float(match[3])
     if step <= 0 or first > last or (last - first) / step > MOST_POINTS:
-        raise UsageError(f"{part!r} does not go up in steps to an end; write it like 10..50:10", field=option)
+        raise UsageError(f"invalid range {part!r}; it must rise in steps to an end, as in 10..50:10", field=option)
     count = int((last - first) / step + 1e-9) + 1
     return [f"{first + number * step:.12g}" for number in range(count)]
 
@@ -79,7 +84,7 @@ def numbers_of(text: str, option: str) -> list[float]:
         except ValueError:
             number = 0.0
         if not 0 < number < float("inf"):
-            raise UsageError(f"{value!r} is no rate in Hz; give more than 0", field=option)
+            raise UsageError(f"invalid rate {value!r}; expected a number of Hz greater than 0", field=option)
         found.append(number)
     return found
 
@@ -95,7 +100,7 @@ def seeds_of(text: str, option: str) -> list[int]:
     try:
         return [int(value) for value in values]
     except ValueError:
-        raise UsageError(f"{text!r} are no seeds; write numbers, or a range such as 0..9", field=option) from None
+        raise UsageError(f"invalid seeds {text!r}; expected numbers, or a range such as 0..9", field=option) from None
 
 
 def points_of(
@@ -120,17 +125,17 @@ def points_of(
     """
     sets = spec.sweep.rate
     if rates and not sets:
-        text = "does not say what a rate sets; add `sweep: {rate: [/node/rate]}` to its mission file, or use --set"
+        text = "missing target of --rate; add `sweep: {rate: [/node/rate]}` to the mission file, or use --set"
         raise UsageError(text, file=spec.mission_file or spec.script, field="--rate")
     both = next((name for name, _ in varied if rates and name in sets), None)
     if both is not None:
-        raise UsageError(f"{both} is what the rate sets; leave --rate or this out", field="--set")
+        raise UsageError(f"{both} is already set by --rate; leave one of them out", field="--set")
     axes = [[(name, value) for value in values] for name, values in varied]
     count = len(boards) * max(1, len(rates)) * len(seeds)
     for axis in axes:
         count *= len(axis)
     if count > MOST_POINTS:
-        raise UsageError(f"are {count:,} points, more than {MOST_POINTS:,}; take fewer values", field="--set")
+        raise UsageError(f"more than {MOST_POINTS:,} points ({count:,}); give fewer values", field="--set")
     found = []
     asked: Sequence[float | None] = rates or [None]
     for board, chosen, rate, seed in product(boards, product(*axes), asked, seeds):

@@ -131,7 +131,7 @@ class Verdict:
         except UsageError:
             raise
         except (KeyError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
-            raise UsageError(f"is no verdict: {type(error).__name__}: {error}") from None
+            raise UsageError(f"is not a verdict: {type(error).__name__}: {error}") from None
 
     @classmethod
     def _of(cls, plain: dict[str, Any]) -> Verdict:
@@ -148,7 +148,7 @@ class Verdict:
             texts += [each.kind, each.who, each.text, each.detail, each.task, each.cause]
         numbers = [found.decisions, found.preemptions, found.end_ns, *(each.at_ns or 0 for each in failures)]
         if not all(isinstance(each, str) for each in texts) or not all(isinstance(each, int) for each in numbers):
-            raise TypeError("a text or a number is of another kind")
+            raise TypeError("a text or a number has the wrong type")
         return found
 
 

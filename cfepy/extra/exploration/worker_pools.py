@@ -34,7 +34,7 @@ PATIENCE_NS = 60 * NS_PER_S  # wall time for which a cluster may be without a wo
 BATCH_NS = NS_PER_S  # wall time that a batch should take: the way there and back takes some hundredths of a second
 MOST = 256  # schedules in a batch
 QUEUED = 2  # batches for each thread of the cluster, so that the next one is there when one is done
-_KEPT = "what was found is kept, if there is a results file: the same command goes on from there"
+_KEPT = "a results file keeps the findings so far; run the same command again to continue"
 
 
 def make_crew(
@@ -57,13 +57,13 @@ def make_crew(
         UsageError: the options make no sense, or there is no such cluster.
     """
     if jobs is not None and jobs < 1:
-        raise UsageError(f"{jobs} processes cannot run anything; give 1 or more", field="--jobs")
+        raise UsageError(f"must be 1 or more, not {jobs}", field="--jobs")
     if longest_s <= 0:
-        raise UsageError(f"{longest_s:g} s are no time for a schedule; give more than 0", field="--longest")
+        raise UsageError(f"must be greater than 0 s, not {longest_s:g} s", field="--longest")
     if cluster is None:
         return Processes(max(1, min(count, usable_cpus() if jobs is None else jobs)), longest_s)
     if jobs is not None:
-        raise UsageError("says how many processes run here; with --cluster none do", field="--jobs")
+        raise UsageError("cannot be combined with --cluster", field="--jobs")
     return Cluster(cluster, None if shipment is None else shipment(), longest_s)
 
 
@@ -152,7 +152,9 @@ class Cluster:
 
     def _started(self, count: str) -> Any:
         if not count.isdecimal() or int(count) == 0:
-            raise UsageError(f"{LOCAL}{count} is no number of processes; write {LOCAL}4", field=OPTION)
+            raise UsageError(
+                f"invalid number of processes in {LOCAL}{count}; write for instance {LOCAL}4", field=OPTION
+            )
         # Port 0 is any free one: None would be the well-known 8787, which another cluster may have.
         options = {"threads_per_worker": 1, "processes": True, "host": "127.0.0.1", "dashboard_address": "127.0.0.1:0"}
         safe_path = {"distributed.nanny.pre-spawn-environ.PYTHONSAFEPATH": "1"}  # see `python_command`
@@ -169,7 +171,9 @@ class Cluster:
         except UsageError:
             raise
         except Exception as error:
-            text = f"workers at {self._address} cannot load the campaign, is cfepy installed there? {error!r}"
+            text = (
+                f"workers at {self._address} cannot load the campaign; check that cfepy is installed there: {error!r}"
+            )
             raise UsageError(text, field=OPTION) from None
         self._name = name
 
@@ -263,7 +267,7 @@ class Cluster:
             raise UsageError(f"the cluster at {self._address} has lost all its workers; {_KEPT}", field=OPTION)
 
     def _lost(self) -> UsageError:
-        return UsageError(f"the scheduler at {self._address} is gone; {_KEPT}", field=OPTION)
+        return UsageError(f"the scheduler at {self._address} has stopped; {_KEPT}", field=OPTION)
 
 
 def _distributed() -> Any:
@@ -275,7 +279,7 @@ def _distributed() -> Any:
     try:
         import distributed
     except ImportError:
-        text = "needs dask.distributed, which is not installed: pip install 'cfepy[cluster]'"
+        text = "requires dask.distributed, which is not installed: pip install 'cfepy[cluster]'"
         raise UsageError(text, field=OPTION) from None
     for name in ("distributed", "distributed.client", "tornado"):
         logging.getLogger(name).setLevel(logging.CRITICAL)

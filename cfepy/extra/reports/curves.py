@@ -211,7 +211,7 @@ def figure_of_matplotlib(**settings: Any) -> Figure:
     try:
         from matplotlib.figure import Figure
     except ImportError:
-        raise UsageError("pictures need the library matplotlib: pip install 'cfepy[plot]'") from None
+        raise UsageError("pictures require the library matplotlib: pip install 'cfepy[plot]'") from None
     return Figure(**settings)
 
 

@@ -89,7 +89,7 @@ class Errands:
 
     def _leave_out(self, done: Done) -> None:
         self.left_out += 1
-        self._results.append((done, None, RosError("too much waits for other programs")))
+        self._results.append((done, None, RosError("too many requests to other programs are pending")))
         self.nudge()
 
     def ask(self, uri: str, method: str, arguments: tuple[Any, ...], done: Done) -> None:
@@ -136,7 +136,7 @@ class Errands:
             try:
                 done(result, error)
             except Exception as problem:  # another program's answer was not what it should be
-                self._tell(f"an answer of another program could not be used: {type(problem).__name__}: {problem}")
+                self._tell(f"invalid answer of another program: {type(problem).__name__}: {problem}")
 
     def close(self) -> None:
         """What is under way is left behind."""
@@ -159,11 +159,11 @@ class _BoundedSocket(socket.socket):
         """As `socket.recv_into`.
 
         Raises:
-            OSError: the answer takes too long, or is too large.
+            OSError: timeout while waiting for the answer, or is too large.
         """
         left_s = self._end_s - time.monotonic()
         if left_s <= 0:
-            raise TimeoutError("the answer takes too long")
+            raise TimeoutError("timeout while waiting for the answer")
         self.settimeout(left_s)
         size = super().recv_into(*arguments)
         self._left -= size
@@ -195,7 +195,7 @@ class _Patient(Transport):
     def parse_response(self, response: Any) -> Any:
         """The values of an answer."""
         if response.getheader("Content-Encoding", "identity").lower() != "identity":
-            raise RosError("the answer is packed, which was not asked for")
+            raise RosError("the answer is compressed, which the request did not allow")
         return read_body(response.read())[0]
 
 
@@ -215,7 +215,7 @@ def ask(uri: str, method: str, *arguments: Any) -> Any:
     except (RpcFault, UsageError, http.client.HTTPException, ValueError, RecursionError) as error:
         raise RosError(f"{type(error).__name__}: {error}") from None
     if not isinstance(answer, list | tuple) or len(answer) != 3 or type(answer[0]) is not int:
-        raise RosError(f"{method} was not answered with code, text and value")
+        raise RosError(f"invalid answer to {method}; expected code, text and value")
     code, text, value = answer
     if code != 1:
         raise RosError(str(text) or f"{method} failed")
@@ -234,5 +234,5 @@ def connect(uri: str) -> socket.socket:
     """
     parts = urlsplit(uri)
     if parts.scheme != "rosrpc":
-        raise ValueError(f"{uri!r:.200} is not like rosrpc://HOST:PORT")
+        raise ValueError(f"invalid service URI {uri!r:.200}; expected rosrpc://HOST:PORT")
     return socket.create_connection((parts.hostname or "", parts.port or 0), PATIENCE_S)

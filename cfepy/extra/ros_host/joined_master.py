@@ -147,7 +147,7 @@ class JoinedMaster:
         self._asks = False
         if found is None:
             if not self._is_lost:
-                self._host.tell(f"the ROS master at {self.uri} does not answer: {error}; the mission goes on")
+                self._host.tell(f"the ROS master at {self.uri} does not answer: {error}; the mission continues")
             self._is_lost = True
             self._registered.clear()
             return

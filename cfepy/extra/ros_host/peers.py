@@ -51,7 +51,7 @@ class OutsidePublisher:
             def errand() -> Any:
                 protocol = ask(uri, "requestTopic", fields["callerid"], topic, [["TCPROS"]])
                 if protocol[:1] != ["TCPROS"]:
-                    raise ValueError("the publisher does not speak TCPROS")
+                    raise ValueError("the publisher does not support TCPROS")
                 return connect(f"rosrpc://{protocol[1]}:{protocol[2]}")
 
             self._host.errands.run(line, errand, lambda made, error: self._connected(fields, made, error))

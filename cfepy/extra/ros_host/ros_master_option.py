@@ -47,7 +47,7 @@ class RosMaster(FlightAddOn):
     @classmethod
     def check(cls, arguments: argparse.Namespace) -> None:
         if arguments.ros_master and arguments.realtime is None:
-            raise UsageError("without --realtime no ROS node of this computer can keep pace; add it", field=OPTION)
+            raise UsageError("requires --realtime, so that ROS nodes on this computer can keep pace", field=OPTION)
 
     def connect(self, mission: Mission, tell: Callable[[str], object]) -> Sequence[Guest]:
         if self._uri is None:
@@ -74,4 +74,6 @@ def master_of(text: str) -> str:
     serves = word == SERVE and (not mark or (port.isdecimal() and int(port) <= HIGHEST_PORT))
     if serves or (word == "http" and text.count(":") > 1 and text.rstrip("/").rpartition(":")[2].isdecimal()):
         return text
-    raise argparse.ArgumentTypeError(f"{text!r} is not like http://localhost:11311, serve or serve:11312")
+    raise argparse.ArgumentTypeError(
+        f"invalid ROS master {text!r}; expected a URI such as http://localhost:11311, serve or serve:11312"
+    )

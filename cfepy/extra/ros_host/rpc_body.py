@@ -39,9 +39,9 @@ def read_body(body: bytes) -> tuple[tuple[Any, ...], str | None]:
     except RpcError:
         raise
     except ResponseError:
-        raise RpcError("this is not XML-RPC: it has no values") from None
+        raise RpcError("not XML-RPC: the values are missing") from None
     except (ValueError, TypeError, LookupError, AttributeError, ArithmeticError, expat.ExpatError) as error:
-        raise RpcError(f"this is not XML-RPC: {error}") from None
+        raise RpcError(f"not XML-RPC: {error}") from None
     return values, target.getmethodname()
 
 
@@ -68,7 +68,7 @@ class _Reader:
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         self._depth += 1
         if self._depth > _AROUND + _TAGS_A_LEVEL * RPC_DEPTH:
-            raise RpcError(f"XML-RPC of more than {RPC_DEPTH} values inside each other")
+            raise RpcError(f"XML-RPC with more than {RPC_DEPTH} nested values")
         if tag == _VALUE:
             self._values += 1
             if self._values > RPC_VALUES:
@@ -80,4 +80,4 @@ class _Reader:
         self._target.end(tag)
 
     def _doctype(self, *about: object) -> None:
-        raise RpcError("XML-RPC has no document type")
+        raise RpcError("a document type is not allowed in XML-RPC")

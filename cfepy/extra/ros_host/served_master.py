@@ -97,7 +97,7 @@ class ServedMaster:
             return f"a name has more than {ROS_NAME:,} characters"
         if method in PARAMS or method.startswith("un") or len(self._entered) < ROS_REGISTRATIONS:
             return ""
-        return f"nodes have registered {ROS_REGISTRATIONS:,} times already, which is the limit"
+        return f"the limit of {ROS_REGISTRATIONS:,} registrations is reached"
 
     def _remember(self, method: str, arguments: Sequence[Any], body: bytes) -> None:
         if method in PARAMS:

@@ -43,13 +43,13 @@ def parse_header(data: bytes) -> dict[str, str]:
     fields, at = {}, 0
     while at < len(data):
         if at + 4 > len(data):
-            raise WireError("a connection header is cut off")
+            raise WireError("a connection header is truncated")
         (size,) = _length.unpack_from(data, at)
         field = data[at + 4 : at + 4 + size]
         at += 4 + size
         name, mark, value = field.partition(b"=")
         if at > len(data) or not mark:
-            raise WireError("a field of a connection header is cut off or has no value")
+            raise WireError("a field of a connection header is truncated or has no value")
         fields[name.decode(errors="replace")] = value.decode(errors="replace")
     return fields
 
@@ -94,7 +94,7 @@ class TcprosFrames:
                     return
                 (size,) = _length.unpack_from(buffer, at + lead)
                 if size > self.longest:
-                    raise WireError(f"a frame of {size} bytes: this is no TCPROS")
+                    raise WireError(f"not TCPROS: a frame of {size} bytes")
                 end = at + lead + 4 + size
                 if len(buffer) < end:
                     return

@@ -91,7 +91,7 @@ class XmlRpcServer:
         try:
             arguments, method = read_body(body)
             if method is None:
-                raise RpcError("this is not a request: it has no method")
+                raise RpcError("not a request: the method is missing")
             value = self._calls(arguments) if method == MULTICALL else self._answering(method, arguments, body)
             return dumps((value,), methodresponse=True).encode(errors="replace")
         except Exception as error:  # as Python's own server: a fault is the client's to look at
@@ -100,7 +100,7 @@ class XmlRpcServer:
     def _calls(self, arguments: Sequence[Any]) -> list[Any]:
         """Several requests that come at once, as rospy takes back what it has registered."""
         if len(arguments) != 1 or not isinstance(arguments[0], list):
-            raise RpcError(f"{MULTICALL} takes a list of calls")
+            raise RpcError(f"{MULTICALL} requires a list of calls")
         if len(arguments[0]) > RPC_CALLS:
             raise RpcError(f"{MULTICALL} of {len(arguments[0]):,} calls; the limit is {RPC_CALLS:,}")
         found, size = [], 0
@@ -108,7 +108,7 @@ class XmlRpcServer:
             found.append(self._one_of_many(each))
             size += _size_of(found[-1])
             if size > RPC_ANSWER_BYTES:
-                raise RpcError(f"the answer to {MULTICALL} has more than {RPC_ANSWER_BYTES:,} bytes: ask for less")
+                raise RpcError(f"the answer to {MULTICALL} has more than {RPC_ANSWER_BYTES:,} bytes; make fewer calls")
         return found
 
     def _one_of_many(self, request: dict[str, Any]) -> Any:
@@ -294,24 +294,24 @@ def _head_of(data: bytes, names: OwnNames, here: str) -> _Head:
     method, _, rest = first.partition(" ")
     version = rest.rpartition(" ")[2]
     if version not in VERSIONS:
-        raise _Refused("400 Bad Request", "this is no request of HTTP/1.1")
+        raise _Refused("400 Bad Request", "not an HTTP/1.1 request")
     fields: dict[str, str] = {}
     for line in lines:
         name, _, value = line.partition(":")
         name = name.strip().lower()
         if name in fields and name in ONE_ONLY:
-            raise _Refused("400 Bad Request", f"the field {name} is there twice")
+            raise _Refused("400 Bad Request", f"the field {name} is given twice")
         fields[name] = value.strip()
     _check_sender(fields, names, here, version)
     if method != "POST":
-        raise _Refused("501 Not Implemented", "XML-RPC is POST")
+        raise _Refused("501 Not Implemented", "XML-RPC requires POST")
     if fields.get("content-type", "").partition(";")[0].strip().lower() != MEDIA_TYPE:
-        raise _Refused("415 Unsupported Media Type", f"XML-RPC is {MEDIA_TYPE}")
+        raise _Refused("415 Unsupported Media Type", f"XML-RPC requires {MEDIA_TYPE}")
     length = fields.get("content-length", "")
     if "transfer-encoding" in fields or not length.isdecimal() or len(length) > 19:
         raise _Refused("411 Length Required", "the field Content-Length is missing")
     if int(length) > RPC_BYTES:
-        raise _Refused("413 Content Too Large", f"a request has at most {RPC_BYTES:,} bytes", int(length))
+        raise _Refused("413 Content Too Large", f"a request must have at most {RPC_BYTES:,} bytes", int(length))
     return _Head(version, fields, int(length))
 
 
@@ -323,7 +323,7 @@ def _check_sender(fields: dict[str, str], names: OwnNames, here: str, version: s
     """
     browser = next((each for each in BROWSER_FIELDS if each in fields), "")
     if browser:
-        raise _Refused("403 Forbidden", f"a page in a browser has sent this ({browser}); ROS has no such clients")
+        raise _Refused("403 Forbidden", f"requests from a page in a browser are refused ({browser})")
     host = fields.get("host")
     if host is None and version == "HTTP/1.1":
         raise _Refused("400 Bad Request", "the field Host is missing")

@@ -22,4 +22,4 @@ def loads(text: str | bytes) -> Any:
     try:
         return json.loads(text)
     except RecursionError:
-        raise ValueError("too many lists and objects inside each other") from None
+        raise ValueError("lists and objects are nested too deeply") from None

@@ -56,9 +56,11 @@ def listen_place_of(text: str) -> ListenPlace:
     if host.startswith("[") and host.endswith("]"):
         host = host[1:-1]
     elif ":" in host or "/" in host or "@" in host:
-        raise ValueError(f"{text!r} is not like 9090, 0.0.0.0:9090 or [::1]:9090")
+        raise ValueError(f"invalid address {text!r}; expected a form such as 9090, 0.0.0.0:9090 or [::1]:9090")
     if not (port.isascii() and port.isdecimal() and int(port) <= HIGHEST_PORT):
-        raise ValueError(f"{text!r} is not like 9090 or 0.0.0.0:9090; a port is a number up to {HIGHEST_PORT}")
+        raise ValueError(
+            f"invalid address {text!r}; expected a form such as 9090 or 0.0.0.0:9090, with a port up to {HIGHEST_PORT}"
+        )
     return ListenPlace(host or ("0.0.0.0" if mark else LOOPBACK), int(port))
 
 
@@ -75,14 +77,16 @@ def origin_of(text: str) -> str:
     if plain in _ORIGINS_WITHOUT_HOST:
         return plain
     if plain.startswith("file:"):
-        raise ValueError(f"{text!r}: pages that are files have the origin null, or file://, whatever their names are")
+        raise ValueError(f"invalid origin {text!r}; pages that are files have the origin null or file://")
     parts = _ORIGIN.fullmatch(plain.removesuffix("/"))
     if parts is not None and int((parts[3] or ":0")[1:]) <= HIGHEST_PORT:
         scheme, host, port = parts.groups(default="")
         return scheme + host + ("" if port == _USUAL_PORTS.get(scheme) else port)
     begin = _ORIGIN.match(plain) or _ORIGIN.match(f"https://{plain}")
     hint = f"; did you mean {begin[0]}?" if begin is not None and "." in begin[2] else ""
-    raise ValueError(f"{text!r} is no origin of a page, such as https://example.org or http://robot:8000{hint}")
+    raise ValueError(
+        f"invalid origin {text!r}; expected an origin such as https://example.org or http://robot:8000{hint}"
+    )
 
 
 class Admission:
@@ -142,11 +146,11 @@ def admission_to(
     """
     given = environ.get(TOKEN_VARIABLE, "") if token is None else token
     if given and (len(given) < SHORTEST_TOKEN or not _TOKEN.fullmatch(given)):
-        text = f"a token has at least {SHORTEST_TOKEN} letters, digits and signs of ASCII, and no spaces"
+        text = f"a token must have at least {SHORTEST_TOKEN} printable ASCII characters without spaces"
         raise UsageError(text, field=TOKEN_VARIABLE if token is None else "--viewer-token")
     if not given and not place.is_loopback:
         given = secrets.token_urlsafe(18)
-        tell(f"viewers need the token {given} (--viewer-token or {TOKEN_VARIABLE} sets another)")
+        tell(f"viewers require the token {given} (--viewer-token or {TOKEN_VARIABLE} sets another)")
     try:
         return Admission(given, origins)
     except ValueError as error:

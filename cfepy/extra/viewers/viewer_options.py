@@ -72,7 +72,7 @@ class Viewers(FlightAddOn):
         if arguments.foxglove is None and arguments.rosbridge is None:
             field = TOKEN if self._token is not None else ORIGIN if arguments.viewer_origin else None
             if field is not None:
-                raise UsageError("nobody can connect; say where, such as --foxglove 8765", field=field)
+                raise UsageError("requires a viewer port, such as --foxglove 8765", field=field)
         else:
             from cfepy.io import PeerCounts
 

@@ -36,7 +36,7 @@ LAST_S, LOOK_S = 1.0, 0.05  # wall time that the end of a run waits for all of t
 GOING_AWAY, INTERNAL = 1001, 1011  # RFC 6455, 7.4.1
 LONGEST_REASON = 40  # characters; in UTF-8 there is room for 123 bytes
 OVER = "the run is over"
-NO_REQUEST = "that was no request for a WebSocket"
+NO_REQUEST = "not a WebSocket request"
 
 Refusal = tuple[HTTPStatus, str]
 
@@ -123,14 +123,14 @@ class WebSocketListener(Generic[C]):
         try:
             protocols()  # before anything is open
         except ImportError:
-            raise UsageError(f"needs the package websockets: pip install 'cfepy[{extra}]'", field=option) from None
+            raise UsageError(f"requires the package websockets: pip install 'cfepy[{extra}]'", field=option) from None
         self._make = make
         self._refusal = refusal
         self._refused = refused
         self._subprotocols = subprotocols
         self._selector = DefaultSelector()
         if not hasattr(self._selector, "fileno"):
-            raise UsageError("needs epoll or kqueue, which this system does not have", field=option)
+            raise UsageError("requires epoll or kqueue, which this system does not have", field=option)
         try:
             opened = listening_socket(place.host, place.port)
         except OSError as error:
@@ -267,7 +267,7 @@ class WebSocketListener(Generic[C]):
             if not connection.client.takes_part and now_s - connection.heard_s > IDLE_S
         ]
         if idle:
-            min(idle, key=itemgetter(0))[1].fail("another client needs the place")
+            min(idle, key=itemgetter(0))[1].fail("closed to make room for another client")
         return bool(idle)
 
     def _was_read(self, made: WebSocket, connection: _Connection[C]) -> None:

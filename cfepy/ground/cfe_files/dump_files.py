@@ -233,9 +233,9 @@ def read_dump(data: bytes, file: str) -> DumpFile:
     try:
         head = read_header(data)
     except CfeError as error:
-        raise UsageError(f"is no file of cFE: {error.text}", file=file) from None
+        raise UsageError(f"is not a cFE file: {error.text}", file=file) from None
     if head.content_type != CONTENT_ID:
-        raise UsageError(f'is no file of cFE: it begins with {data[:4].hex(" ")}, not with "cFE1"', file=file)
+        raise UsageError(f'is not a cFE file: it begins with {data[:4].hex(" ")}, not with "cFE1"', file=file)
     body = data[HEADER_SIZE:]
     if head.subtype == header.SUBTYPE_ES_SYSLOG:
         text = body.partition(b"\0")[0].decode("utf-8", "replace")
@@ -246,7 +246,7 @@ def read_dump(data: bytes, file: str) -> DumpFile:
     if head.subtype == header.SUBTYPE_TBL_IMG:
         raise UsageError(f"is a table file; `cfepy tbl show {file}` shows it", file=file)
     if head.subtype not in KINDS:
-        raise UsageError(f"has the subtype {head.subtype}, and no file of cFE has that", file=file)
+        raise UsageError(f"unknown subtype {head.subtype} of a cFE file", file=file)
     kind = KINDS[head.subtype]
     count, rest = divmod(len(body), kind.size)
     dump = DumpFile(kind.name, head, columns=kind.columns)
@@ -257,7 +257,7 @@ def read_dump(data: bytes, file: str) -> DumpFile:
         dump.problem = f"is damaged: record {len(dump.records)} cannot be read: {error.text}"
         return dump
     if rest:
-        dump.problem = f"is cut off: record {count} has {rest} of {kind.size} bytes"
+        dump.problem = f"is truncated: record {count} has {rest} of {kind.size} bytes"
     return dump
 
 
@@ -285,16 +285,16 @@ def read_perf_data(body: bytes) -> tuple[dict[str, Any], list[dict[str, Any]], s
         body: data after the file header.
     """
     if len(body) < PERF_METADATA.size:
-        return {}, [], f"is cut off: the metadata have {len(body)} of {PERF_METADATA.size} bytes"
+        return {}, [], f"is truncated: the metadata have {len(body)} of {PERF_METADATA.size} bytes"
     about = PERF_METADATA.unpack(body)
     if about["Endian"]:
-        return about, [], "was written by a big-endian processor, which is not read here"
+        return about, [], "was written by a big-endian processor; cfepy reads only little-endian performance data"
     entries = body[PERF_METADATA.size :]
     count, rest = divmod(len(entries), PERF_ENTRY.size)
     records = [_record(PERF_ENTRY.unpack(entries, number * PERF_ENTRY.size), about) for number in range(count)]
     problem = ""
     if rest or count < about["DataCount"]:
-        problem = f"is cut off: it has {count} of {about['DataCount']} entries"
+        problem = f"is truncated: it has {count} of {about['DataCount']} entries"
     return about, records, problem
 
 

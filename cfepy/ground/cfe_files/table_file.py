@@ -142,7 +142,7 @@ def take_apart(data: bytes, find: Find, file: str) -> TableContents:
     try:
         header, table, image = read_table_file(data)
     except CfeError as error:
-        raise UsageError(f"is no table file: {error.text}", file=file) from None
+        raise UsageError(f"is not a table file: {error.text}", file=file) from None
     size = table.num_bytes
     return TableContents(header, table, image[:size], image[size:], find(table.table_name))
 
@@ -267,17 +267,17 @@ def _text_field(data: bytes, at: int, size: int, field: str) -> Iterator[TableDe
 def _table_header(data: bytes, table: TableHeader, kind: TableType | None) -> Iterator[TableDefect]:
     if not is_intact(data):
         right = f"0x{mark_for(data):08X} or 0 for no mark; the file was damaged, or changed after it was marked"
-        yield TableDefect(NUMBERS_AT, "integrity mark", f"is 0x{table.reserved:08X}, it must be {right}")
+        yield TableDefect(NUMBERS_AT, "integrity mark", f"must be {right}, not 0x{table.reserved:08X}")
     if kind is not None and table.offset >= kind.size:
-        text = f"is {table.offset}, the table {kind.name} has only {kind.size} bytes"
+        text = f"is {table.offset}, but the table {kind.name} has only {kind.size} bytes"
         yield TableDefect(NUMBERS_AT + 4, "offset", text)
     elif kind is not None and table.offset + table.num_bytes > kind.size:
-        text = f"is {table.num_bytes} from byte {table.offset} on, the table {kind.name} has {kind.size} bytes"
+        text = f"is {table.num_bytes} from byte {table.offset} on, but the table {kind.name} has only {kind.size} bytes"
         yield TableDefect(NUMBERS_AT + 8, "number of bytes", text)
     if not table.num_bytes:
-        yield TableDefect(NUMBERS_AT + 8, "number of bytes", "is 0, cFE refuses a load of nothing")
+        yield TableDefect(NUMBERS_AT + 8, "number of bytes", "must be greater than 0; cFE refuses an empty load")
     if not all(table.table_name.partition(".")[::2]):
-        yield TableDefect(NAME_AT, "table name", f"is {table.table_name!r}, it must be APP.Table")
+        yield TableDefect(NAME_AT, "table name", f"must be APP.Table, not {table.table_name!r}")
     yield from _text_field(data, NAME_AT, TABLE_NAME_SIZE, "table name")
 
 
@@ -295,5 +295,5 @@ def _image(data: bytes, table: TableHeader) -> Iterator[TableDefect]:
     if there < table.num_bytes:
         yield TableDefect(len(data), "data", f"the file ends after {there} of {table.num_bytes} bytes")
     elif there > table.num_bytes:
-        text = f"{there - table.num_bytes} bytes more than the header says, cFE refuses the file"
+        text = f"{there - table.num_bytes} bytes more than the header specifies; cFE refuses the file"
         yield TableDefect(IMAGE_AT + table.num_bytes, "data", text)

@@ -94,10 +94,10 @@ def read(path: Path, find: Find) -> TableContents:
     root = load(path, handed=True)
     said = root.mapping(KEYS)
     if "table" not in said:
-        raise root.fail("names no table; write `table: APP.Table`")
+        raise root.fail("missing table; write `table: APP.Table`")
     name = said["table"].text()
     if "." not in name or not 0 < len(name) < FULL_NAME_SIZE:
-        raise said["table"].fail(f"is {name!r}, it must be APP.Table with at most {FULL_NAME_SIZE - 1} characters")
+        raise said["table"].fail(f"must be APP.Table with at most {FULL_NAME_SIZE - 1} characters, not {name!r}")
     kind = own_type(said) or find(name)
     offset = _number(said, "offset")
     image = _image(said, kind, offset)
@@ -110,7 +110,7 @@ def own_type(said: dict[str, Marked]) -> TableType | None:
     """Return the table's type declared in the file itself; None if there is none."""
     if "layout" not in said:
         if "count" in said:
-            raise said["count"].fail("is the number of rows of a `layout`, and there is none; add it, or remove this")
+            raise said["count"].fail("requires a `layout`; add one, or remove this")
         return None
     count = said["count"].integer(1) if "count" in said else 1
     return TableType(said["table"].plain(), _layout(said["layout"], "row"), count)
@@ -119,7 +119,7 @@ def own_type(said: dict[str, Marked]) -> TableType | None:
 def _layout(marked: Marked, name: str) -> Layout:
     fields = [(field, _field_type(kind, field)) for field, kind in marked.mapping().items()]
     if not fields:
-        raise marked.fail("has no fields; write `Name: u16` and the like")
+        raise marked.fail("has no fields; add at least one, such as `Name: u16`")
     try:
         return Layout(name, fields)
     except UsageError as error:
@@ -132,7 +132,7 @@ def _field_type(marked: Marked, name: str) -> Any:
         return _layout(marked, name)
     if isinstance(marked.value, list):
         if len(marked.value) != 2:
-            raise marked.fail("must be two things, [{fields of a struct}, how many of them]")
+            raise marked.fail("must be a list of two items, [{fields of a struct}, count]")
         inner, count = marked.value
         return _layout(inner, name), count.integer(1)
     return marked.text()
@@ -162,7 +162,7 @@ def _wants_mark(said: dict[str, Marked]) -> bool:
     if "mark" not in said:
         return "reserved" not in said
     if not isinstance(said["mark"].value, bool):
-        raise said["mark"].fail(f"is {said['mark'].plain()!r}, it must be true or false")
+        raise said["mark"].fail(f"must be true or false, not {said['mark'].plain()!r}")
     return bool(said["mark"].value)
 
 
@@ -172,16 +172,16 @@ def _hex(marked: Marked | None) -> bytes:
     try:
         return bytes.fromhex(str(marked.value))
     except ValueError:
-        raise marked.fail("is not a text of hexadecimal digits, two for each byte") from None
+        raise marked.fail("must be hexadecimal digits, two for each byte") from None
 
 
 def _image(said: dict[str, Marked], kind: TableType | None, offset: int) -> bytes:
     if "data" in said:
         if "rows" in said:
-            raise said["data"].fail("cannot be there beside `rows`; remove one of them")
+            raise said["data"].fail("cannot be combined with `rows`; remove one of them")
         image = _hex(said["data"])
     elif kind is None:
-        text = f"nobody declares a table {said['table'].value}; name its mission with --mission, or add a `layout`"
+        text = f"unknown table {said['table'].value}; name its mission with --mission, or add a `layout`"
         raise said["table"].fail(text)
     else:
         size = _number(said, "bytes", max(0, kind.size - offset))
@@ -189,7 +189,7 @@ def _image(said: dict[str, Marked], kind: TableType | None, offset: int) -> byte
         if len(image) != size:
             raise said["bytes"].fail(f"reaches past the end of the table, which has {kind.size} bytes")
     if not image:
-        raise said["table"].fail("is a file without data, which cFE cannot load; give `rows` or `data`")
+        raise said["table"].fail("has no data, so cFE cannot load the file; add `rows` or `data`")
     return image
 
 
@@ -201,10 +201,10 @@ def _packed(rows: Marked | None, kind: TableType) -> bytes:
         fields = row.mapping()
         numbered = ROW in fields and ROW not in kind.row.fields
         if numbered and fields[ROW].integer() <= number:
-            raise fields[ROW].fail(f"is {fields[ROW].value}, but row {number} stands before it; sort the rows")
+            raise fields[ROW].fail(f"is {fields[ROW].value}, but follows row {number}; sort the rows")
         number = fields[ROW].value if numbered else number + 1
         if number >= kind.rows:
-            raise row.fail(f"is row {number}, counted from 0; {kind.name} has {kind.rows}")
+            raise row.fail(f"row {number} (counted from 0) is out of range; {kind.name} has {kind.rows} rows")
         given = {name: one_nan(value.plain()) for name, value in fields.items() if name != ROW or not numbered}
         try:
             image[number * kind.row.size : (number + 1) * kind.row.size] = kind.row.pack(given)

@@ -170,7 +170,7 @@ def _wait_for(universe: Universe, waits: WaitList, wait: int, give_back: Any) ->
     kernel = universe.kernel
     task = kernel.current
     if task is kernel.host:
-        raise RuntimeError("a lock of a node is taken, and only its tasks can wait for it")
+        raise RuntimeError("the lock of a node is held; only tasks of the node can wait for it")
     task.wake = None
     try:
         return kernel.wait_on(waits, wait) is not TIMEOUT

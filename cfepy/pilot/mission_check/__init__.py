@@ -77,7 +77,7 @@ def check_mission(
     if script.suffix in LAUNCH_FILES:
         return _sorted(_check_launch_file(script, args or {}, config))
     if args:
-        raise UsageError("only a launch file takes arguments", file=mission, field="--arg")
+        raise UsageError("is not a launch file, so it takes no arguments", file=mission, field="--arg")
     return _sorted(_check_folder(script, board, config))
 
 

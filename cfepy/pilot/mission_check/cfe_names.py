@@ -75,13 +75,13 @@ def _wrong_imports(file: Path, tree: ast.Module) -> Iterator[MissionProblem]:
             continue
         source = sources.source_of(module) if _is_module(module) else None
         if source is None:
-            yield MissionProblem(file, node.lineno, f"there is no module {module}; docs/api_map.md has all names")
+            yield MissionProblem(file, node.lineno, f"unknown module {module}; docs/api_map.md lists all names")
             continue
         for alias in node.names:
             if not (alias.name == "*" or sources.defines(source, alias.name) or _is_module(f"{module}.{alias.name}")):
                 known = [*sources.functions_and_classes_of(source), *sorted(_imported(sources.tree_of(source)))]
-                hint = did_you_mean(alias.name, known, "docs/api_map.md has all names")
-                yield MissionProblem(file, node.lineno, f"{module} has no {alias.name!r}; {hint}")
+                hint = did_you_mean(alias.name, known, "docs/api_map.md lists all names")
+                yield MissionProblem(file, node.lineno, f"{module} has no name {alias.name!r}; {hint}")
 
 
 def _is_module(name: str) -> bool:

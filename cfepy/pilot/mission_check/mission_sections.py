@@ -35,7 +35,7 @@ def check_nodes_said(said: MissionSections, entries: list[StartupEntry]) -> Iter
         if app not in symbols:
             yield _unknown_app(f"nodes.{app}", app, place, symbols)
         elif symbols[app] != NODE_SYMBOL:
-            text = f"nodes.{app}: {app} is no ROS node, its entry point is {symbols[app]}"
+            text = f"nodes.{app}: {app} is not a ROS node; its entry point is {symbols[app]}"
             text += f"; write {NODE_SYMBOL} in the startup script, or remove this"
             yield MissionProblem(place.file, place.line, text)
         node = said.nodes.get(app)
@@ -43,7 +43,10 @@ def check_nodes_said(said: MissionSections, entries: list[StartupEntry]) -> Iter
             full = f"{node.namespace.rstrip('/')}/{node.name.lstrip('/')}"
             other = names.setdefault(full, app)
             if other != app:
-                text = f"nodes.{app}: the node name {full} is that of {other} too; change one, or ROS ends the older"
+                text = (
+                    f"nodes.{app}: the node name {full} is also used by {other}; change "
+                    "one of them, or ROS ends the older node"
+                )
                 yield MissionProblem(place.file, place.line, text)
 
 
@@ -98,7 +101,7 @@ def check_bridge(said: MissionSections, script: Path) -> Iterator[MissionProblem
     parts = Mistakes(keep=True).mapping(section)
     for place in Mistakes(keep=True).attempt(parts["subscribe"].items) or () if "subscribe" in parts else ():
         if place.value in said.ros_bridge.subscribe and place.value not in said.topics:
-            text = f"{place.value} has no MsgId that an application can know; give it one under topics:"
+            text = f"{place.value} requires a fixed MsgId; give it one under topics:"
             yield MissionProblem(place.file, place.line, f"{place.field}: {text}")
     if not said.ros_bridge.publish:
         return
@@ -117,7 +120,7 @@ def check_bridge(said: MissionSections, script: Path) -> Iterator[MissionProblem
 
 def _unknown_app(field: str, app: str, place: Marked, apps: Collection[str]) -> MissionProblem:
     hint = did_you_mean(app, apps, f"the startup script has {', '.join(apps) or 'none'}")
-    return MissionProblem(place.file, place.line, f"{field}: no application is called {app}; {hint}")
+    return MissionProblem(place.file, place.line, f"{field}: unknown application {app}; {hint}")
 
 
 def check_board(
@@ -163,7 +166,7 @@ def _check_limits(
         name = "es_max_applications" if what == "application" else "es_max_libraries"
         raise_it = "the board's limit" if name in profile.limits else f"limits.{name} in the mission file"
         for entry in these[limit:]:
-            text = f"{entry.name} is one {what} too many, {profile.name} takes {limit}"
+            text = f"{entry.name} exceeds the limit: {profile.name} allows {limit} {what} entries"
             text += f"; start fewer, or raise {raise_it}"
             yield MissionProblem(script, entry.line, text)
 
@@ -181,10 +184,10 @@ def _check_stacks(
             continue
         used += entry.stack_size + block
         if used > profile.sram_size:
-            text = f"with the stack of {entry.name} ({entry.stack_size:,} bytes) all stacks are {used:,} bytes"
+            text = f"with the stack of {entry.name} ({entry.stack_size:,} bytes), all stacks need {used:,} bytes"
             yield MissionProblem(
                 script,
                 entry.line,
-                f"{text}, {profile.name} has {profile.sram_size:,}; choose smaller stacks or fewer applications",
+                f"{text}, but {profile.name} has {profile.sram_size:,}; choose smaller stacks or fewer applications",
             )
             return

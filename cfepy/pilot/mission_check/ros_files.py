@@ -68,7 +68,7 @@ def check_launch(
     found += _built(plan, config or CppNodesConfig())
     scripts = _scripts_of(plan)
     if alone and not scripts and not plan.compiled and not _tests_of(plan) and all(each.is_warning for each in found):
-        found.append(MissionProblem(file, 0, "has no node that can run here"))
+        found.append(MissionProblem(file, 0, "has no node that cfepy can run"))
     return found, scripts
 
 
@@ -162,7 +162,7 @@ def _check_imports(script: NodeScript) -> Iterator[MissionProblem]:
         if package not in library.packages():
             what_to_do = "add it beside the node, or put it on ROS_PACKAGE_PATH"
             hint = did_you_mean(package, library.packages(), what_to_do)
-            yield MissionProblem(script.file, line, f"there is no package {package} with messages; {hint}")
+            yield MissionProblem(script.file, line, f"unknown message package {package}; {hint}")
             continue
         known = library.names(package, "msg" if kind == "msg" else "srv") or []
         parts = {f"{name}{part}" for name in known for part in ("Request", "Response") if kind == "srv"}

@@ -60,7 +60,7 @@ def _check_names(script: Path, entries: list[StartupEntry]) -> Iterator[MissionP
             continue  # the check of the script has reported it
         key = (entry.kind, entry.name)
         if key in taken:
-            text = f"the name {entry.name!r} is taken by {taken[key]}; give this one another name"
+            text = f"the name {entry.name!r} is already taken by {taken[key]}; choose another name"
             yield MissionProblem(script, entry.line, text)
         taken.setdefault(key, f"line {entry.line}")
 
@@ -68,12 +68,12 @@ def _check_names(script: Path, entries: list[StartupEntry]) -> Iterator[MissionP
 def _check_code(script: Path, entries: list[StartupEntry], entry: StartupEntry) -> Iterator[MissionProblem]:
     folder = script.parent
     if not entry.path.startswith(FILES) or ".." in entry.path:
-        text = f"{entry.path} is not below /cf, which is the mission's folder; write {FILES}..."
+        text = f"{entry.path} must be below /cf, the mission's folder; write {FILES}..."
         yield MissionProblem(script, entry.line, text)
         return
     is_node = entry.symbol == NODE_SYMBOL
     if not is_node and len(entry.path.rpartition("/")[2]) >= OS_MAX_FILE_NAME:
-        text = f"the file name in {entry.path} has {OS_MAX_FILE_NAME} characters or more; choose a shorter one"
+        text = f"the file name in {entry.path} must have fewer than {OS_MAX_FILE_NAME} characters"
         yield MissionProblem(script, entry.line, text)
         return
     compiled = None if is_node else find_compiled(entry.path, folder)
@@ -87,12 +87,15 @@ def _check_code(script: Path, entries: list[StartupEntry], entry: StartupEntry) 
     code = (find_node(entry.path, folder) if is_node else None) or find_code(entry.path, folder)
     if code is None:
         stem = Path(entry.path).stem
-        text = f"no code for {entry.path}: no {stem}.py and no package {stem} in {folder}, no app or module {stem}"
+        text = (
+            f"missing code for {entry.path}: found no {stem}.py and no package {stem} "
+            f"in {folder}, and no app or module {stem}"
+        )
         yield MissionProblem(script, entry.line, text + "; add it, or correct the name")
         return
     if is_node and not isinstance(code, Path):
         yield MissionProblem(
-            script, entry.line, f"the node {entry.name} is no script of the mission's folder; add the script"
+            script, entry.line, f"the script of node {entry.name} is missing in the mission's folder; add it"
         )
         return
     source = sources.source_of(code)
@@ -131,11 +134,11 @@ def _check_entry_point(entry: StartupEntry, source: Path) -> Iterator[MissionPro
     if function.decorator_list:
         return
     if isinstance(function, ast.AsyncFunctionDef):
-        text = "is async: calling it runs nothing; make it a plain function"
+        text = "must not be async, because calling it runs nothing; make it a plain function"
     elif _takes_one(function.args):
         return
     else:
-        text = f"does not take one argument, the handle of the services; write `def {function.name}(cfe):`"
+        text = f"must take one argument, the handle of the services; write `def {function.name}(cfe):`"
     yield MissionProblem(source, function.lineno, f"the entry point {function.name} of {entry.name} {text}")
 
 

@@ -70,7 +70,7 @@ def _numbers(tag: ElementTree.Element | None, name: str, default: str) -> Any:
     except ValueError:
         numbers = numpy.zeros(0)
     if len(numbers) != 3:
-        raise ValueError(f"{name}={text!r}: give three numbers")
+        raise ValueError(f"{name} must be three numbers, not {text!r}")
     return numbers
 
 
@@ -147,7 +147,7 @@ def main() -> int:
     try:
         joints = joints_of(rospy.get_param(key or "robot_description"))
     except (KeyError, ValueError) as error:
-        rospy.logerr("robot_description is no URDF: %s", error)
+        rospy.logerr("robot_description is not a URDF: %s", error)
         return 1
     RobotStatePublisher(joints)
     rospy.spin()

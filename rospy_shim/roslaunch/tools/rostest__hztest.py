@@ -27,7 +27,7 @@ class HzTest(unittest.TestCase):
     def needed(self, name: str) -> Any:
         """A private parameter that must be there."""
         if not rospy.has_param(f"~{name}"):
-            self.fail(f"hztest needs the parameter {rospy.resolve_name('~' + name)}")
+            self.fail(f"hztest requires the parameter {rospy.resolve_name('~' + name)}")
         return rospy.get_param(f"~{name}")
 
     def test_hz(self) -> None:

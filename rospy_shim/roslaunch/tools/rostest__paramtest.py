@@ -29,7 +29,7 @@ class ParamTest(unittest.TestCase):
         if expected:
             self.assertEqual(expected, value)
         else:
-            self.assertIsNotNone(value, f"there is no parameter {name}")
+            self.assertIsNotNone(value, f"unknown parameter {name}")
 
 
 if __name__ == "__main__":

@@ -73,7 +73,7 @@ def throttle(words: list[str]) -> Callable[[rospy.AnyMsg], None]:
     output = Output(numbers[count] if len(numbers) > count else f"{topic}_throttle")
     values = [float(number) for number in numbers[:count]]
     if min(values) <= 0:
-        raise ValueError(f"{min(values):g} is not more than 0")
+        raise ValueError(f"{min(values):g} is not greater than 0")
     return MessageThrottle(output, *values).take if count == 1 else ByteThrottle(output, *values).take
 
 

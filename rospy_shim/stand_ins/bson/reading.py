@@ -22,7 +22,7 @@ def read_document(data: bytes) -> dict[str, Any]:
     except (IndexError, ValueError, struct.error) as error:
         raise InvalidBSON(f"not a document: {error}") from None
     if end != len(data):
-        raise InvalidBSON(f"{len(data) - end} bytes behind the document")
+        raise InvalidBSON(f"{len(data) - end} bytes after the document")
     return document
 
 
@@ -35,7 +35,7 @@ def _document(data: bytes, at: int) -> tuple[dict[str, Any], int]:
         zero = data.index(b"\0", at + 1)
         found[data[at + 1 : zero].decode()], at = _value(data[at], data, zero + 1)
     if at + 1 != end:
-        raise InvalidBSON("a document is not as long as it says")
+        raise InvalidBSON("the length of a document does not match its bytes")
     return found, end
 
 

@@ -70,5 +70,5 @@ def load_package(name: str) -> ModuleType:
     """
     module = make_module(f"{name}.msg")
     if module is None:
-        raise ModuleNotFoundError(f"no ROS package {name!r} comes with cfepy", name=name)
+        raise ModuleNotFoundError(f"cfepy does not include the ROS package {name!r}", name=name)
     return module

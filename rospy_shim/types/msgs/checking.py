@@ -65,7 +65,7 @@ class _Check:
     def faults(self) -> Iterator[DefinitionFault]:
         """What is wrong with it."""
         if not _LEGAL.fullmatch(self._path.stem):
-            text = f"{self._path.stem!r} is no name for a type; a letter comes first, then letters, digits and '_'"
+            text = f"invalid type name {self._path.stem!r}; expected a letter, then letters, digits and '_'"
             yield DefinitionFault(self._error(text))
             return
         try:
@@ -78,7 +78,7 @@ class _Check:
             yield DefinitionFault(error)
             return
         if self._path.suffix == ".srv" and len(split_parts(definition)) == 1:
-            text = "has no line --- between request and response; all of it is the request"
+            text = "missing line --- between request and response; everything is read as the request"
             yield DefinitionFault(self._error(text), is_warning=True)
         for name, part in parts.items():
             yield from self._part(name, part)
@@ -116,20 +116,20 @@ class _Check:
         names |= {each: each for each in sorted(BUILTINS) if package == self._package}
         near = [names[each] for each in like(bare, names)]
         hint = f"did you mean {near[0]}?" if near else "add its package, or put it on ROS_PACKAGE_PATH"
-        return self._error(f"message type {kind} is unknown; {hint}", line)
+        return self._error(f"unknown message type {kind}; {hint}", line)
 
     def _odd(self, spec: Spec, part: Definition) -> Iterator[UsageError]:
         """What ROS takes otherwise."""
         for number, line in enumerate(part.text.split("\n"), part.first_line):
             if _TABBED.match(line.partition("#")[0].rstrip()):
-                yield self._error("has a tab behind the type, which ROS's genmsg refuses; write a blank", number)
+                yield self._error("has a tab after the type, which ROS's genmsg refuses; write a blank", number)
         names: set[str] = set()
         for constant in spec.constants:
             if constant.name in names:
-                text = f"the constant {constant.name} has the name of another constant; change one of them"
+                text = f"the constant {constant.name} is defined twice; rename one of them"
                 yield self._error(text, constant.line)
             if not _LEGAL.fullmatch(constant.name):
-                text = f"{constant.name!r} is no name that a program can use for a constant; begin with a letter"
+                text = f"invalid constant name {constant.name!r}; it must begin with a letter"
                 yield self._error(text, constant.line)
             names.add(constant.name)
 

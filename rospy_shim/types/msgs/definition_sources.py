@@ -86,7 +86,7 @@ def _messages(name: str, action: Definition) -> Iterator[tuple[str, Definition]]
     if len(parts) != len(_PARTS):
         line = parts[min(len(parts) - 1, len(_PARTS))].first_line
         raise UsageError(
-            f"an action has 3 parts with a line {_DASHES} between each, not {len(parts)}", file=action.file, line=line
+            f"an action must have 3 parts separated by lines {_DASHES}, not {len(parts)}", file=action.file, line=line
         )
     for part, definition in zip(_PARTS, parts, strict=True):
         envelope = f"Header header\n{_ENVELOPES[part]}\n{name}{part} {part.lower()}\n"

@@ -94,7 +94,7 @@ class Library:
         package, _, name = full_name.partition("/")
         found = (self._package(package, kind) or {}).get(name)
         if found is None:
-            raise UsageError(f"there is no {kind} type {full_name!r}; is its package on ROS_PACKAGE_PATH?")
+            raise UsageError(f"unknown {kind} type {full_name!r}; check that its package is on ROS_PACKAGE_PATH")
         return found.text
 
     def spec(self, full_name: str) -> Spec:
@@ -152,7 +152,7 @@ class Library:
         found = self._services.get(full_name)
         if found is None:
             if not self.has(full_name, "srv"):
-                raise UsageError(f"there is no service type {full_name!r}; is its package on ROS_PACKAGE_PATH?")
+                raise UsageError(f"unknown service type {full_name!r}; check that its package is on ROS_PACKAGE_PATH")
             parts = [self.message_class(full_name + part) for part in _PARTS]
             texts = [md5_text(self.spec(full_name + part), self.md5sum) for part in _PARTS]
             found = self._services[full_name] = build_service(full_name, parts[0].__module__, texts, *parts)
@@ -198,14 +198,14 @@ class Library:
         for index, part in enumerate(_PARTS):
             if name.endswith(part) and name.removesuffix(part) in services:
                 return split_service(services[name.removesuffix(part)])[index]
-        raise UsageError(f"there is no message type {full_name!r}; is its package on ROS_PACKAGE_PATH?")
+        raise UsageError(f"unknown message type {full_name!r}; check that its package is on ROS_PACKAGE_PATH")
 
     def _open_nested(self, found: Spec) -> None:
         """Parse the nested types as well, so that a type with a gap in it is never half usable."""
         self._opening.append(found.full_name)
         try:
             if len(self._opening) > MESSAGE_DEPTH:
-                problem = f"message type {found.full_name} is inside {MESSAGE_DEPTH} others, which is too deep"
+                problem = f"message type {found.full_name} is nested more than {MESSAGE_DEPTH} types deep"
                 raise UsageError(problem, file=found.file)
             for field in found.fields:
                 name = field.base
@@ -214,7 +214,7 @@ class Library:
                 if name in self._opening:
                     raise UsageError(f"message type {name} contains itself", file=found.file, line=field.line)
                 if not self.has(name):
-                    problem = f"message type {name} is unknown; add its package"
+                    problem = f"unknown message type {name}; add its package"
                     raise UsageError(problem, file=found.file, line=field.line)
                 self.spec(name)
             self._hold_to_limits(found)
@@ -229,7 +229,7 @@ class Library:
             ("values in fixed arrays, those inside counted", size.values, MESSAGE_VALUES),
         ):
             if number > limit:
-                problem = f"message type {found.full_name} has more than {limit:,} {what}; divide it"
+                problem = f"message type {found.full_name} has more than {limit:,} {what}; split it"
                 raise UsageError(problem, file=found.file, line=found.fields[0].line)
 
     def _sum(self, spec: Spec) -> _Size:

@@ -147,7 +147,7 @@ def check_package_name(folder: Path) -> None:
     file = folder / _MANIFESTS[0]
     name = _name_in(file)
     if name is not None and not is_package_name(name):
-        text = f"is {name[:_SHOWN]!r}, which is not the name of a package; write letters, digits, '_' and '-'"
+        text = f"invalid package name {name[:_SHOWN]!r}; expected letters, digits, '_' and '-'"
         raise UsageError(text, file=file, field="<name>")
 
 

@@ -114,7 +114,7 @@ def parse(text: str, full_name: str, file: str, first_line: int = 1, mistakes: M
     taken: set[str] = set()
     names: set[str] = set()  # of constants
     if len(text) > DEFINITION_BYTES:
-        raise UsageError(f"has more than {DEFINITION_BYTES:,} characters, which is too much for a message", file=file)
+        raise UsageError(f"must have at most {DEFINITION_BYTES:,} characters", file=file)
     for number, raw in enumerate(text.split("\n"), first_line):
         line = raw.split("#", 1)[0].strip()
         try:
@@ -129,7 +129,7 @@ def parse(text: str, full_name: str, file: str, first_line: int = 1, mistakes: M
                 if fields[-1].name in names:
                     raise ValueError(f"field {fields[-1].name!r} has the name of a constant")
                 if len(fields) + len(constants) > MESSAGE_FIELDS:
-                    what = f"is one more than {MESSAGE_FIELDS:,} fields, which a message may have; divide it"
+                    what = f"a message must have at most {MESSAGE_FIELDS:,} fields; split it"
                     raise UsageError(what, file=file, line=number)
         except UsageError:
             raise
@@ -155,11 +155,11 @@ def _field(line: str, package: str, taken: set[str]) -> Field:
     if match is None:
         raise ValueError(f"{kind!r} is not a field type")
     if len(kind) > _LONGEST_TYPE:
-        raise ValueError(f"{kind[:40]}... has more than {_LONGEST_TYPE} characters, and no type has")
+        raise ValueError(f"{kind[:40]}... is longer than any type: more than {_LONGEST_TYPE} characters")
     if not _NAME.fullmatch(name):
         raise ValueError(f"{name!r} is not a field name")
     if name in taken:
-        raise ValueError(f"field {name!r} is there twice")
+        raise ValueError(f"field {name!r} is defined twice")
     base, brackets, length = match.groups()
     return Field(name, python_name(name), _resolve(base, bool(brackets), package), bool(brackets), _length(length))
 

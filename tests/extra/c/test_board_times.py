@@ -54,5 +54,5 @@ def test_it_measures_on_a_profile_what_that_was_made_of(tmp_path: Path, capsys: 
 
 def test_a_folder_that_is_there_is_left_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["board", "program", str(tmp_path)]) == 2
-    assert "is there already" in capsys.readouterr().err
+    assert "already exists" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

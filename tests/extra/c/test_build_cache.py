@@ -63,7 +63,7 @@ def test_fallback_folder_belongs_to_the_user_alone(tmp_path: Path) -> None:
 def test_fallback_folder_that_others_can_write_is_refused(tmp_path: Path) -> None:
     fallback(tmp_path).mkdir()
     fallback(tmp_path).chmod(0o777)
-    with pytest.raises(UsageError, match=r"you alone can write; set CFEPY_CACHE") as failure:
+    with pytest.raises(UsageError, match=r"only you can write; set CFEPY_CACHE") as failure:
         cache_folder()
     assert failure.value.file == str(fallback(tmp_path))
 
@@ -71,7 +71,7 @@ def test_fallback_folder_that_others_can_write_is_refused(tmp_path: Path) -> Non
 def test_fallback_folder_that_is_a_link_is_refused(tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
     fallback(tmp_path).symlink_to(tmp_path / "elsewhere")
-    with pytest.raises(UsageError, match="you alone can write"):
+    with pytest.raises(UsageError, match="only you can write"):
         cache_folder()
 
 

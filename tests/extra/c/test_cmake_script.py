@@ -65,7 +65,7 @@ def test_what_a_file_has_done_counts_for_all_its_subfolders(tmp_path: Path, monk
     outer = CMakeScript(tmp_path, {})
     outer.run("set(r a)\n" * 60)
     inner = CMakeScript(tmp_path / "in", outer.variables, outer.budget)
-    with pytest.raises(UsageError, match=r"CMakeLists\.txt: has more than 100 commands") as caught:
+    with pytest.raises(UsageError, match=r"CMakeLists\.txt: executes more than 100 commands") as caught:
         inner.run("set(r a)\n" * 60)
     assert caught.value.file == str(tmp_path / "CMakeLists.txt")
 
@@ -73,10 +73,10 @@ def test_what_a_file_has_done_counts_for_all_its_subfolders(tmp_path: Path, monk
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("foreach(i RANGE 0 999999)\nendforeach()", "a loop of 1,000,000 turns|a loop of 999,999 turns"),
-        ("macro(f)\nf()\nendmacro()\nf()", "inside each other"),
+        ("foreach(i RANGE 0 999999)\nendforeach()", "a loop of 1,000,000 iterations|a loop of 999,999 iterations"),
+        ("macro(f)\nf()\nendmacro()\nf()", "nested"),
         ("set(a x)\n" + 'set(a "${a}${a}")\n' * 40, "more than 20,000,000 characters"),
-        ("if(" + "(" * 50 + "UNIX" + ")" * 50 + ")\nendif()", "inside each other"),
+        ("if(" + "(" * 50 + "UNIX" + ")" * 50 + ")\nendif()", "nested"),
     ],
 )
 def test_a_file_without_end_is_refused(text: str, said: str, tmp_path: Path) -> None:

@@ -31,7 +31,11 @@ FAULTS = {
     "segv": ("*(volatile int *)16 = 1;", "SIGSEGV", "fail (TEST.c:4), address 0x10"),
     "trap": ("__builtin_trap();", "SIGTRAP" if IS_ARM else "SIGILL", "fail (TEST.c:4)"),
     "deep": ("zero = deep(0);", "stack overflow", "deep (TEST.c:2)"),
-    "nowhere": ("((void (*)(void))(void *)8)();", "SIGSEGV", "a call by fail (TEST.c:4) of what is no function"),
+    "nowhere": (
+        "((void (*)(void))(void *)8)();",
+        "SIGSEGV",
+        "a call by fail (TEST.c:4) of an address that is not a function",
+    ),
     "argument": (
         'SAY("%d", (int)CFE_SB_TransmitMsg((void *)0x1234, true));',
         "bad address 0x1234 of a message",

@@ -47,7 +47,7 @@ class Mistake(NamedTuple):
 
 
 MAIN = "in TEST_Main (TEST.c:7)"
-SIGNAL = "SIGSEGV (no such memory, or not to be written)"
+SIGNAL = "SIGSEGV (invalid or read-only memory)"
 HERE, IN_CHECK = f"{SIGNAL} {MAIN}, address 0x, offset", f"{SIGNAL} in check (TEST.c:2), address 0x, offset"
 PAST, BEFORE = "that was written past its end", "that was written before its start"
 CHECK = "static int32_t check(void *at) { volatile Bytes *p = at; @; return 0; }"
@@ -66,7 +66,7 @@ MISTAKES = {
         *("-1", "0"),
         f"CFE_ES_PutPoolBuf() of 0x, a pool block of 20 bytes {BEFORE}, {MAIN}",
     ),
-    "a pool block that was given back": Mistake(
+    "a pool block that was already returned and reused": Mistake(
         "p = take(64); @",
         *("put(p); p[3] += 0;", "p[3] += 0; put(p);"),
         f"{HERE} 3 of a pool block of 64 bytes that was given back",
@@ -74,7 +74,7 @@ MISTAKES = {
     "a pool block that another has": Mistake(
         "p = take(64); put(p); q = take(64); CFE_ES_PutPoolBuf(pool, (void *)@);",
         *("p", "q"),
-        f"CFE_ES_PutPoolBuf() of 0x, a pool block that was given back; another has its place now, {MAIN}",
+        f"CFE_ES_PutPoolBuf() of 0x, a pool block that was already returned and reused, {MAIN}",
     ),
     "behind a block of a pool that is deleted": Mistake(
         "p = take(20); p[@] = 1; CFE_ES_PoolDelete(pool);",

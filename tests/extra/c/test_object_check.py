@@ -33,7 +33,7 @@ def test_an_entry_point_that_is_not_there(tmp_path: Path) -> None:
 def test_functions_that_nobody_has(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", "int NONE_One(void); int fork(void); void TEST_Main(void) { NONE_One(); fork(); }")
     [text] = problems(write_mission(tmp_path, "TEST"))
-    assert "TEST needs NONE_One, fork, which neither cfepy nor a library of the mission has" in text
+    assert "TEST needs NONE_One, fork, but cfepy and the libraries of the mission do not define them" in text
 
 
 def test_a_library_that_is_loaded_too_late(tmp_path: Path) -> None:
@@ -53,7 +53,7 @@ def test_a_library_that_is_loaded_too_late(tmp_path: Path) -> None:
     [
         (18, b"\x28\x00", "a 64-bit little-endian file for"),
         (4, b"\x01", "a 32-bit little-endian file for"),
-        (16, b"\x02\x00", "is no shared object"),
+        (16, b"\x02\x00", "is not a shared object"),
         (32, b"\xff\xff\xff", "TEST.so"),
     ],
 )
@@ -100,7 +100,7 @@ def test_an_object_of_the_other_abi_profile(tmp_path: Path, of_file: bool, of_mi
     assert problem.file == made
     word = str(of_file).lower()
     assert problem.text.startswith(f"was built with OMIT_DEPRECATED={word}, where handles of tables are")
-    assert f"write `compiled: {{omit_deprecated: {word}}}` into the mission file" in problem.text
+    assert f"add `compiled: {{omit_deprecated: {word}}}` to the mission file" in problem.text
     assert f"OS_ModuleLoad: /cf/TEST.so was built with OMIT_DEPRECATED={word}" in console
 
 
@@ -109,6 +109,6 @@ def test_without_debug_data_the_abi_profile_cannot_be_told(tmp_path: Path) -> No
     folder = write_mission(tmp_path, "TEST")
     [problem] = check_mission(folder)
     assert problem.is_warning
-    assert "whether TEST.so have OMIT_DEPRECATED cannot be told" in problem.text
+    assert "cannot determine whether TEST.so have OMIT_DEPRECATED" in problem.text
     (tmp_path / "mission.yaml").write_text(OMITS.format("false"), encoding="utf-8")
     assert check_mission(folder) == []

@@ -69,8 +69,8 @@ def test_code_that_is_loaded_later_sees_the_symbols_of_global_modules(tmp_path: 
     """
     console = fly_c(tmp_path, f"{HEADER}\nvoid TEST_Main(void)\n{{\n{body}\n}}\n", 1)
     assert said(console)[:5] == ["0", "0", "2", "0", "0"]
-    assert "/cf/SECOND.so needs what nobody has: first" in console
-    assert "first() was called, which neither cfepy nor a library of the mission has" in console
+    assert "/cf/SECOND.so has undefined symbols: first" in console
+    assert "first() was called, but cfepy and the libraries of the mission do not define it" in console
 
 
 def test_the_modules_of_an_application_are_gone_with_it(tmp_path: Path) -> None:

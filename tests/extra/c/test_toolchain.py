@@ -118,13 +118,13 @@ def test_cmake_lists_say_name_sources_and_tables(tmp_path: Path) -> None:
 
 def test_a_source_that_cmake_names_must_be_there(app: Path) -> None:
     write(app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/gone.c)\n"})
-    with pytest.raises(UsageError, match=r"CMakeLists\.txt names fsw/src/gone\.c, which is not there"):
+    with pytest.raises(UsageError, match=r"CMakeLists\.txt names a missing file: fsw/src/gone\.c"):
         build(app)
 
 
 @pytest.mark.parametrize("name", ["nothing", "apps"])
 def test_there_must_be_something_to_build(name: str, app: Path) -> None:
-    with pytest.raises(UsageError, match=r"there is no such folder|has no C sources"):
+    with pytest.raises(UsageError, match=r"folder not found|missing C sources"):
         build(app.parents[1] / name)
 
 
@@ -147,7 +147,7 @@ def test_a_header_that_only_missions_have_is_empty_without_one(app: Path) -> Non
 def test_headers_of_a_library_beside_it_are_found(app: Path) -> None:
     write(app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/user.c)\nadd_cfe_app_dependency(probe my_lib)\n"})
     write(app, {"fsw/src/user.c": '#include "my_lib.h"\nint user = MY_LIB;\n'})
-    with pytest.raises(CompilerError, match=r"It uses headers of my_lib: have that folder beside this one"):
+    with pytest.raises(CompilerError, match=r"It uses headers of my_lib: put that folder next to this one"):
         build(app)
     write(app.parents[1] / "libs/my_lib", {"fsw/public_inc/my_lib.h": '#include "my_lib_cfg.h"\n'})
     write(app.parents[1] / "libs/my_lib", {"config/default_my_lib_cfg.h": "#define MY_LIB 7\n"})
@@ -172,7 +172,7 @@ def test_warnings_are_told(app: Path) -> None:
 
 def test_a_compiler_that_is_not_there(app: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CC", "no-such-compiler -m64")
-    with pytest.raises(UsageError, match="no-such-compiler is not there: install a C compiler"):
+    with pytest.raises(UsageError, match="no-such-compiler is not installed; install a C compiler"):
         build(app)
 
 
@@ -273,7 +273,7 @@ def test_the_headers_of_a_cfs_tree_are_taken_in_place_of_ours(app: Path, tmp_pat
 
 
 def test_a_tree_must_be_one(app: Path, tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="is no cFS tree of cFE 7"):
+    with pytest.raises(UsageError, match="is not a cFS tree of cFE 7"):
         build(app, options=Options(cfs=tmp_path))
 
 
@@ -306,19 +306,19 @@ def test_addresses_in_a_table_are_told(app: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "wrong"),
     [
-        ("CFE_TBL_FILEDEF(ExampleTable, ", "int ", "defines no table"),
+        ("CFE_TBL_FILEDEF(ExampleTable, ", "int ", "missing table definition"),
         (
             "CFE_TBL_FILEDEF(ExampleTable,",
             "extern int Other; CFE_TBL_FILEDEF(Other,",
-            "which is no object of this file",
+            "is not an object in this file",
         ),
-        ("sample_app_tbl.tbl", "/cf/x.tbl", "which is no name of a file"),
-        ("SAMPLE_APP.ExampleTable", "ExampleTable", "is no full table name"),
+        ("sample_app_tbl.tbl", "/cf/x.tbl", "is not a valid file name"),
+        ("SAMPLE_APP.ExampleTable", "ExampleTable", "invalid table name"),
     ],
 )
 def test_what_is_no_table(old: str, new: str, wrong: str, app: Path) -> None:
     text = TABLE.replace(old, new)
-    if "defines no" in wrong:
+    if "missing table" in wrong:
         text = text[: text.index("int SAMPLE")]
     write(app, {"fsw/tables/bad.c": text})
     with pytest.raises(UsageError, match=wrong):
@@ -329,7 +329,7 @@ def test_a_compiler_that_waits_for_a_pipe_is_ended(tmp_path: Path, monkeypatch: 
     monkeypatch.setattr("cfepy.extra.c.toolchain.compiler._LOOK_S", 0.2)
     os.mkfifo(tmp_path / "pipe.h")
     (tmp_path / "a.c").write_text('#include "pipe.h"\n', encoding="utf-8")
-    with pytest.raises(CompilerError, match="waited for something"):
+    with pytest.raises(CompilerError, match="was waiting for input"):
         compile_file(tmp_path / "a.c", tmp_path / "a.o", [])
 
 
@@ -345,7 +345,7 @@ def test_a_compiler_is_held_to_bounds(tmp_path: Path, monkeypatch: pytest.Monkey
 @pytest.mark.parametrize("name", ["../victim", "/victim", "a/b", "..", "a b", "-o"])
 def test_a_name_that_leads_out_is_refused(name: str, app: Path) -> None:
     write(app, {"CMakeLists.txt": f'add_cfe_app("{name}" fsw/src/probe.c)\n'})
-    with pytest.raises(UsageError, match="names the application"):
+    with pytest.raises(UsageError, match="invalid application name"):
         build(app)
 
 

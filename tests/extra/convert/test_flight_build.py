@@ -148,7 +148,7 @@ def test_without_a_compiler_it_is_said(
     build.identity.cache_clear()
     assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 2
     assert (
-        "no-such-compiler is not there: install a C compiler (on Debian `apt-get install gcc`, and g++ for C++)"
+        "no-such-compiler is not installed; install a C compiler (on Debian `apt-get install gcc`, and g++ for C++)"
         in capfd.readouterr().err
     )
 

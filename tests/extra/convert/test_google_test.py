@@ -143,7 +143,7 @@ def test_a_test_that_passes_and_one_that_takes_too_long(package: Path, capfd: py
     launch.write_text(LAUNCH.format(limit=30), encoding="utf-8")
     assert main(["rostest", str(launch)]) == 1
     shown = capfd.readouterr().out
-    assert "did not end in its 30 virtual seconds" in shown
+    assert "did not end within its 30 virtual seconds" in shown
     assert "| [ RUN      ] Beats.areHeard" in shown
 
 

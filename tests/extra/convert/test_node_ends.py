@@ -61,7 +61,7 @@ def launched(package: Path, one: str, status: int = 0, seconds: float = 60.0) ->
 def test_a_node_is_started_again(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert launched(package, 'respawn="true" respawn_delay="1.0"', status=3) == 0
     shown = capfd.readouterr().out
-    said = shown.count("launch: one has ended with exit status 3 and is started again")
+    said = shown.count("launch: one ended with exit status 3 and is restarted")
     assert 3 <= said <= 6
     assert shown.count("[/one] [ INFO]") in (said, said + 1)
     assert shown.count("[/two] [ INFO]") == 1
@@ -70,7 +70,7 @@ def test_a_node_is_started_again(package: Path, capfd: pytest.CaptureFixture[str
 def test_the_end_of_a_required_node_is_that_of_the_run(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert launched(package, 'required="true"', status=2) == 1
     shown = capfd.readouterr().out
-    assert "launch: one has ended with exit status 2; it is required, so the run is over" in shown
+    assert "launch: one ended with exit status 2; it is required, so the run ends" in shown
     assert "ended, exit status 2" in shown
     assert "\n1.0" in shown
 

@@ -114,5 +114,5 @@ def test_a_target_that_is_not_there_is_told(tmp_path: Path) -> None:
     known = Packages(tmp_path / "demo/src/talker.cpp", {})
     with pytest.raises(UsageError, match=r"has no C\+\+ node 'walker'; it has hearer, old, talker, demo/Filter"):
         program_of(package, "walker", known)
-    with pytest.raises(UsageError, match=r"old is made of gone\.cpp, which is not there"):
+    with pytest.raises(UsageError, match=r"old has a missing source: gone\.cpp"):
         program_of(package, "old", known)

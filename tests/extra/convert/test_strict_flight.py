@@ -102,7 +102,7 @@ def test_a_mistake_in_the_mission_file_ends_the_run(mission: Path, capfd: pytest
     file = mission / "mission.yaml"
     file.write_text(file.read_text(encoding="utf-8").replace("word:", "wort:"), encoding="utf-8")
     assert main(["run", str(mission), "--for", "1"]) == 2
-    error = "mission.yaml:6: cpp_nodes.capacities.ping/Beat.wort: is no field of ping/Beat; did you mean word?"
+    error = "mission.yaml:6: cpp_nodes.capacities.ping/Beat.wort: unknown field of ping/Beat; did you mean word?"
     assert error in capfd.readouterr().err
     assert main(["check", str(mission)]) == 1
     assert capfd.readouterr().out.count(error) == 1
@@ -147,7 +147,7 @@ def test_a_launch_file_by_itself_is_built_as_the_command_line_says(
     assert main(["launch", launch, *said, "--for", "3", "--console", "--record", journal]) == 1
     assert "12 at most, 16 wanted" in capfd.readouterr().out
     assert main(["check", launch, "--cpp-nodes", "tight"]) == 2
-    assert "no startup script" in capfd.readouterr().err
+    assert "unknown mission" in capfd.readouterr().err
     (mission / "mission.yaml").unlink()
     monkeypatch.chdir(mission)
     assert main(["replay", journal]) == 1  # the same run, which has a problem

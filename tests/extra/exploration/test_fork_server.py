@@ -103,7 +103,7 @@ def test_a_run_that_ends_its_process_is_told_and_the_next_one_goes_well() -> Non
 
 
 def test_schedules_with_other_options_are_refused(server: ForkServer) -> None:
-    with pytest.raises(ValueError, match="other options"):
+    with pytest.raises(ValueError, match="must have the options of"):
         server.run(Schedule.parse("random:1:from=51us"))
     with pytest.raises(ValueError, match="from=600ms"):
         ForkServer(two_counters, Schedule.parse("random:1"))

@@ -107,5 +107,5 @@ def test_too_much_for_a_cluster(mission: Path) -> None:
     plan = RunPlan((str(mission),), seconds=0.01)
     with (mission / "big.bag").open("wb") as bag:
         bag.truncate(LIMIT + (1 << 20))
-    with pytest.raises(UsageError, match="--cluster: has 257 MiB of files, more than 256 MiB; take out"):
+    with pytest.raises(UsageError, match="--cluster: must have at most 256 MiB of files, not 257 MiB; remove"):
         ship(plan, files_read(plan))

@@ -104,7 +104,7 @@ def test_a_line_that_is_no_failure_is_told(tmp_path: Path) -> None:
     path.write_text(path.read_text(encoding="utf-8") + '{"failure": {"group": "x"}}\n', encoding="utf-8")
     with pytest.raises(UsageError, match=r"f\.results:2"):
         read_failures(path)
-    with pytest.raises(UsageError, match="does not say which mission"):
+    with pytest.raises(UsageError, match="does not name its mission"):
         next(replay_all(str(path)))
 
 

@@ -126,12 +126,12 @@ def test_a_difference_says_both() -> None:
 @pytest.mark.parametrize(
     ("text", "error"),
     [
-        ("/a: lst", "results./a: is 'lst', it must be one of last, sequence, any order, count, file, output"),
-        ("/a: {ignore: [x]}", "does not say what of it is compared"),
-        ("log.txt: file", "a file of the mission has a path such as"),
+        ("/a: lst", "results./a: must be one of last, sequence, any order, count, file, output, not 'lst'"),
+        ("/a: {ignore: [x]}", "missing compare"),
+        ("log.txt: file", "expected a path in the mission's file system, such as"),
         ("/a: output", "name the node's application"),
-        ("/a: {compare: file, ignore: [x]}", "names fields, but /a has none"),
-        ("/a: {compare: last, ignore: [x-y]}", "it must be the path of a field"),
+        ("/a: {compare: file, ignore: [x]}", "is only valid for messages, and /a has no fields"),
+        ("/a: {compare: last, ignore: [x-y]}", "must be the path of a field"),
     ],
 )
 def test_mistakes_are_told_with_their_place(tmp_path: Path, text: str, error: str) -> None:

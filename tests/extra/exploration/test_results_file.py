@@ -79,7 +79,7 @@ def test_another_campaign_is_refused(path: Path, change: dict[str, object], told
     with pytest.raises(UsageError) as caught:
         ResultsFile(path, {**IDENTITY, **change})
     assert str(caught.value) == (
-        f"{path}:1: --results: has the results of another campaign ({told}); name another file, or delete this one"
+        f"{path}:1: --results: contains the results of another campaign ({told}); name another file, or delete this one"
     )
     assert path.read_bytes() == before
     ResultsFile(path, IDENTITY).close()  # the one that was refused holds no lock
@@ -107,7 +107,7 @@ def test_a_damaged_line_in_the_middle_is_told(path: Path, line: str) -> None:
 
 def test_two_writers_at_once_are_refused(path: Path) -> None:
     file = ResultsFile(path, IDENTITY)
-    with pytest.raises(UsageError, match="another cfepy is writing this file"):
+    with pytest.raises(UsageError, match="is being written by another cfepy process"):
         ResultsFile(path, IDENTITY)
     file.close()
     ResultsFile(path, IDENTITY).close()

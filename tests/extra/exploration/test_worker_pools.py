@@ -23,9 +23,9 @@ from tests.extra.exploration import missions
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        ({"jobs": 0}, "--jobs: 0 processes cannot run anything; give 1 or more"),
-        ({"longest_s": 0}, "--longest: 0 s are no time for a schedule; give more than 0"),
-        ({"jobs": 2, "cluster": "local:2"}, "--jobs: says how many processes run here; with --cluster none do"),
+        ({"jobs": 0}, "--jobs: must be 1 or more, not 0"),
+        ({"longest_s": 0}, "--longest: must be greater than 0 s, not 0 s"),
+        ({"jobs": 2, "cluster": "local:2"}, "--jobs: cannot be combined with --cluster"),
     ],
 )
 def test_options_that_make_no_sense(options: dict[str, int], told: str) -> None:

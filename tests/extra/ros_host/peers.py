@@ -136,7 +136,7 @@ class Wire:
         return parse_header(self.frame())
 
     def ended(self) -> None:
-        """Let the run go on until the other side has closed the connection."""
+        """Let the run go on until the peer has closed the connection."""
         self._run.run_while(lambda: not (self._look() or self.is_over) or bool(self._found))
 
     def _look(self) -> bool:

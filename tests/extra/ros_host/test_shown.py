@@ -147,14 +147,14 @@ def test_what_is_wrong_with_the_section_is_told_with_its_line(tmp_path: Path) ->
     )
     told = check_mission(str(tmp_path))
     assert len(told) == 3
-    for line, part in ((3, 'begins with "/"'), (4, "needs a packet"), (5, 'begins with "/"')):
+    for line, part in ((3, 'must begin with "/"'), (4, "missing packet"), (5, 'must begin with "/"')):
         assert any(each.line == line and part in each.text for each in told), told
     (tmp_path / "mission.yaml").write_text(
         "ros_bridge:\n  publish:\n    /a: CFE_ES_HKK_TLM\n    /b: 0x0800\n  subscribe: [/d]\n", encoding="utf-8"
     )
     told = check_mission(str(tmp_path))
     assert len(told) == 2
-    for line, part in ((3, "CFE_ES_HKK_TLM"), (5, "/d has no MsgId")):
+    for line, part in ((3, "CFE_ES_HKK_TLM"), (5, "/d requires a fixed MsgId")):
         assert any(each.line == line and part in each.text for each in told), told
 
 

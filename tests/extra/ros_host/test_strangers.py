@@ -219,7 +219,7 @@ def test_what_is_no_xml_rpc_is_a_fault(run: Joined, body: bytes) -> None:
 @pytest.mark.parametrize("body", [dumps((1,), methodresponse=True).encode(), b"<methodCall><params/></methodCall>"])
 def test_a_request_without_a_method_is_a_fault(run: Joined, body: bytes) -> None:
     head = f"{HEAD}Connection: close\r\nContent-Length: {len(body)}\r\n\r\n".encode()
-    assert b"it has no method" in exchanged(run, head + body)
+    assert b"the method is missing" in exchanged(run, head + body)
 
 
 def test_values_of_usual_depth_and_number_are_read() -> None:
@@ -242,7 +242,7 @@ def test_many_calls_at_once_are_bounded(run: Joined) -> None:
 def test_an_answer_to_many_calls_is_bounded(run: Joined) -> None:
     run.master("setParam", "/large", "x" * 100_000)
     calls = [{"methodName": "getParam", "params": ["/x", "/large"]}] * 1_000
-    assert "ask for less" in str(run.ask(run.host.world.uri, "system.multicall", calls))
+    assert "make fewer calls" in str(run.ask(run.host.world.uri, "system.multicall", calls))
     run.master("deleteParam", "/large")
 
 
@@ -406,7 +406,7 @@ def test_calls_of_a_service_that_wait_are_bounded(tmp_path: Path, monkeypatch: p
         late.header()
         late.frames.has_status = True
         late.socket.sendall(b"\x01\0\0\0\x01")
-        assert b"4 calls of /switch wait for their answers" in late.frame()
+        assert b"the limit of 4 pending calls of /switch is reached" in late.frame()
         for each in (*left, late):
             each.socket.close()
         run.mission.outside.act("publish", "/go", text("now"))
@@ -533,7 +533,7 @@ def test_many_errands_are_done_by_few_threads_and_too_many_are_left_out(monkeypa
     errands.run("bad", lambda: 1, lambda result, error: result["x"])
     while not told:
         errands.deliver()
-    assert "could not be used: TypeError" in told[0]
+    assert "invalid answer of another program: TypeError" in told[0]
     errands.close()
 
 

@@ -45,5 +45,5 @@ def test_an_answer_has_a_byte_in_front() -> None:
 def test_a_length_that_no_message_has_ends_the_connection() -> None:
     frames = TcprosFrames()
     frames.add(b"GET / HTTP/1.1\r\n\r\n")
-    with pytest.raises(WireError, match="no TCPROS"):
+    with pytest.raises(WireError, match="not TCPROS"):
         list(frames.take())

@@ -161,9 +161,9 @@ def test_names_that_are_imported_from_cfepy(tmp_path: Path) -> None:
         """,
     )
     assert [(line, text.partition(";")[0]) for line, text in found] == [
-        (1, "cfepy.msg has no 'Layuot'"),
-        (2, "there is no module cfepy.mgs"),
-        (4, "cfepy.apps.hk has no 'pakcets'"),
+        (1, "cfepy.msg has no name 'Layuot'"),
+        (2, "unknown module cfepy.mgs"),
+        (4, "cfepy.apps.hk has no name 'pakcets'"),
     ]
 
 

@@ -38,21 +38,27 @@ def test_a_good_mission(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0;", "the entry has 7 of 8 fields"),
-        ("CFE_APP, nothere, X_Main, X, 60, 16384, 0, 0;", "no code for /cf/nothere.so"),
+        ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0;", "the entry must have 8 fields, not 7"),
+        ("CFE_APP, nothere, X_Main, X, 60, 16384, 0, 0;", "missing code for /cf/nothere.so"),
         ("CFE_APP, hk, HK_AppMian, HK2, 60, 16384, 0, 0;", "has no function HK_AppMian; did you mean HK_AppMain?"),
         ("CFE_APP, hk, , HK2, 60, 16384, 0, 0;", "the application never runs, and the start waits for it; write"),
         (
             "CFE_APP, hk, HK_AppMain, , 60, 16384, 0, 0;",
-            "has no name: cFE starts it, and no command can name it; write",
+            "is missing: cFE starts it, but no command can address it; write",
         ),
-        ("CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 0;", "the name 'HK' is taken by line 1"),
-        ("CFE_APP, hk, HK_AppMain, CFE_ES, 60, 16384, 0, 0;", "the name 'CFE_ES' is taken by the core application"),
-        ("CFE_APP, hk, HK_AppMain, TWENTY_CHARACTERS_XX, 60, 1, 0, 0;", "at most 19 fit"),
-        ("CFE_APP, twenty_characters.py, A, HK2, 60, 16384, 0, 0;", "twenty_characters.py has 20 characters or more"),
-        ("CFE_APP, /ram/hk, HK_AppMain, HK2, 60, 16384, 0, 0;", "/ram/hk.so is not below /cf"),
+        ("CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 0;", "the name 'HK' is already taken by line 1"),
+        (
+            "CFE_APP, hk, HK_AppMain, CFE_ES, 60, 16384, 0, 0;",
+            "the name 'CFE_ES' is already taken by the core application",
+        ),
+        ("CFE_APP, hk, HK_AppMain, TWENTY_CHARACTERS_XX, 60, 1, 0, 0;", "at most 19 characters"),
+        (
+            "CFE_APP, twenty_characters.py, A, HK2, 60, 16384, 0, 0;",
+            "twenty_characters.py must have fewer than 20 characters",
+        ),
+        ("CFE_APP, /ram/hk, HK_AppMain, HK2, 60, 16384, 0, 0;", "/ram/hk.so must be below /cf"),
         ("CFE_LIB, hk, HK_LibInit, LIB, 0, 0, 0, 0;", "has no function HK_LibInit"),
-        ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0, 0", "the last entry has no ';' and is lost"),
+        ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0, 0", "the last entry is ignored, because its ';' is missing"),
     ],
 )
 def test_a_bad_line(tmp_path: Path, line: str, said: str) -> None:
@@ -66,16 +72,16 @@ def test_a_bad_line(tmp_path: Path, line: str, said: str) -> None:
     [
         (
             "invariants:\n  a: {packet: HK_TML, holds: 'True'}",
-            "invariants.a: no telemetry packet is called HK_TML",
+            "invariants.a: unknown telemetry packet HK_TML",
         ),
         (
             "invariants:\n  a: {topic: /a, within: 1, then: {packet: [HK_NOOP, HKK]}}",
-            "invariants.a: no telemetry packet is called HKK",
+            "invariants.a: unknown telemetry packet HKK",
         ),
-        ("results:\n  HK: count", "results.HK: no telemetry packet is called HK"),
+        ("results:\n  HK: count", "results.HK: unknown telemetry packet HK"),
         (
             "invariants:\n  a: {topic: /a, file: checks.py, function: Count}",
-            "checks.py has no such function or class, it has seen, Counts",
+            "checks.py has seen, Counts",
         ),
     ],
 )
@@ -147,7 +153,7 @@ def test_a_node_from_outside_the_folder(tmp_path: Path) -> None:
     (tmp_path / "mission").mkdir()
     (tmp_path / "talker.py").write_text("import rospy\n", encoding="utf-8")
     found = check(tmp_path / "mission", "CFE_APP, /cf/../talker.py, __main__, TALKER, 60, 16384, 0, 0;\n!")
-    assert [line for _, line, text in found if "/cf/../talker.py is not below /cf" in text] == [1]
+    assert [line for _, line, text in found if "/cf/../talker.py must be below /cf" in text] == [1]
 
 
 def test_nothing_is_executed(tmp_path: Path) -> None:
@@ -188,7 +194,7 @@ def test_two_nodes_of_one_name(tmp_path: Path) -> None:
     yaml = "nodes:\n  A: {name: robot}\n  B: {name: robot, namespace: /}\n"
     ((_, line, text),) = check(tmp_path, node(tmp_path, "a") + node(tmp_path, "b") + "!", yaml)
     assert line == 3
-    assert "the node name /robot is that of A too" in text
+    assert "the node name /robot is also used by A" in text
 
 
 def test_a_mission_file_that_is_not_yaml(tmp_path: Path) -> None:
@@ -201,8 +207,8 @@ def test_more_applications_than_the_board_takes(tmp_path: Path) -> None:
     script = "".join(HK.replace(" HK,", f" HK{number},") for number in range(13)) + "!"
     found = check(tmp_path, script, board="rx64m")
     assert [(line, text.split(";")[0]) for _, line, text in found] == [
-        (12, "HK11 is one application too many, rx64m takes 11"),
-        (13, "HK12 is one application too many, rx64m takes 11"),
+        (12, "HK11 exceeds the limit: rx64m allows 11 application entries"),
+        (13, "HK12 exceeds the limit: rx64m allows 11 application entries"),
     ]
 
 
@@ -216,7 +222,7 @@ def test_stacks_beyond_the_memory(tmp_path: Path) -> None:
 
 def test_a_board_given_by_hand(tmp_path: Path) -> None:
     ((_, _, text),) = check(tmp_path, HK + "!", board="abacus")
-    assert "there is no board 'abacus'" in text
+    assert "unknown board 'abacus'" in text
 
 
 def test_no_mission(tmp_path: Path) -> None:
@@ -240,10 +246,13 @@ def test_the_example_in_the_documentation(tmp_path: Path, document: str, read: C
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("CFE_APP, hk, HK_AppMain, HK, high, 16384, 0, 0;", "the priority 'high' is read as 0; write a number"),
-        ("CFE_APP, hk, HK_AppMain, HK, 60, 16k, 0, 0;", "the stack size '16k' is read as 16; write a number"),
-        ("CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, restart;", "the exception action 'restart' is read as 0"),
-        ("CFE_APP, hk, HK_AppMain, HK, 017, 16384, 0, 0;", "the priority '017' is read as 15"),
+        ("CFE_APP, hk, HK_AppMain, HK, high, 16384, 0, 0;", "invalid priority 'high', which cFE reads as 0"),
+        ("CFE_APP, hk, HK_AppMain, HK, 60, 16k, 0, 0;", "invalid stack size '16k', which cFE reads as 16"),
+        (
+            "CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, restart;",
+            "invalid exception action 'restart', which cFE reads as 0",
+        ),
+        ("CFE_APP, hk, HK_AppMain, HK, 017, 16384, 0, 0;", "invalid priority '017', which cFE reads as 15"),
         ("CFE_APP, hk, HK_AppMain, HK, 256, 16384, 0, 0;", "the priority 256 is cut to 255"),
         ("CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 2;", "the exception action 2 is taken as 1"),
     ],
@@ -258,10 +267,10 @@ def test_what_cfe_reads_otherwise_is_a_warning(tmp_path: Path, line: str, said: 
 @pytest.mark.parametrize(
     ("head", "said"),
     [
-        ("async def Main(cfe):", "the entry point Main of A is async"),
-        ("def Main():", "the entry point Main of A does not take one argument"),
-        ("def Main(cfe, more):", "the entry point Main of A does not take one argument"),
-        ("def Main(*, cfe):", "the entry point Main of A does not take one argument"),
+        ("async def Main(cfe):", "the entry point Main of A must not be async"),
+        ("def Main():", "the entry point Main of A must take one argument"),
+        ("def Main(cfe, more):", "the entry point Main of A must take one argument"),
+        ("def Main(*, cfe):", "the entry point Main of A must take one argument"),
         ("def Main(cfe, more=1, *, name=''):", ""),
         ("def Main(*args):", ""),
         ("@wrapped\ndef Main():", ""),
@@ -295,4 +304,6 @@ def test_the_missions_of_this_repository_are_good() -> None:
 
 def test_compiled_applications_that_are_not_there_are_named() -> None:
     missing = [problem.text.partition(":")[0] for script in COMPILED for problem in check_mission(str(script))]
-    assert missing == [f"no code for /cf/{name}.so" for name in ("lc", "ds", "md", "cf", "sc", "hs", "fm", "mm", "cs")]
+    assert missing == [
+        f"missing code for /cf/{name}.so" for name in ("lc", "ds", "md", "cf", "sc", "hs", "fm", "mm", "cs")
+    ]

@@ -55,7 +55,7 @@ def test_a_node_with_all_that_it_uses(demo: Path) -> None:
     for said in (
         "package std_msgs has no msg Strnig; did you mean String?",
         "package demo has no msg Drvie; did you mean Drive?",
-        "there is no package demoo with messages; did you mean demo?",
+        "unknown message package demoo; did you mean demo?",
     ):
         assert said in texts
 
@@ -107,7 +107,7 @@ def test_a_launch_file_with_many_problems(demo: Path) -> None:
         (11, True),
     ]
     texts = [problem.text for problem in found]
-    assert texts[0] == "has no argument 'other'; other:=1 is ignored"
+    assert texts[0] == "unknown argument 'other'; other:=1 is ignored"
     assert "did you mean good.py?" in texts[2]
     assert "did you mean demo?" in texts[3]
     assert "/d is required, but package 'demo' has no file 'driver'" in texts[5]
@@ -119,7 +119,7 @@ def test_a_launch_file_without_a_node_cannot_fly(demo: Path) -> None:
     (demo / "srv/Go.srv").unlink()
     (demo / "launch/empty.launch").write_text("<launch/>", encoding="utf-8")
     (problem,) = check_mission("demo/launch/empty.launch")
-    assert problem.text == "has no node that can run here"
+    assert problem.text == "has no node that cfepy can run"
     (demo / "launch/a.test").write_text(
         '<launch><test pkg="demo" type="good.py" test-name="t"/></launch>', encoding="utf-8"
     )
@@ -138,7 +138,7 @@ def test_launch_files_of_a_mission_are_read_to_the_end(demo: Path) -> None:
 
 def test_a_mission_takes_no_arguments_and_what_is_not_there_is_an_error(demo: Path) -> None:
     (demo.parent / "startup.scr").write_text("!", encoding="utf-8")
-    with pytest.raises(UsageError, match="only a launch file takes arguments"):
+    with pytest.raises(UsageError, match="is not a launch file, so it takes no arguments"):
         check_mission(".", args={"a": "1"})
     with pytest.raises(UsageError, match=r"'nothing\.launch'"):
         check_mission("demo nothing.launch")

@@ -143,7 +143,7 @@ def test_free_rows_are_moved_together_when_a_long_value_needs_them() -> None:
         tree.delete(str(number))
     tree.set("long", "x" * 300)
     assert tree_of(rows.rows, [])[0] == tree.find("/")
-    with pytest.raises(ParametersFull, match="the parameter tables are full: /more takes 2 rows of 10, 1 are free"):
+    with pytest.raises(ParametersFull, match="the parameter tables are full: /more needs 2 rows of 10, 1 are free"):
         tree.set("more", "x" * 100)
 
 
@@ -206,7 +206,7 @@ def test_depth_of_a_parameter_is_bounded(depth: int) -> None:
         kept().set("/ns/deep", value)
         return
     for tree in (kept(), ParameterTree()):
-        with pytest.raises(ROSException, match="more than 100 namespaces and lists"):
+        with pytest.raises(ROSException, match="more than 100 nested namespaces and lists"):
             tree.set("/ns/deep", value)
 
 

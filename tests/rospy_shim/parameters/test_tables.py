@@ -197,9 +197,9 @@ def test_a_table_from_the_ground_changes_what_nodes_read(tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        ({"mode": "safe"}, "Params01, row 0: 'mode' is no full name, such as /robot/rate"),
-        ({"/good": "1", "/mode": "[1, 2"}, "Params01, row 1: '[1, 2' is no JSON"),
-        ({"/when": '{"!!timestamp": "noon"}'}, "Params01, row 0: 'noon' is no date and time"),
+        ({"mode": "safe"}, "Params01, row 0: invalid name 'mode'; expected a full name such as /robot/rate"),
+        ({"/good": "1", "/mode": "[1, 2"}, "Params01, row 1: invalid JSON '[1, 2'"),
+        ({"/when": '{"!!timestamp": "noon"}'}, "Params01, row 0: invalid date and time 'noon'"),
         ({"/mode": "5000000000"}, "Params01, row 0: 5000000000 has more than 32 bits"),
     ],
 )
@@ -228,7 +228,7 @@ def test_a_long_text_fits_and_one_that_does_not_is_refused(tmp_path: Path) -> No
     with fly(tmp_path, node) as mission:
         mission.run_for(2)
         error, kept = printed(mission)
-        assert error == "the parameter tables are full: /another takes 1250 rows of 2032, 560 are free"
+        assert error == "the parameter tables are full: /another needs 1250 rows of 2032, 560 are free"
         assert kept == "False 100800"
         reset(mission, PROCESSOR_RESET)
         assert len(mission.ros.graph.params.find("/another")) == 100000

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from cfepy.pilot import Flown, RunPlan
 
 ANY_ADDRESS = "0.0.0.0"
-EXTRA = "the console on a terminal needs the package textual: pip install 'cfepy[console]'; or use --plain"
+EXTRA = "the console on a terminal requires the package textual: pip install 'cfepy[console]'; or use --plain"
 
 
 class Ended(NamedTuple):
@@ -174,14 +174,17 @@ class Opening:
         elsewhere = (host_of(asked, CI_PORT) or RemoteHost(asked, CI_PORT)) if asked else host
         enable = f"TO_LAB_OUTPUT_ENABLE dest_IP={own_address(elsewhere.name)}"
         if asked is None:
-            session.say(REPLY, f"TO_LAB sends nothing before it is asked to, as by {enable}")
+            session.say(REPLY, f"TO_LAB sends no telemetry until you enable it: {enable}")
         elif elsewhere == host:
             session.take(enable)
         else:
             dictionary = session.craft.script.scene.dictionary
             packet = packet_of(dictionary.command("TO_LAB_OUTPUT_ENABLE"), enable.split()[1:])
             if not send(elsewhere.name, elsewhere.port, packet):
-                raise UsageError("nobody listens there, so TO_LAB cannot be asked to send", file=str(elsewhere))
+                raise UsageError(
+                    "no receiver is listening, so telemetry cannot be enabled; start the mission first",
+                    file=str(elsewhere),
+                )
 
 
 def _listening(text: str | None) -> RemoteHost:
@@ -192,7 +195,9 @@ def _listening(text: str | None) -> RemoteHost:
         text = f"{ANY_ADDRESS}:{text}"
     host = host_of(text, TO_PORT)
     if host is None:
-        raise UsageError(f"{text!r} is no address of this computer, such as 127.0.0.1:1235", field="--listen")
+        raise UsageError(
+            f"invalid address {text!r}; expected an address of this computer, such as 127.0.0.1:1235", field="--listen"
+        )
     return host
 
 
@@ -233,9 +238,9 @@ _NOT_OF_A_COMPUTER = (
 
 def _check(arguments: argparse.Namespace) -> None:
     if (arguments.mission is None) == (arguments.udp is None):
-        raise UsageError("say what it is for: cfepy console MISSION, or cfepy console --udp HOST:PORT")
+        raise UsageError("requires one target: cfepy console MISSION, or cfepy console --udp HOST:PORT")
     if arguments.udp is not None:
-        why = f"{arguments.udp} is a computer, which is not flown; leave it out"
+        why = f"only valid for a mission, and {arguments.udp} is a remote target; leave it out"
         refuse_run_options(arguments, why, but=["script", "stop_on_failure"])
         for name, option in (*_NOT_OF_A_COMPUTER, *flight_add_ons.options()):
             if getattr(arguments, name):
@@ -243,9 +248,9 @@ def _check(arguments: argparse.Namespace) -> None:
         return
     for name in ("listen", "enable"):
         if getattr(arguments, name) is not None:
-            raise UsageError("is for a computer elsewhere, with --udp; leave it out", field=f"--{name}")
+            raise UsageError("only valid with --udp; leave it out", field=f"--{name}")
     if arguments.names is not None:
-        raise UsageError("a mission has names of its own; leave it out, or say --udp", field="--mission")
+        raise UsageError("only valid with --udp; a local mission brings its own names", field="--mission")
     check_pace(arguments)
 
 

@@ -42,7 +42,9 @@ class RemoteScene(Scene):
     def send(self, packet: bytes, must_arrive: bool) -> str:
         """UDP has no receipts, so all that is known is whether a computer at hand listens."""
         self._saved.sent(packet, self.now_ns)
-        return "" if send_datagram(self._host.name, self._host.port, packet) else f"{self._host}: nobody listens there"
+        return (
+            "" if send_datagram(self._host.name, self._host.port, packet) else f"{self._host}: no receiver is listening"
+        )
 
     def learn_topics(self) -> None:
         """See `Scene.learn_topics`; nothing is known of them."""

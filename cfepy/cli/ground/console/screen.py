@@ -40,7 +40,7 @@ MOST_LINES = 2000
 MOST_HISTORY = 500
 KEYS = "F1 help  F2 page  F3 events  F5 run/pause  Tab completes  Ctrl-C pause  Ctrl-Q quit"
 QUIT = "quit"
-NOTHING_FITS = "nothing that is known fits here"
+NOTHING_FITS = "no matching name"
 ENTRY_STYLES = {CONSOLE: "dim", TYPED_LINE: "bold", REPLY: "", GOOD: "green", BAD: "bold red"}
 EVENT_STYLES = {"DEBUG": "dim", "INFORMATION": "cyan", "ERROR": "bold red", "CRITICAL": "bold white on red"}
 ACTIONS = {key: each.action for each in Input.BINDINGS if isinstance(each, Binding) for key in each.key.split(",")}
@@ -259,7 +259,7 @@ class ConsoleScreen(App[None]):
         line.focus()
         for note in self._notes:
             session.say(REPLY, note)
-        session.say(REPLY, f"{session.craft.name}: help lists what can be typed")
+        session.say(REPLY, f"{session.craft.name}: type help for the list of commands")
 
     def _draw(self, session: ConsoleSession) -> None:
         log = self.query_one("#log", RichLog)
@@ -314,7 +314,7 @@ class ConsoleScreen(App[None]):
         """End the session; some time later, end the process, for a task that never gives up the processor."""
         if self._leaving is not None and self._leaving.elapsed_ns() > PATIENCE_NS:
             with self.suspend():
-                os.write(STDERR, b"cfepy: a task does not end; gave up\n")
+                os.write(STDERR, b"cfepy: a task does not end; the process exits\n")
                 os._exit(INTERRUPTED)
         self._leaving = self._leaving or Stopwatch()
         self.query_one("#hint", Static).update("the session ends; if it does not, Ctrl-Q once more ends the process")

@@ -262,7 +262,7 @@ class ConsoleSession:
         name, *rest = line.split()
         try:
             if self.is_landed and name not in LOOKING:
-                raise UsageError(f"the run is over; there is {', '.join(LOOKING)}")
+                raise UsageError(f"the run is over; only {', '.join(LOOKING)} can be used now")
             if name in self.words:
                 self.words[name].act(rest)
             else:
@@ -321,7 +321,10 @@ class ConsoleSession:
 
     def _until(self, words: list[str]) -> None:
         if not words:
-            raise UsageError("until what? as in: until event CFE_ES 3, until app HK RUNNING, until tlm NAME FIELD == 3")
+            raise UsageError(
+                "missing condition; write for instance: until event CFE_ES 3, until app HK RUNNING, "
+                "until tlm NAME FIELD == 3"
+            )
         limit = "" if {"within", "until"} & set(words) else f" within {LONGEST_S:.0f}"
         script, scene = self.craft.script, self.craft.script.scene
         mark = scene.mark_ns, scene.since
@@ -341,7 +344,7 @@ class ConsoleSession:
         for _ in range(count):
             upcoming = self.craft.next_event()
             if upcoming is None:
-                raise UsageError("nothing is known of what comes next")
+                raise UsageError("cannot step: the mission has no further event")
             while self.craft.stands_ns < upcoming and self.craft.step(upcoming):
                 pass
             while count > 1 and self.craft.next_event() == upcoming and self.craft.step(upcoming):
@@ -350,7 +353,7 @@ class ConsoleSession:
 
     def _pause(self, words: list[str]) -> None:
         if self.craft.flows and not self.craft.script.scene.has_mission:
-            raise UsageError("a computer elsewhere does not stand still")
+            raise UsageError("a remote target cannot be paused")
         self.pause()
 
     def pause(self) -> None:
@@ -362,7 +365,7 @@ class ConsoleSession:
 
     def _speed(self, words: list[str]) -> None:
         if not words:
-            raise UsageError(f"how fast? as in: speed 2, speed {MAXIMUM}")
+            raise UsageError(f"missing factor; write for instance: speed 2, speed {MAXIMUM}")
         self._factor = None if words == [MAXIMUM] else _parsed(factor_of, words)
         self._stood = True
 
@@ -387,7 +390,7 @@ class ConsoleSession:
 
     def _load(self, words: list[str]) -> None:
         if len(words) != 1:
-            raise UsageError("which file? load FILE")
+            raise UsageError("requires one file: load FILE")
         self.load(words[0])
 
     def load(self, file: str) -> None:
@@ -401,12 +404,12 @@ class ConsoleSession:
         except OSError as error:
             raise UsageError(f"cannot be read: {error.strerror}", file=file) from None
         except UnicodeError:
-            raise UsageError("is no text in UTF-8", file=file) from None
+            raise UsageError("is not UTF-8 text", file=file) from None
         self._add(text, file)
 
     def _save(self, words: list[str]) -> None:
         if len(words) != 1:
-            raise UsageError("to which file? save FILE")
+            raise UsageError("requires one file: save FILE")
         self.saved.write(words[0], self.craft.stands_ns)
         self.say(REPLY, f"{words[0]}: {self.saved.count} commands")
 

@@ -55,7 +55,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
         api.add(name, "s", _failing_with(what))
     api.add("_ZSt24__throw_out_of_range_fmtPKcz", "f", _failing_with("std::out_of_range"))
     for name in RANDOM:
-        api.add(name, "", _failing(f"{name}(): random numbers of the computer would be others in each run"))
+        api.add(name, "", _failing(f"{name}(): random numbers of the host differ in each run and are not available"))
 
 
 def _declare_lives(api: Declarations, c: CRuntime) -> None:

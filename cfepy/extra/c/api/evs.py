@@ -20,7 +20,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
     def register(filters: int, count: int, scheme: int) -> None:
         if count and not filters:
-            raise CfeError(CFE_ES_BAD_ARGUMENT, f"{count} filters at NULL")
+            raise CfeError(CFE_ES_BAD_ARGUMENT, f"NULL pointer for {count} filters")
         raw = memory.peek(filters, _FILTER.size * count) if count else b""
         evs.register([(event_id, mask) for event_id, mask in _FILTER.iter_unpack(raw)], scheme)
 

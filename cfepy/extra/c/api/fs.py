@@ -112,7 +112,7 @@ def _declare_names(api: Declarations, c: CRuntime) -> None:
             raise
 
     def nothing() -> str:
-        raise FileNameError(CFE_FS_INVALID_PATH, "neither a name nor a default", "")
+        raise FileNameError(CFE_FS_INVALID_PATH, "missing file name, and no default name", "")
 
     def parse(to: int, name: str | None, size: int, category: int) -> None:
         put_made(to, size, nothing if name is None else lambda: fs.parse_input_file_name(name, category, size))
@@ -222,7 +222,7 @@ def _declare_dumps(api: Declarations, c: CRuntime) -> None:
     def request(at: int) -> None:
         meta = CFileWrite(c, at, outputs)
         if not meta.has_functions():
-            raise CfeError(BAD, "a background write needs a function for its data and one for its end")
+            raise CfeError(BAD, "a background write requires a function for its data and one for its end")
         fs.background_file_dump_request(meta)
 
     def is_pending(at: int) -> bool:

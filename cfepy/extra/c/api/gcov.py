@@ -51,7 +51,7 @@ def _declare_files(api: Declarations, c: CRuntime) -> None:
 
     def open_file(name: str, flags: int, mode: int) -> int:
         if not name.endswith(SUFFIX):
-            raise CFault(f"open() of {name}: applications open files with OS_OpenCreate")
+            raise CFault(f"open() of {name} is not available; use OS_OpenCreate")
         number = failing(lambda: os.open(name, flags, mode))
         if number != FAILED:
             opened.add(number)
@@ -59,23 +59,23 @@ def _declare_files(api: Declarations, c: CRuntime) -> None:
 
     def control(number: int, command: int, lock: int) -> int:
         if number not in opened or command not in (fcntl.F_SETLK, fcntl.F_SETLKW):
-            raise CFault("fcntl() of a file that is none of libgcov's")
+            raise CFault("fcntl() is only available for files of libgcov")
         return failing(lambda: fcntl.fcntl(number, command, memory.peek(lock, FLOCK)))
 
     def close(number: int) -> int:
         if number not in opened:
-            raise CFault("close() of a file that is none of libgcov's")
+            raise CFault("close() is only available for files of libgcov")
         opened.discard(number)
         return failing(lambda: os.close(number))
 
     def access(name: str, mode: int) -> int:
         if not any(image.source.has_coverage for image in c.images()):
-            raise CFault(f"access() of {name}: applications ask for files with OS_stat")
+            raise CFault(f"access() of {name} is not available; use OS_stat")
         return 0 if os.access(name, mode) else FAILED
 
     def make_folder(name: str, mode: int) -> int:
         if not name.startswith(os.environ.get(PREFIX) or "\0"):
-            raise CFault(f"mkdir() of {name}: applications make folders with OS_mkdir")
+            raise CFault(f"mkdir() of {name} is not available; use OS_mkdir")
         return failing(lambda: os.mkdir(name, mode))
 
     api.add("open", "SiI", open_file, FAILED)
@@ -111,7 +111,7 @@ def _declare_streams(api: Declarations, c: CRuntime) -> None:
         return 0
 
     def open_stream(name: str, mode: str) -> int:
-        raise CFault(f"fopen() of {name}: applications open files with OS_OpenCreate")
+        raise CFault(f"fopen() of {name} is not available; use OS_OpenCreate")
 
     api.add("fdopen", "iS", stream_of)
     api.add("fread", "pQQp", read)
@@ -128,7 +128,7 @@ def _declare_rest(api: Declarations, c: CRuntime) -> None:
         return 0 if value is None else c.constants.text(value)
 
     def map_memory() -> None:
-        raise CFault("mmap() was called: applications get memory from malloc or a pool of cFE's")
+        raise CFault("mmap() is not available; use malloc or a memory pool of cFE")
 
     api.add("getenv", "S", get_environment)
     api.add("getpid", "", lambda: 1)
@@ -138,5 +138,5 @@ def _declare_rest(api: Declarations, c: CRuntime) -> None:
 def _of(streams: dict[int, IO[bytes]], stream: int) -> IO[bytes]:
     found = streams.get(stream)
     if found is None:
-        raise CFault(f"0x{stream:x} is no open FILE")
+        raise CFault(f"0x{stream:x} is not an open FILE")
     return found

@@ -87,7 +87,7 @@ class GuardedPools:
         lent = self._all.get(address)
         now = None if lent is None else self._lent.get((lent.pool, lent.offset))
         if now is not None and now is not lent:
-            raise CFault(f"{function}() of 0x{address:x}, a pool block that was given back; another has its place now")
+            raise CFault(f"{function}() of 0x{address:x}, a pool block that was already returned and reused")
 
     def leave(self, block: PoolBlock) -> Lent | None:
         """A block is about to be given back; what `gone` or `stay` takes."""

@@ -35,9 +35,9 @@ def _declare_descriptors(api: Declarations, c: CRuntime) -> None:
 
     def open_create(path: str | None, flags: int, access_mode: int) -> int:
         if access_mode not in (OS_READ_ONLY, OS_WRITE_ONLY, OS_READ_WRITE):
-            raise OsalError(OS_ERROR, f"access mode {access_mode}")
+            raise OsalError(OS_ERROR, f"invalid access mode {access_mode}")
         if path is None:
-            raise OsalError(BAD, "no path")
+            raise OsalError(BAD, "missing path")
         return os.open_create(path, flags, access_mode)
 
     def get_info(filedes: int, at: int) -> None:
@@ -92,7 +92,7 @@ def _declare_paths(api: Declarations, c: CRuntime) -> None:
     def stat(path: str | None, at: int) -> None:
         memory.poke(at, bytes(FILE_STAT.size))
         if path is None:
-            raise OsalError(BAD, "no path")
+            raise OsalError(BAD, "missing path")
         memory.poke(at, FILE_STAT.pack(*os.stat(path)))
 
     api.add("OS_stat", "$sP", stat, BAD)

@@ -43,7 +43,7 @@ def _declare_modules(api: Declarations, c: CRuntime) -> None:
 
     def load(name: str, file: str | None, flags: int) -> int:
         if file is None:
-            raise OsalError(BAD, "no path")
+            raise OsalError(BAD, "missing path")
         module_id = os.module_load(name, file, flags)
         code = os.module_code(module_id)
         if isinstance(code, LoadedCode):
@@ -79,7 +79,7 @@ def _declare_symbols(api: Declarations, c: CRuntime) -> None:
         found = c.symbol(name)
         if found is not None:
             return found
-        raise OsalError(OS_ERROR, f"nothing is called {name}")
+        raise OsalError(OS_ERROR, f"unknown symbol {name}")
 
     def look_up_in(module_id: int, at: int, name: str) -> None:
         try:
@@ -90,7 +90,7 @@ def _declare_symbols(api: Declarations, c: CRuntime) -> None:
             raise
         c.memory.put_u64(at, symbol if isinstance(symbol, int) else 0)
         if not isinstance(symbol, int):
-            raise OsalError(OS_ERROR, f"{name} is no symbol of compiled code")
+            raise OsalError(OS_ERROR, f"{name} is not a symbol of compiled code")
 
     api.add("OS_SymbolLookup", "~8S", look_up, BAD)
     api.add("OS_ModuleSymbolLookup", "IPS", look_up_in, BAD)

@@ -30,7 +30,7 @@ def _declare_ids(api: Declarations, c: CRuntime) -> None:
         name = to_bytes(os.get_resource_name(object_id))
         memory.poke(buffer, name[: size - 1] + b"\0")
         if len(name) >= size:
-            raise OsalError(OS_ERR_NAME_TOO_LONG, f"{size} bytes are too few for {name!r}")
+            raise OsalError(OS_ERR_NAME_TOO_LONG, f"a buffer of {size} bytes is too small for {name!r}")
 
     def for_each(creator: int, callback: int, argument: int) -> None:
         os.for_each_object(creator, lambda object_id, arg: c.run(callback, object_id, arg), argument)
@@ -53,7 +53,7 @@ def _declare_errors(api: Declarations, c: CRuntime) -> None:
         name = os.get_error_name(status)
         memory.put_text(at, name, ERROR_NAME)
         if name.startswith("OS_UNKNOWN"):
-            raise OsalError(OS_ERROR, f"{status} is no error")
+            raise OsalError(OS_ERROR, f"{status} is not an error status")
 
     def status_to_string(status: int, at: int) -> int:
         if at:

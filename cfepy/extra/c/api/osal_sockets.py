@@ -212,7 +212,7 @@ def _declare_facts(api: Declarations, c: CRuntime) -> None:
 
     def get_option(sock_id: int, option: int, value: int) -> None:
         if option not in OPTIONS:
-            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"there is no socket option {option}")
+            raise OsalError(OS_ERR_INVALID_ARGUMENT, f"unknown socket option {option}")
         memory.put_u32(value, 0)
         memory.put_u32(value, os.socket_get_option(sock_id, option))
 

@@ -40,7 +40,7 @@ def _declare_frame(api: Declarations, c: CRuntime) -> None:
         os.register_event_handler(tell)
 
     def startup() -> None:
-        raise CFault("OS_Application_Startup() was called, with which a board begins")
+        raise CFault("OS_Application_Startup() must not be called by an application; the board calls it")
 
     api.add("OS_Application_Startup", "", startup)
     api.add("OS_API_Init", "", os.api_init)

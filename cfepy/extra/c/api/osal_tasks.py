@@ -45,13 +45,13 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
     def find_by_system_data(data: int, size: int) -> int:
         if not data or size != SYSTEM_DATA:
-            raise OsalError(BAD, f"{size} bytes of system data")
+            raise OsalError(BAD, f"invalid size of system data: {size} bytes")
         task_id = memory.u64(data)
         try:
             os.task_get_info(task_id)
         except OsalError as error:
             status = OS_ERR_NAME_NOT_FOUND if error.status == OS_ERR_INVALID_ID else error.status
-            raise OsalError(status, f"no task has the system data {task_id:#x}") from error
+            raise OsalError(status, f"unknown system data {task_id:#x}") from error
         return task_id
 
     def own_system_data() -> int:

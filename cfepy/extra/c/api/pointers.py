@@ -15,7 +15,7 @@ def need(status: int, *pointers: object) -> None:
         CfeError: `status`.
     """
     if None in pointers or 0 in pointers:
-        raise CfeError(status, "a NULL pointer")
+        raise CfeError(status, "unexpected NULL pointer")
 
 
 def name_into(
@@ -32,13 +32,13 @@ def name_into(
 
     def call(buffer: int, key: int, size: int) -> None:
         if not buffer or not size:
-            raise CfeError(no_room, "no room for a name")
+            raise CfeError(no_room, "the buffer has no room for a name")
         try:
             name = get(key)
         except CfeError:
             memory.poke(buffer, b"\0")
             raise
         if not memory.put_text(buffer, name, size) and too_long != CFE_SUCCESS:
-            raise CfeError(too_long, f"{size} bytes are too few for {name!r}")
+            raise CfeError(too_long, f"a buffer of {size} bytes is too small for {name!r}")
 
     return call

@@ -35,7 +35,7 @@ def _declare_resets(api: Declarations, c: CRuntime) -> None:
     psp = c.handle.psp
 
     def main() -> None:
-        raise CFault("CFE_PSP_Main() was called, with which a board begins")
+        raise CFault("CFE_PSP_Main() must not be called by an application; the board calls it")
 
     def panic(code: int) -> None:
         try:

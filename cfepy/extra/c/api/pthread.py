@@ -63,7 +63,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
     def system_call(number: int, address: int, command: int, value: int) -> int:
         if number != FUTEX[platform.machine()]:
-            raise CFault(f"syscall({number}): applications do not call the computer's kernel")
+            raise CFault(f"syscall({number}) is not available: applications cannot call the kernel of the host")
         if command & FUTEX_COMMANDS == FUTEX_WAIT and memory.u32(address) == value & 0xFFFFFFFF:
             c.handle.os.task_delay(WAIT_MS)
         return 0

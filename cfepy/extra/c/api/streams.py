@@ -111,7 +111,7 @@ class Streams:
         """
         writer = self.writers.get(stream)
         if writer is None:
-            raise CFault(f"0x{stream:x} is no open FILE")
+            raise CFault(f"0x{stream:x} is not an open FILE")
         writer(data)
         return len(data)
 
@@ -143,7 +143,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
         return streams.write(stream, to_bytes(text))
 
     def end(status: int) -> None:
-        raise CFault(f"exit({status}) was called, which would end the whole of cFE")
+        raise CFault(f"exit({status}) was called, which would end cFE")
 
     for name in UNREADABLE:
         api.add(name, "p", lambda stream: EOF)

@@ -26,7 +26,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.folder is None:
         if arguments.headers:
             return ENDED_WELL
-        raise UsageError("say which folder: cfepy build FOLDER", field="FOLDER")
+        raise UsageError("missing folder: cfepy build FOLDER", field="FOLDER")
     try:
         with writing(arguments.output or arguments.folder, "--output"):
             built = build(arguments.folder, arguments.output, _options(arguments))

@@ -164,7 +164,7 @@ class _Builder:
             self._compile(source, made, [*self._flags, *names, *self._options.flags])
             table = read_table(read_limited(made, OBJECT_BYTES), source)
             if table.addresses:
-                text = f"{table.addresses} words of the table are addresses, for which its file has 0"
+                text = f"{table.addresses} words of the table are addresses, which become 0 in the table file"
                 self._built.warnings.append(f"{source}: warning: {text}")
             found.append(table)
         return found
@@ -176,7 +176,7 @@ class _Builder:
             hint = ""
             if self._sources.missing and "No such file" in str(error):
                 missing = ", ".join(self._sources.missing)
-                hint = f"\n(It uses headers of {missing}: have that folder beside this one, or say --flag=-IFOLDER)"
+                hint = f"\n(It uses headers of {missing}: put that folder next to this one, or add --flag=-IFOLDER)"
             raise CompilerError(f"{error}{hint}") from None
         if warnings:
             self._built.warnings.append(warnings)
@@ -227,20 +227,24 @@ def read_table(data: bytes, source: Path) -> TableObject:
     """
     elf = elf_file(BytesIO(data))
     if elf["e_type"] != "ET_REL" or elf["e_machine"] not in MACHINES or not elf.little_endian:
-        raise UsageError("was not compiled to an object file of this computer; is that a cross compiler?", file=source)
+        raise UsageError(
+            "must be compiled to an object file of this computer; check that CC is not a cross compiler", file=source
+        )
     symbols = {each.name: each for each in elf.get_section_by_name(".symtab").iter_symbols() if each.name}
     if DEFINITION not in symbols:
-        raise UsageError("defines no table; end it with CFE_TBL_FILEDEF(OBJECT, APP.Table, text, file)", file=source)
+        raise UsageError(
+            "missing table definition; end the file with CFE_TBL_FILEDEF(OBJECT, APP.Table, text, file)", file=source
+        )
     definition, _ = _bytes_of(elf, symbols[DEFINITION])
     if len(definition) != LAYOUT.size:
-        text = f"{DEFINITION} has {len(definition)} bytes in place of {LAYOUT.size}"
-        raise UsageError(f"{text}: it is no CFE_TBL_FileDef_t of these headers", file=source)
+        text = f"{DEFINITION} must have {LAYOUT.size} bytes, not {len(definition)}"
+        raise UsageError(f"{text}: it is not the CFE_TBL_FileDef_t of these headers", file=source)
     *texts, size = LAYOUT.unpack(definition)
     name, table, description, file = map(from_bytes, texts)
     if name not in symbols or symbols[name]["st_shndx"] == "SHN_UNDEF":
-        raise UsageError(f"CFE_TBL_FILEDEF names {name!r}, which is no object of this file", file=source)
+        raise UsageError(f"CFE_TBL_FILEDEF: {name!r} is not an object in this file", file=source)
     if not file or "/" in file:
-        raise UsageError(f"CFE_TBL_FILEDEF names {file!r}, which is no name of a file", file=source)
+        raise UsageError(f"CFE_TBL_FILEDEF: {file!r} is not a valid file name", file=source)
     content, addresses = _bytes_of(elf, symbols[name])
     return TableObject(file, TableImage(table, content[:size], description), addresses)
 

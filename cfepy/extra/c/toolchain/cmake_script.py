@@ -58,13 +58,13 @@ class CMakeBudget:
         """A command is carried out. Errors as `spend`."""
         self._commands -= 1
         if self._commands < 0:
-            raise self._error(f"has more than {CMAKE_COMMANDS:,} commands to carry out, loops included")
+            raise self._error(f"executes more than {CMAKE_COMMANDS:,} commands, loops included")
 
     def turns(self, count: int) -> None:
         """A loop is about to go round; each turn counts as a command. Errors as `spend`."""
         self._commands -= count
         if self._commands < 0:
-            raise self._error(f"has a loop of {count:,} turns, and may have {CMAKE_COMMANDS:,} commands carried out")
+            raise self._error(f"has a loop of {count:,} iterations, more than {CMAKE_COMMANDS:,} commands")
 
     def spend(self, characters: int) -> None:
         """Words are read or made.
@@ -74,7 +74,7 @@ class CMakeBudget:
         """
         self._characters -= characters
         if self._characters < 0:
-            raise self._error(f"has words of more than {CMAKE_CHARACTERS:,} characters to make")
+            raise self._error(f"makes words of more than {CMAKE_CHARACTERS:,} characters")
 
     def look(self) -> None:
         """A pattern looks at a file or a folder. Errors as `spend`."""
@@ -87,12 +87,12 @@ class CMakeBudget:
         """Around a block, a call or a subfolder. Errors as `spend`."""
         self._depth += 1
         if self._depth > CMAKE_DEPTH:
-            raise self._error(f"has more than {CMAKE_DEPTH} blocks, calls and subfolders inside each other")
+            raise self._error(f"has more than {CMAKE_DEPTH} nested blocks, calls and subfolders")
         yield
         self._depth -= 1
 
     def _error(self, what: str) -> UsageError:
-        return UsageError(f"{what}, which is the limit; make it simpler", file=self._file)
+        return UsageError(f"{what}, the limit; simplify it", file=self._file)
 
 
 class CMakeCommand(NamedTuple):

@@ -19,7 +19,7 @@ CPP_SUFFIXES = (".cpp", ".cc", ".cxx", ".c++", ".C")
 SOURCE_SUFFIXES = (".c", *CPP_SUFFIXES)
 COMMON = ("-fPIC", "-Wall", "-fno-stack-protector", "-U_FORTIFY_SOURCE", "-D_LINUX_OS_", "-D_POSIX_OS_")
 """What every source gets. The guards of distributions are left out: they look into memory that the host owns."""
-WAITS = "the compiler waited for something, and was ended"
+WAITS = "the compiler was waiting for input and was ended"
 _LOOK_S = 2.5  # from one look at a compiler that goes on to the next; it has ended when two are alike
 _MOST_LOOKS = 720  # half an hour
 _ASLEEP = "S"
@@ -93,8 +93,8 @@ def start_bounded(command: Sequence[str], output: int) -> subprocess.Popen[bytes
     except OSError as error:
         if not is_absent(command[0], error):
             raise UsageError(f"{command[0]} cannot be started: {error.strerror}") from None
-        text = "is not there: install a C compiler (on Debian `apt-get install gcc`, and g++ for C++)"
-        raise UsageError(f"{command[0]} {text}, or say with CC or CXX which one to take") from None
+        text = "is not installed; install a C compiler (on Debian `apt-get install gcc`, and g++ for C++)"
+        raise UsageError(f"{command[0]} {text}, or set CC or CXX to another compiler") from None
 
 
 def end_bounded(process: subprocess.Popen[bytes]) -> int:
@@ -118,7 +118,7 @@ def end_bounded(process: subprocess.Popen[bytes]) -> int:
             if now and now == before and all(state == _ASLEEP for state, _ in now.values()):
                 break
             before = now
-        raise CompilerError(f"{WAITS}: is a source or a header a pipe?")
+        raise CompilerError(f"{WAITS}; check that no source or header is a pipe")
     finally:
         if process.returncode is None:  # what it has started, too, or that would stay
             for pid in (*_family(process.pid), process.pid):

@@ -114,7 +114,7 @@ def read_tree(folder: Path) -> CfsTree:
         UsageError: it is no such tree.
     """
     if not (folder / NEEDED).is_file():
-        raise UsageError(f"is no cFS tree of cFE 7: {NEEDED} is not there", file=folder)
+        raise UsageError(f"is not a cFS tree of cFE 7: {NEEDED} is missing", file=folder)
     folder = folder.resolve()
     tree = CfsTree()
     for pattern in (*MADE, *PUBLIC):

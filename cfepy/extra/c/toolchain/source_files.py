@@ -77,16 +77,16 @@ def find_sources(folder: Path, definitions: Path | None = None) -> Sources:
         UsageError: there is no such folder, or nothing in it to compile.
     """
     if not os.path.isdir(folder):
-        raise UsageError("there is no such folder; give the one that has the application's fsw/src", file=folder)
+        raise UsageError("folder not found; give the folder that contains the application's fsw/src", file=folder)
     if definitions is not None and not os.path.isdir(definitions):
-        raise UsageError("there is no such folder of a mission's headers", file=definitions)
+        raise UsageError("folder of the mission's headers not found", file=definitions)
     said = read_cmake_lists(folder)
     code = _files(folder, said.sources) or _code_in(folder)
     if not code:
-        raise UsageError("has no C sources: none in fsw/src, and no CMakeLists.txt that names some", file=folder)
+        raise UsageError("missing C sources: add them to fsw/src, or name them in CMakeLists.txt", file=folder)
     tables = _files(folder, said.tables) or _all_in(folder, TABLES)
     if said.name and not _LEGAL.fullmatch(said.name):
-        text = f"{FILE} names the application {said.name[:_SHOWN]!r}; write letters, digits, '_', '-' and '.'"
+        text = f"invalid application name {said.name[:_SHOWN]!r} in {FILE}; expected letters, digits, '_', '-' and '.'"
         raise UsageError(text, file=folder / FILE)
     found = Sources(said.name or folder.resolve().name, folder, code, tables, definitions=list(said.definitions))
     headers = [] if definitions is None else _folders(definitions, DEFINITIONS)
@@ -140,7 +140,7 @@ def _files(folder: Path, names: Iterable[str]) -> list[Path]:
     named = {name: folder / name for name in names if Path(name).suffix in SOURCE_SUFFIXES}
     for name, file in named.items():
         if not os.path.isfile(file):
-            raise UsageError(f"{FILE} names {name}, which is not there", file=folder / FILE)
+            raise UsageError(f"{FILE} names a missing file: {name}", file=folder / FILE)
     return list(named.values())
 
 

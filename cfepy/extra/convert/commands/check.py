@@ -34,10 +34,10 @@ def run(arguments: argparse.Namespace) -> int:
     """
     words = arguments.words[1:]
     if not words:
-        raise UsageError("says not what to check: a package, a C++ source, or a launch file", file="convert check")
+        raise UsageError("missing argument: a package, a C++ source or a launch file", file="convert check")
     for name, option in _ONLY_TO_CONVERT.items():
         if getattr(arguments, name):
-            raise UsageError(f"{option} is not for a check, which makes nothing")
+            raise UsageError(f"{option} cannot be combined with check, which writes no files")
     check_json(arguments)
     if arguments.sarif not in (None, STDOUT):
         check_writable(arguments.sarif, "--sarif")

@@ -39,14 +39,14 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.words[0] == "check":
         return check.run(arguments)
     if arguments.sarif is not None:
-        raise UsageError("is what check finds: `cfepy convert check WORD --sarif FILE`", field="--sarif")
+        raise UsageError("only valid with check: `cfepy convert check WORD --sarif FILE`", field="--sarif")
     check_json(arguments)
     config = cpp_nodes_config(arguments)
     task = task_of(arguments.words, dict(os.environ))
     folder = Path(arguments.output or task.made_from.stem).resolve()
     made = converted(task, _ids(arguments, folder), (lambda program: "") if arguments.no_check else _Judge(config))
     if not made.nodes:
-        raise UsageError(f"has nothing to convert: {'; '.join(made.refused.values())}", file=task.made_from)
+        raise UsageError(f"has no node that can be converted: {'; '.join(made.refused.values())}", file=task.made_from)
     files = project_files(made, config, folder)
     with writing(folder, "--output"):
         written = write_files(folder, files, arguments.force)

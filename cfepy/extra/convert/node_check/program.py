@@ -211,7 +211,7 @@ class ProgramSources:
             return
         if name.startswith("boost/"):
             if not has_boost(name, report.profile):
-                report.add("boost-header", place, f"{name} is not there in the {report.profile} profile")
+                report.add("boost-header", place, f"{name} is not available in the {report.profile} profile")
             return
         if is_eigen(name) and has_eigen():
             return
@@ -230,7 +230,7 @@ class ProgramSources:
     def _look_at_mains(self, report: CheckReport) -> None:
         mains = [main for path in self.sources if path in self.files for main in self.files[path].mains]
         if not mains and not self.has_plugin and self.sources:
-            report.add("main-form", SourcePlace(self.sources[0]), "there is no main")
+            report.add("main-form", SourcePlace(self.sources[0]), "the main function is missing")
         for extra in mains[1:]:
             report.add("main-form", extra.place, "another main")
         for main in mains[:1]:

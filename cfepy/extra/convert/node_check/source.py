@@ -20,7 +20,7 @@ from cfepy.status import UsageError
 if TYPE_CHECKING:
     from tree_sitter import Node, Parser, Tree
 
-HINT = "the check reads C++ with tree-sitter: pip install 'cfepy[convert]'"
+HINT = "the check requires tree-sitter: pip install 'cfepy[convert]'"
 CALLS: dict[str, str] = {
     **dict.fromkeys(("exit", "_exit", "_Exit", "quick_exit", "std::exit", "std::quick_exit", "std::_Exit"), "exit"),
     **dict.fromkeys(("abort", "std::abort"), "abort"),

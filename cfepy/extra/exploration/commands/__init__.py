@@ -276,7 +276,9 @@ def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def _varied_of(text: str) -> tuple[str, str]:
     name, mark, values = text.partition("=")
     if not mark or not name or not values:
-        raise argparse.ArgumentTypeError(f"{text!r} is not like /arm/rate=20,50")
+        raise argparse.ArgumentTypeError(
+            f"invalid parameter setting {text!r}; expected /NAME=VALUES, such as /arm/rate=20,50"
+        )
     return name, values
 
 
@@ -290,5 +292,7 @@ def _number_of(text: str) -> int:
 
 def _whole(text: str, least: int) -> int:
     if not text.isdecimal() or not least <= int(text) <= MOST_SEEDS:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {least} to {MOST_SEEDS}")
+        raise argparse.ArgumentTypeError(
+            f"invalid number {text!r}; expected a whole number from {least} to {MOST_SEEDS}"
+        )
     return int(text)

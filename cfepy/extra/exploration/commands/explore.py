@@ -101,7 +101,7 @@ def _longest(report: Report, worst: Worst, width: int) -> Iterator[str]:
     """What took longest, how long it took otherwise, and the command that shows it."""
     found, longest = worst.distribution, worst.distribution.longest
     if longest is None or worst.schedule is None:
-        yield f"worst {found.measure.text}: nothing was measured; is the name right?"
+        yield f"worst {found.measure.text}: no value was measured; check the name"
         return
     fifo = "not measured" if found.under_fifo is None else time_text(found.under_fifo)
     yield f"worst {found.measure.text}: {time_text(longest.longest[0])}, under fifo {fifo}"
@@ -158,7 +158,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         return replay(arguments)
     if arguments.mission is None:
-        raise UsageError("say which mission is to be explored", field="MISSION")
+        raise UsageError("missing mission to explore", field="MISSION")
     check_json(arguments)
     report = _expedition(arguments).run(tell)
     show(report, sys.stdout)
@@ -177,7 +177,10 @@ def _show_leak(plan: RunPlan, schedule: Schedule) -> None:
 
     print(f"\nnot deterministic: two runs under {schedule} differ, so not the schedule alone decides", flush=True)
     if compare(replace(plan, schedule=schedule), RUNS_THAT_ARE_COMPARED) is not None:
-        print("in processes of their own such runs do not differ: addresses of objects decide, or what a run leaves")
+        print(
+            "such runs do not differ in separate processes: they depend on addresses "
+            "of objects, or on state that a run leaves"
+        )
         print("behind in its process")
 
 

@@ -22,7 +22,9 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: it is no results file, the mission cannot be flown, or an option is for a search.
     """
     path = arguments.replay_all
-    refuse_run_options(arguments, "comes from the results file; leave it out")
+    refuse_run_options(
+        arguments, "cannot be combined with --replay-all, because the results file sets it; leave it out"
+    )
     check_json(arguments)
     found = []
     for each in replay_all(path, arguments.mission, arguments.jobs, arguments.longest):

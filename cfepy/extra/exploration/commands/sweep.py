@@ -158,7 +158,7 @@ def _check_picture(file: str | None) -> None:
 
     if Path(file).suffix.lower() not in PICTURES:
         raise UsageError(
-            f"is no picture; give a name that ends with {', '.join(PICTURES)}", file=file, field="--picture"
+            f"must be a picture with a name that ends with {', '.join(PICTURES)}", file=file, field="--picture"
         )
     figure_of_matplotlib()
     check_writable(file, "--picture")
@@ -184,7 +184,7 @@ def _draw(arguments: argparse.Namespace, rows: Sequence[SweepRow], found: Sequen
             row.numbers.cpu * 100,
         )
     if not lines:
-        raise UsageError("there is nothing to draw without --rate, or when no message came", field="--picture")
+        raise UsageError("requires --rate and at least one message", field="--picture")
     picture = picture_of_sweep(list(lines.values()), title=Path(arguments.mission).stem)
     with writing(arguments.picture, "--picture"):
         save(picture, Path(arguments.picture))

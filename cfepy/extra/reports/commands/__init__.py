@@ -100,7 +100,8 @@ def size_of(text: str) -> tuple[float, float]:
         width = height = 0.0
     if not (LEAST_INCHES <= width <= MOST_INCHES and LEAST_INCHES <= height <= MOST_INCHES):
         raise argparse.ArgumentTypeError(
-            f"{text!r} is not like 10x4.5, each {LEAST_INCHES:g} to {MOST_INCHES:g} inches"
+            f"invalid size {text!r}; expected WIDTHxHEIGHT such as 10x4.5, each "
+            f"{LEAST_INCHES:g} to {MOST_INCHES:g} inches"
         )
     return width, height
 

@@ -24,13 +24,15 @@ def run(arguments: argparse.Namespace) -> int:
     """
     path = Path(arguments.output)
     if path.suffix.lower() not in KINDS:
-        raise UsageError(f"is no picture; give a name that ends with {', '.join(KINDS)}", file=path, field="--output")
+        raise UsageError(
+            f"must be a picture with a name that ends with {', '.join(KINDS)}", file=path, field="--output"
+        )
     picture_of([[]])  # that matplotlib is installed is better known before a long run than after it
     check_writable(path, "--output")
     series, status = look_at_series(arguments, arguments.names)
     drawn = [curves.since(arguments.from_s or 0.0) for word in arguments.names for curves in curves_of(series, word)]
     if not any(each.changes or any(len(line.times) for line in each.lines) for each in drawn):
-        raise UsageError(f"nothing was sent from {arguments.from_s:g} s on", field="--from")
+        raise UsageError(f"no message was sent after {arguments.from_s:g} s", field="--from")
     title = Path(arguments.source).stem if arguments.title is None else arguments.title
     picture = picture_of(_axes(drawn, arguments.subplots), title=title, size=arguments.size)
     with writing(path, "--output"):

@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
     if lines.error is not None:
         raise lines.error
     if not lines.count:
-        print("cfepy: nothing of that kind happened", file=sys.stderr)
+        print("cfepy: no matching record in the trace", file=sys.stderr)
     return looked_at.status()
 
 
@@ -82,7 +82,7 @@ def _write(arguments: argparse.Namespace, path: str) -> int:
     """Write the file for Perfetto, which has the whole run."""
     for name, option in (("from_s", "--from"), ("task", "--task"), ("topic", "--topic")):
         if getattr(arguments, name):
-            raise UsageError("is for the text; a trace for Perfetto is always whole", field=option)
+            raise UsageError("cannot be combined with --perfetto; a Perfetto trace is always complete", field=option)
     from cfepy.extra.reports import PerfettoTrace
 
     with writing(path, "--perfetto"), open(path, "w", encoding="utf-8") as file:

@@ -84,7 +84,7 @@ class ClientTopics:
         self._leave(key)
         try:
             if len(self._publications) >= MOST_TOPICS:
-                raise UsageError(f"viewers publish on {MOST_TOPICS} topics already")
+                raise UsageError(f"the limit of {MOST_TOPICS} topics published by viewers is reached")
             self._publications[key] = self._publication(viewer, wanted)
         except (UsageError, CfeError, ValueError, KeyError) as error:
             self._refuse(wanted.topic, f"{wanted.topic} cannot be published: {error}")
@@ -163,13 +163,13 @@ class ClientTopics:
         command = self._dictionary.commands.get(wanted.topic.removeprefix(PACKETS))
         if wanted.topic.startswith(PACKETS) and command is not None:
             if wanted.encoding != JSON:
-                raise UsageError(f"a command is {JSON}, not {wanted.encoding}")
+                raise UsageError(f"a command must have the encoding {JSON}, not {wanted.encoding}")
             return CommandPublication(wanted.topic, command)
         topic = wanted.topic if wanted.topic.startswith("/") else f"/{wanted.topic}"
         if NAME.fullmatch(topic) is None:
-            raise UsageError("that is no name of a topic")
+            raise UsageError("invalid topic name")
         if wanted.encoding not in (JSON, ROS1):
-            raise UsageError(f"its encoding is {wanted.encoding!r}; {ROS1} and {JSON} can be read")
+            raise UsageError(f"unknown encoding {wanted.encoding!r}; expected {ROS1} or {JSON}")
         kind, definition = wanted.kind, self._definition(topic, wanted)
         library = _library(kind, definition)
         made = library.message_class(kind)
@@ -227,12 +227,12 @@ class ClientTopics:
         try:
             self._send(command, data)
         except (TypeError, KeyError, AttributeError, OverflowError) as error:  # of values that no field takes
-            raise ValueError(f"no {command.name}: {error}") from None
+            raise ValueError(f"invalid {command.name}: {error}") from None
 
     def _send(self, command: Command, data: bytes) -> None:
         values = loads(data)
         if not isinstance(values, dict):
-            raise ValueError("a command is a JSON object of its fields")
+            raise ValueError("a command must be a JSON object of its fields")
         fields = {name: value for name, value in values.items() if not name.startswith("_")}
         self._mission.outside.act(PACKET, command.packet(fields))
 
@@ -258,9 +258,9 @@ def _encoder(class_of: Callable[[str], Any], kind: str, is_json: bool) -> Callab
                 return bytes(message_from_json(class_of, kind, loads(data))._pack())
             is_whole = made._unpack(data)._pack() == data
         except Exception as error:  # whatever the generated code raises for what is no such message
-            raise ValueError(f"no {kind}: {error}") from None
+            raise ValueError(f"invalid {kind}: {error}") from None
         if not is_whole:
-            raise ValueError(f"no {kind}: its bytes are too few or too many")
+            raise ValueError(f"invalid {kind}: wrong number of bytes")
         return data
 
     return encode

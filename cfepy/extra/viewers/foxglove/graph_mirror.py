@@ -134,11 +134,11 @@ class ServiceMirror:
         call = _Call(viewer, wanted, time.monotonic())
         service = next((name for name, (number, _) in self._offered.items() if number == wanted.service), None)
         if service is None:
-            self._fail(call, "there is no such service")
+            self._fail(call, "unknown service")
         elif wanted.encoding != ROS1:
-            self._fail(call, f"the encoding of a request is {ROS1}, not {wanted.encoding[:40]}")
+            self._fail(call, f"the encoding of a request must be {ROS1}, not {wanted.encoding[:40]}")
         elif sum(each.viewer is viewer for each in self._calls.values()) >= MOST_CALLS:
-            self._fail(call, f"{MOST_CALLS} calls wait for their answers already")
+            self._fail(call, f"the limit of {MOST_CALLS} pending calls is reached")
         else:
             self._enter(mission, service, call, way_out)
 

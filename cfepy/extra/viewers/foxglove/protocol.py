@@ -259,9 +259,9 @@ def ops_of(frame: str | bytes) -> list[Op]:
         if HALF_A_CHARACTER in frame.lower():
             json.dumps(message, ensure_ascii=False).encode()
     except (ValueError, RecursionError) as error:
-        raise FrameError(f"no JSON: {error}") from None
+        raise FrameError(f"not JSON: {error}") from None
     if not isinstance(message, dict):
-        raise FrameError(f"a message is a JSON object, not {frame[:40]}")
+        raise FrameError(f"a message must be a JSON object, not {frame[:40]}")
     op = message.get("op")
     if op == "advertise":
         return [_advertised(each) for each in _objects(message, "channels")]
@@ -282,7 +282,7 @@ def ops_of(frame: str | bytes) -> list[Op]:
         case "setParameters":
             values = {_text(each, "name"): _value(each) for each in _objects(message, "parameters")}
             return [ParametersSet(values, _request(message))]
-    raise FrameError(f"the operation {str(op)[:40]!r} is not known here")
+    raise FrameError(f"unknown operation {str(op)[:40]!r}")
 
 
 def _binary(frame: bytes) -> Op:
@@ -296,7 +296,7 @@ def _binary(frame: bytes) -> Op:
             return Called(service, call, frame[13 : 13 + length].decode(errors="replace"), frame[13 + length :])
     except struct.error:
         raise FrameError("a binary message is too short") from None
-    raise FrameError(f"the binary operation {frame[0]} is not known here")
+    raise FrameError(f"unknown binary operation {frame[0]}")
 
 
 def _advertised(channel: Mapping[str, Any]) -> Advertised:
@@ -320,9 +320,9 @@ def _value(parameter: Mapping[str, Any]) -> Any:
         if kind == _FLOATS or kinds == {int, float}:
             return [_float(each) for each in value]
     except (TypeError, ValueError, OverflowError, binascii.Error):
-        raise FrameError(f"parameter {str(parameter.get('name'))[:100]} is no {kind or _FLOATS}") from None
+        raise FrameError(f"parameter {str(parameter.get('name'))[:100]} is not of type {kind or _FLOATS}") from None
     if kind is not None:
-        raise FrameError(f"{str(kind)[:40]!r} is no type of a parameter")
+        raise FrameError(f"unknown parameter type {str(kind)[:40]!r}")
     return value
 
 
@@ -335,7 +335,7 @@ def _float(value: Any) -> float:
 def _field(of: Mapping[str, Any], name: str, kind: type, what: str) -> Any:
     value = of.get(name)
     if not isinstance(value, kind) or isinstance(value, bool):
-        raise FrameError(f"{name} has to be {what}")
+        raise FrameError(f"{name} must be {what}")
     return value
 
 
@@ -353,7 +353,7 @@ def _request(of: Mapping[str, Any]) -> str | None:
 def _number(of: Mapping[str, Any], name: str) -> int:
     value: int = _field(of, name, int, "a number")
     if not 0 <= value <= _MOST_NUMBER:
-        raise FrameError(f"{name} has to be a number of 32 bits")
+        raise FrameError(f"{name} must be a number of 32 bits")
     return value
 
 
@@ -363,7 +363,7 @@ def _list(of: Mapping[str, Any], name: str, kind: type, what: str) -> list[Any]:
     if len(values) > most:
         raise FrameError(f"{name} has {len(values):,} entries; the limit is {most:,}")
     if not all(isinstance(each, kind) and not isinstance(each, bool) for each in values):
-        raise FrameError(f"{name} has to be a list of {what}")
+        raise FrameError(f"{name} must be a list of {what}")
     return values
 
 

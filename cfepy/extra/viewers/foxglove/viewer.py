@@ -157,9 +157,9 @@ class Viewer:
     def _subscribe(self, number: int, channel: int) -> None:
         wanted = self._channel(channel)
         if wanted is None:
-            self.complain(f"there is no channel {channel}")
+            self.complain(f"unknown channel {channel}")
         elif number in self._subscribed or self in wanted.viewers:
-            self.complain(f"subscription {number}: it, or one to {wanted.topic}, is there already")
+            self.complain(f"subscription {number}, or one to {wanted.topic}, already exists")
         else:
             self._subscribed[number] = wanted
             wanted.viewers[self] = number

@@ -506,7 +506,7 @@ class BridgeNode:
         self._begin()
         kind = offered.kind
         if not self._act("serve", service, NODE, self._uri, address, kind._type, kind._md5sum):
-            raise NotPossible(f"service {service} is offered by the mission")
+            raise NotPossible(f"service {service} is already offered by the mission")
         self.ask("registerService", service, address, self._uri)
 
     def offers(self, service: str) -> Hearer | None:
@@ -555,7 +555,7 @@ class BridgeNode:
         offered = self._offered[service]
         number = offered.calls.pop(name, None)
         if number is None:
-            raise NotPossible(f"nobody waits for the answer {name} of service {service}")
+            raise NotPossible(f"unexpected answer {name} of service {service}; no client is waiting for it")
         try:
             body = self.reading.serialized(values, offered.kind._response_class)
         except UsageError as error:

@@ -72,7 +72,9 @@ class Assembly:
         begun = self._begun.get(key)
         if begun is None:
             if not 0 < total <= MOST_PIECES or len(self._begun) >= MOST_BEGUN:
-                raise UsageError(f"a message of {total} fragments, beside {len(self._begun)} others, is too much")
+                raise UsageError(
+                    f"too many fragments: a message of {total}, with {len(self._begun)} incomplete messages"
+                )
             begun = _Begun(total, now_s)
         if total != begun.total or not 0 <= number < total or number in begun.pieces:
             raise UsageError(f"error while trying to append fragment {number}")
@@ -83,7 +85,7 @@ class Assembly:
         begun.at_s = now_s
         if sum(each.size for each in self._begun.values()) > self._longest:
             del self._begun[key]
-            raise UsageError(f"messages in fragments have more than {self._longest:,} characters")
+            raise UsageError(f"incomplete messages have more than {self._longest:,} characters")
         if len(begun.pieces) < total:
             return None
         del self._begun[key]

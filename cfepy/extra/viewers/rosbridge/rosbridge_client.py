@@ -155,13 +155,13 @@ class RosbridgeClient:
 
     def _parsed(self, message: str | bytes) -> Op:
         if isinstance(message, bytes):
-            raise NotPossible("a binary message is BSON, which this server does not take: send JSON as text")
+            raise NotPossible("binary messages (BSON) are not supported; send JSON as text")
         try:
             op = loads(message)
         except ValueError as error:
             raise NotPossible(f"Unable to deserialize message from client: {message[:200]}: {error}") from None
         if not isinstance(op, dict):
-            raise NotPossible(f"a message is a JSON object, not {type(op).__name__}: {message[:200]}")
+            raise NotPossible(f"a message must be a JSON object, not {type(op).__name__}: {message[:200]}")
         return op
 
     def _do(self, op: Op) -> None:
@@ -224,12 +224,12 @@ class RosbridgeClient:
         self._publishes(topic, op["type"], op.get("latch") is True)
         names = self._advertised.setdefault(topic, set())
         if len(names) >= MOST_IDS:
-            raise NotPossible(f"a client may advertise a topic under {MOST_IDS} ids")
+            raise NotPossible(f"a client can advertise a topic under at most {MOST_IDS} ids")
         names.add(_hashable(op.get("id")))
 
     def _publishes(self, topic: str, kind: str | None, latching: bool) -> None:
         if len(self._published) >= MOST_TOPICS and topic not in self._published:
-            raise NotPossible(f"a client may publish {MOST_TOPICS} topics")
+            raise NotPossible(f"a client can publish at most {MOST_TOPICS} topics")
         self._node.advertise(self, topic, kind, latching)
         self._published.add(topic)
 
@@ -282,13 +282,13 @@ class RosbridgeClient:
         compression = op.get("compression", NONE)
         length = min(max(op.get("queue_length", 0), 0), LONGEST_QUEUE)
         if topic not in self._hears and len(self._hears) >= MOST_TOPICS:
-            raise NotPossible(f"a client may subscribe to {MOST_TOPICS} topics")
+            raise NotPossible(f"a client can subscribe to at most {MOST_TOPICS} topics")
         by_name = self._hears.setdefault(topic, {})
         if len(by_name) >= MOST_IDS and name not in by_name:
-            raise NotPossible(f"a client may write the name of a topic in {MOST_IDS} ways")
+            raise NotPossible(f"a client can write the name of a topic in at most {MOST_IDS} ways")
         pacing = by_name.get(name)
         if pacing is not None and pacing.wishes >= MOST_IDS:
-            raise NotPossible(f"a client may subscribe to a topic under {MOST_IDS} ids")
+            raise NotPossible(f"a client can subscribe to a topic under at most {MOST_IDS} ids")
         is_new = pacing is None
         if pacing is None:
             pacing = by_name[name] = Pacing(lambda message: len(message.payload))
@@ -360,7 +360,7 @@ class RosbridgeClient:
                 answer(True, self._rosapi.call(service, op.get("args", [])))
                 return
             if len(self._calls) >= MOST_CALLS:
-                raise NotPossible(f"{MOST_CALLS} calls wait for their answers")
+                raise NotPossible(f"the limit of {MOST_CALLS} pending calls is reached")
             self._begin_call(service, op.get("args", []), answer)
         except UsageError as error:
             answer(False, str(error))
@@ -387,7 +387,7 @@ class RosbridgeClient:
         _check(op, ("service", True, _TEXT), ("type", True, _TEXT))
         name = op["service"]
         if self._node.offered_by(self) >= MOST_SERVICES:
-            raise NotPossible(f"a client may offer {MOST_SERVICES} services")
+            raise NotPossible(f"a client can offer at most {MOST_SERVICES} services")
         if self._node.offer(self, self._node.resolved(name), op["type"]):
             self._status("warning", f"Duplicate service advertised. Overwriting {name}.")
         self._status("info", f"Advertised service {name}.")

@@ -86,7 +86,10 @@ class RosbridgeServer(PacketWatch):
         """
         has_token = self._admission.knows(token_of(request))
         if not has_token and not self._admission.welcomes(request.headers.get("Origin")):
-            why = f"pages of {request.headers.get('Origin')} are not welcome (--viewer-origin, or a token)"
+            why = (
+                f"pages of {request.headers.get('Origin')} are not permitted; allow "
+                "them with --viewer-origin, or use a token"
+            )
             return HTTPStatus.FORBIDDEN, f"{why}\n"
         if has_token or not self._admission.token:
             client.is_admitted()

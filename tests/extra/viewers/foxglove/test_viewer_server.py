@@ -112,8 +112,8 @@ def test_what_cannot_be_subscribed_to_is_told(tmp_path: Path) -> None:
         for own, channel in ((1000, number), (number, other), (1001, 77_777)):
             client.send(op="subscribe", subscriptions=[{"id": own, "channelId": channel}])
         client.wait_for(lambda: len(client.told("status")) == 3)
-        told = [each["message"].split(":")[0] for each in client.told("status")]
-        assert told == ["subscription 1000", f"subscription {number}", "there is no channel 77777"]
+        told = [each["message"].split(",")[0] for each in client.told("status")]
+        assert told == ["subscription 1000", f"subscription {number}", "unknown channel 77777"]
 
 
 def test_a_service_that_is_not_called_as_it_should_be(tmp_path: Path) -> None:
@@ -123,7 +123,7 @@ def test_a_service_that_is_not_called_as_it_should_be(tmp_path: Path) -> None:
         client.call("/none", 2, b"")
         client.wait_for(lambda: len(client.told("serviceCallFailure")) == 2)
         told = {each["callId"]: each["message"] for each in client.told("serviceCallFailure")}
-        assert told == {1: "the encoding of a request is ros1, not json", 2: "there is no such service"}
+        assert told == {1: "the encoding of a request must be ros1, not json", 2: "unknown service"}
 
 
 def test_a_service_that_does_not_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -138,7 +138,7 @@ def test_a_service_that_does_not_answer(tmp_path: Path, monkeypatch: pytest.Monk
         for number in range(33):
             client.call("/sleep", number, b"")
         client.wait_for(lambda: client.told("serviceCallFailure"))
-        assert client.told("serviceCallFailure")[0]["message"] == "32 calls wait for their answers already"
+        assert client.told("serviceCallFailure")[0]["message"] == "the limit of 32 pending calls is reached"
         monkeypatch.setattr(graph_mirror, "CALL_S", 0.0)
         client.wait_for(lambda: len(client.told("serviceCallFailure")) == 33)
         assert client.told("serviceCallFailure")[-1]["message"] == "the service has not answered"
@@ -169,7 +169,7 @@ def test_a_service_that_nobody_can_describe_is_not_offered_and_may_end(
         client.services["/short"] = {"id": 0}
         client.call("/short", 1, b"")
         client.wait_for(lambda: client.told("serviceCallFailure"))
-        assert client.told("serviceCallFailure")[0]["message"] == "there is no such service"
+        assert client.told("serviceCallFailure")[0]["message"] == "unknown service"
         run.viewer._look_at_s = 0.0
         run.go_on()  # it has been looked at
         run.until(2)

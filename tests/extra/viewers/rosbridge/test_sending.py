@@ -79,7 +79,7 @@ def test_pieces_that_are_too_much() -> None:
     assembly = Assembly(10)
     for each in range(16):
         assembly.add({"id": each, "num": 0, "total": 2, "data": ""}, 0.0)
-    with pytest.raises(UsageError, match="beside 16 others"):
+    with pytest.raises(UsageError, match="with 16 incomplete messages"):
         assembly.add({"id": 16, "num": 0, "total": 2, "data": ""}, 0.0)
     assert assembly.add({"id": 16, "num": 0, "total": 1, "data": "y"}, 601.0) == "y", "the others were given up"
 

@@ -79,7 +79,7 @@ def test_a_service_of_a_client(tmp_path: Path) -> None:
         server.send(**answer, values={"success": True, "message": "here"})
         assert asker.next()["msg"] == {"data": "answer: here"}
         server.send(**answer, values={"success": True, "message": "twice"})
-        assert "nobody waits" in server.next()["msg"]
+        assert "unexpected answer" in server.next()["msg"]
 
         asker.send(op="publish", topic="/ask", msg={"data": "/mine"})
         server.send(**{**answer, "id": server.next()["id"]}, values={"success": "yes"})

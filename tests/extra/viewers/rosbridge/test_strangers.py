@@ -31,9 +31,9 @@ PROBLEMS: list[tuple[Any, str]] = [
     ("", "Unable to deserialize message from client: "),
     ("[" * 100_000, "Unable to deserialize message from client: [[["),
     ("1" * 5_000, "Unable to deserialize message from client: 111"),
-    ("[]", "a message is a JSON object, not list"),
-    ("3", "a message is a JSON object, not int"),
-    (b"\x05\0\0\0\0", "a binary message is BSON"),
+    ("[]", "a message must be a JSON object, not list"),
+    ("3", "a message must be a JSON object, not int"),
+    (b"\x05\0\0\0\0", "binary messages (BSON) are not supported"),
     ({}, "Received a message without an op."),
     ({"op": None}, "Unknown operation: None.  Allowed operations: ['call_service', "),
     ({"op": ["subscribe"]}, "Unknown operation: ['subscribe']."),
@@ -62,7 +62,7 @@ PROBLEMS: list[tuple[Any, str]] = [
     ({"op": "advertise_service", "service": "/x", "type": "no/Such"}, "advertise_service: Unable to load the manifest"),
     (
         {"op": "advertise_service", "service": "/talker/get_loggers", "type": "std_srvs/Empty"},
-        "advertise_service: service /talker/get_loggers is offered by the mission",
+        "advertise_service: service /talker/get_loggers is already offered by the mission",
     ),
     ({"op": "unadvertise_service", "service": "/x"}, "unadvertise_service: Service /x has not been advertised via"),
     ({"op": "service_response", "service": "/x"}, "service_response: Expected a result field"),
@@ -72,7 +72,10 @@ PROBLEMS: list[tuple[Any, str]] = [
         {"op": "fragment", "id": 1, "num": 2, "total": 2, "data": ""},
         "fragment: error while trying to append fragment 2",
     ),
-    ({"op": "fragment", "id": 1, "num": 0, "total": 10**9, "data": ""}, "fragment: a message of 1000000000 fragments"),
+    (
+        {"op": "fragment", "id": 1, "num": 0, "total": 10**9, "data": ""},
+        "fragment: too many fragments: a message of 1000000000",
+    ),
     ({"op": "set_level"}, "set_level: Expected field level to be one of"),
     ({"op": "set_level", "level": "loud"}, "set_level: Expected field level to be one of"),
 ]
@@ -216,7 +219,7 @@ def test_a_page_of_others_is_refused(talker: Bridged, origin: str) -> None:
     client = talker.client(headers={"Origin": origin})
     assert client.refused is not None
     assert client.refused[0] == 403
-    assert f"pages of {origin} are not welcome" in client.refused[1]
+    assert f"pages of {origin} are not permitted" in client.refused[1]
     client.close()
     _still_served(talker)
 
@@ -413,5 +416,5 @@ def test_a_burst_is_held_back_and_nothing_of_it_is_lost(tmp_path: Path, monkeypa
 
 def test_a_system_without_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(listener_module, "DefaultSelector", selectors.SelectSelector)
-    with pytest.raises(UsageError, match="--rosbridge: needs epoll or kqueue"):
+    with pytest.raises(UsageError, match="--rosbridge: requires epoll or kqueue"):
         RosbridgeServer(ListenPlace(LOOPBACK, 0), Admission(), PeerCounts())

@@ -52,16 +52,16 @@ def test_all_faults_of_all_files(tmp_path: Path) -> None:
     ]
     texts = "\n".join(text for _, _, text, _ in found)
     for said in (
-        "message type own/int33 is unknown; did you mean int32?",
-        "field 'y' is there twice",
+        "unknown message type own/int33; did you mean int32?",
+        "field 'y' is defined twice",
         "300 does not fit into int8",
         "'float32[a]' is not a field type",
-        "message type own/Drivee is unknown; did you mean own/Drive?",
+        "unknown message type own/Drivee; did you mean own/Drive?",
         "'1a' is not a field name",
         "the constant y has the name of a field",
-        "message type sensor_msgs/Imagee is unknown; did you mean sensor_msgs/Image?",
-        "message type nowhere_msgs/Thing is unknown; add its package",
-        "an action has 3 parts",
+        "unknown message type sensor_msgs/Imagee; did you mean sensor_msgs/Image?",
+        "unknown message type nowhere_msgs/Thing; add its package",
+        "an action must have 3 parts",
         "message type own/Loop contains itself",
     ):
         assert said in texts
@@ -71,10 +71,10 @@ def test_all_faults_of_all_files(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "text", "line", "said"),
     [
-        ("A_msg", "int32 x\nint32\ty\n", 2, "has a tab behind the type"),
-        ("A_msg", "int32 X=3\nint32 X=4\n", 2, "the constant X has the name of another constant"),
-        ("A_msg", "int32 x\nint32 1X=3\n", 2, "'1X' is no name that a program can use"),
-        ("A_srv", "int32 x\n", 0, "has no line --- between request and response"),
+        ("A_msg", "int32 x\nint32\ty\n", 2, "has a tab after the type"),
+        ("A_msg", "int32 X=3\nint32 X=4\n", 2, "the constant X is defined twice"),
+        ("A_msg", "int32 x\nint32 1X=3\n", 2, "invalid constant name '1X'"),
+        ("A_srv", "int32 x\n", 0, "missing line --- between request and response"),
     ],
 )
 def test_what_cfepy_takes_and_ros_may_not_is_a_warning(
@@ -88,4 +88,4 @@ def test_what_cfepy_takes_and_ros_may_not_is_a_warning(
 def test_a_file_whose_name_is_no_type(tmp_path: Path) -> None:
     ((file, _, text, _),) = faults(tmp_path, **{"my-type_msg": "int32 x\n"})
     assert file == "my-type.msg"
-    assert "'my-type' is no name for a type" in text
+    assert "invalid type name 'my-type'" in text

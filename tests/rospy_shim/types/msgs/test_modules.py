@@ -156,5 +156,5 @@ def test_load_package() -> None:
     assert load_package("sensor_msgs").JointState is message_class("sensor_msgs/JointState")
     with pytest.raises(ModuleNotFoundError, match="nope"):
         load_package("nope")
-    with pytest.raises(UsageError, match="no message type 'std_msgs/Nope'"):
+    with pytest.raises(UsageError, match="unknown message type 'std_msgs/Nope'"):
         message_class("std_msgs/Nope")

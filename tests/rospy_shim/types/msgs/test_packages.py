@@ -107,7 +107,7 @@ def test_a_name_that_no_package_has_is_not_taken(name: str, tmp_path: Path) -> N
     folder.mkdir()
     (folder / "package.xml").write_text(f"<package><name>{name}</name></package>", encoding="utf-8")
     assert name_of(folder) == "here"
-    with pytest.raises(UsageError, match="is not the name of a package"):
+    with pytest.raises(UsageError, match="invalid package name"):
         check_package_name(folder)
 
 

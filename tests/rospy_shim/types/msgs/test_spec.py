@@ -92,11 +92,11 @@ def test_unknown_and_endless_types(tmp_path: Path) -> None:
     (tmp_path / "bad.msgs").write_text("# bad/A\nB b\n\n# bad/B\nA a\n\n# bad/C\nint8 i\nNowhere x\n", encoding="utf-8")
     with pytest.raises(UsageError, match="bad/A contains itself"):
         library.message_class("bad/A")
-    with pytest.raises(UsageError, match=r"bad\.msgs:9: message type bad/Nowhere is unknown"):
+    with pytest.raises(UsageError, match=r"bad\.msgs:9: unknown message type bad/Nowhere"):
         library.message_class("bad/C")
-    with pytest.raises(UsageError, match="no message type 'bad/D'"):
+    with pytest.raises(UsageError, match="unknown message type 'bad/D'"):
         library.message_class("bad/D")
-    with pytest.raises(UsageError, match="no service type 'bad/E'"):
+    with pytest.raises(UsageError, match="unknown service type 'bad/E'"):
         library.service_class("bad/E")
 
 

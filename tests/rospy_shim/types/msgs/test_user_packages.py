@@ -77,11 +77,15 @@ def test_a_package_of_the_same_name_wins_everywhere(tmp_path: Path) -> None:
     ("files", "wanted", "place"),
     [
         ({"msg__A": "int8 x\n\nint8 X-\n"}, "A", r"msg/A\.msg:3: 'X-' is not a field name"),
-        ({"msg__A": "int8 x\nNowhere y\n"}, "A", r"msg/A\.msg:2: message type rover/Nowhere is unknown"),
+        ({"msg__A": "int8 x\nNowhere y\n"}, "A", r"msg/A\.msg:2: unknown message type rover/Nowhere"),
         ({"srv__S": "int8 x\n---\nint8\n"}, "SResponse", r"srv/S\.srv:3: 'int8' is not a field"),
         ({"action__Go": "int8 x\n---\n---\nfloat y\n"}, "GoFeedback", r"action/Go\.action:4: .*rover/float"),
-        ({"action__Go": "int8 x\n---\nint8 y\n"}, "GoGoal", r"action/Go\.action:3: an action has 3 parts .*, not 2"),
-        ({"action__Go": "\n---\n---\n---\n"}, "GoGoal", r"action/Go\.action:5: an action has 3 parts .*, not 4"),
+        (
+            {"action__Go": "int8 x\n---\nint8 y\n"},
+            "GoGoal",
+            r"action/Go\.action:3: an action must have 3 parts .*, not 2",
+        ),
+        ({"action__Go": "\n---\n---\n---\n"}, "GoGoal", r"action/Go\.action:5: an action must have 3 parts .*, not 4"),
     ],
 )
 def test_mistakes_name_file_and_line(tmp_path: Path, files: dict[str, str], wanted: str, place: str) -> None:
