@@ -1,7 +1,7 @@
 """The door through which add-ons come in: those of `cfepy.extra`, and those of other packages.
 
 An add-on is a `Plugin`: a table of names of what it offers. Nothing of it is imported before it is used. A package
-elsewhere offers one in its pyproject.toml; docs/plugins.md explains how to write it:
+elsewhere offers one in its pyproject.toml; docs/how_to/plugins.md explains how to write it:
 
     [project.entry-points."cfepy.plugins"]
     yamcs = "cfepy_yamcs:PLUGIN"

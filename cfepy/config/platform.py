@@ -169,7 +169,7 @@ class PlatformConfig:
 
     @property
     def is_cfe_7_0_0(self) -> bool:
-        """Whether the release is 7.0.0; what differs from 7.0.1 is in docs/differences.md."""
+        """Whether the release is 7.0.0; what differs from 7.0.1 is in docs/reference/differences.md."""
         return self.cfe_version == CFE_7_0_0
 
     def with_limits(self, limits: Mapping[str, int | str | tuple[int, ...]]) -> PlatformConfig:

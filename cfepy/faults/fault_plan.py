@@ -4,7 +4,7 @@
     plan = FaultPlan.from_dict({"faults": [{"drop": "/odom", "probability": 0.1}]})
 
 A plan is read with errors that say where, and written again; each option has one reader and one writer, whatever kind
-of fault has it. docs/faults.md describes the kinds of faults and the form of the file.
+of fault has it. docs/how_to/faults.md describes the kinds of faults and the form of the file.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The mission file: a table of its sections, and what reads each of them.
 
 The file is read once, by `read_mission_file`: before a run its first mistake is raised, `cfepy check` has all of them
-kept. docs/mission_file.md describes it. The sections that say what must hold of a run (`DEMANDS`) are kept as they
+kept. docs/reference/mission_file.md describes it. The sections with a run's demands (`DEMANDS`) are kept as they
 stand; `cfepy.monitors.run_rules` reads them.
 """
 

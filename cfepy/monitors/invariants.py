@@ -1,7 +1,8 @@
 """What must hold of the messages of a mission: the section `invariants` of a mission file.
 
 An invariant is an expression over a message, a function of the mission's own Python file, or an answer that has to come
-in time. Here they are read; `cfepy.monitors.invariant_watch` watches over them. docs/mission_file.md describes them.
+in time. Here they are read; `cfepy.monitors.invariant_watch` checks them.
+docs/reference/mission_file.md describes them.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """The results of a mission that must not depend on the schedule: the section `results` of a mission file.
 
-`cfepy explore` compares them with those of the run under the default schedule. docs/exploration.md describes them.
+`cfepy explore` compares them with the results under the default schedule.
+docs/how_to/explore_schedules.md describes them.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """How large an input may become: a limit for each kind, so that no file of somebody else's fills memory or never ends.
 
 The limits are far above what missions, bags and launch files have. What exceeds one is refused with an error that names
-the file, the limit, and what to do. `cfepy.reading.input_files` opens and reads the files. docs/security.md lists the
+the file, the limit, and what to do. `cfepy.reading.input_files` reads the files. docs/reference/security.md lists the
 limits.
 """
 

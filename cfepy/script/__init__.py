@@ -1,8 +1,8 @@
 """Mission scripts: commands at certain times and the answers that are expected, a step a line.
 
 What belongs here reads a script, carries it out while a mission flies, and reports the result of each step. What must
-hold of a run at any time is in `cfepy.monitors`. docs/ground_tools.md describes the language. The central file is
-`cfepy/script/script_run.py`.
+hold of a run at any time is in `cfepy.monitors`. docs/how_to/ground_tools.md describes the language. The central
+file is `cfepy/script/script_run.py`.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@
 
 What a script does happens at fixed virtual times between pieces of the run, so the same script has the same outcome
 every time. An expectation stays open until it can be decided. The run goes on over resets of the processor.
-docs/ground_tools.md describes the language.
+docs/how_to/ground_tools.md describes the language.
 """
 
 from __future__ import annotations

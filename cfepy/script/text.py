@@ -1,4 +1,4 @@
-"""The text of a mission script, read into steps; docs/ground_tools.md describes the language.
+"""The text of a mission script, read into steps; docs/how_to/ground_tools.md describes the language.
 
 One step a line, of words, texts in quotes and numbers of seconds. Everything that can be known before the run is
 checked here: names, fields, values, times. A mistake is a UsageError with file and line.

@@ -2,8 +2,8 @@
 
 What belongs here is used by tests of flight software: the plugin (`plugin`), which pytest finds by itself, the booting
 of missions for tests (`missions`) and generated inputs (`strategies`). A mission under test is a `Flight` of
-`cfepy.flight`, what judges every run belongs to `cfepy.monitors`. docs/testing.md has examples. Everything here is
-imported when it is first asked for, so that no other test-suite pays for it. The central file is
+`cfepy.flight`, what judges every run belongs to `cfepy.monitors`. docs/how_to/testing.md has examples. Everything here
+is imported when it is first asked for, so that no other test-suite pays for it. The central file is
 `cfepy/testing/missions.py`.
 """
 

@@ -72,8 +72,8 @@ def mission(request: pytest.FixtureRequest) -> Missions:
     """Boots missions: `flight = mission("capture", seed=1)`, by folder, launch file or shipped name.
 
     A path is seen from the test's file first. The flight ends with the test, or with the fixture that made it. Give
-    board=, seed=, schedule=, tasks=, faults=, args= (of a launch file) or attachments= as needed; docs/testing.md has
-    examples.
+    board=, seed=, schedule=, tasks=, faults=, args= (of a launch file) or attachments= as needed.
+    docs/how_to/testing.md has examples.
     """
     from cfepy.testing.missions import Missions
 

@@ -27,6 +27,7 @@ from cfepy.pilot.mission_check.problem import MissionProblem
 from cfepy.reading.suggestions import did_you_mean
 
 HANDLE = "cfe"
+_ALL_NAMES = "docs/reference/generated/api_map.md has all names"
 _MOST = 500  # problems of a file that are told
 _LONGEST_CHAIN = 20
 GUARDS = ("AttributeError", "TypeError")
@@ -75,12 +76,12 @@ def _wrong_imports(file: Path, tree: ast.Module) -> Iterator[MissionProblem]:
             continue
         source = sources.source_of(module) if _is_module(module) else None
         if source is None:
-            yield MissionProblem(file, node.lineno, f"there is no module {module}; docs/api_map.md has all names")
+            yield MissionProblem(file, node.lineno, f"there is no module {module}; {_ALL_NAMES}")
             continue
         for alias in node.names:
             if not (alias.name == "*" or sources.defines(source, alias.name) or _is_module(f"{module}.{alias.name}")):
                 known = [*sources.functions_and_classes_of(source), *sorted(_imported(sources.tree_of(source)))]
-                hint = did_you_mean(alias.name, known, "docs/api_map.md has all names")
+                hint = did_you_mean(alias.name, known, _ALL_NAMES)
                 yield MissionProblem(file, node.lineno, f"{module} has no {alias.name!r}; {hint}")
 
 
@@ -455,7 +456,7 @@ def _has(service: str, name: str) -> bool:
 def _absence(service: str, name: str) -> str:
     path = f"{HANDLE}.{service}" if service else HANDLE
     known = sorted(each for each in _names(service) if each[0] != "_")
-    hint = did_you_mean(_pythonic(name), known, "docs/api_map.md has all names", form=f"{path}.{{}}")
+    hint = did_you_mean(_pythonic(name), known, _ALL_NAMES, form=f"{path}.{{}}")
     return f"{path} has no {name!r}; {hint}"
 
 
