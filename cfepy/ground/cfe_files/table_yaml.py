@@ -5,7 +5,7 @@
     rows:
     - {InputMid: 0x0801, InputOffset: 16, OutputMid: 0x089C, OutputOffset: 16, NumBytes: 4}
 
-docs/how_to/tables_and_logs.md describes the whole format. Errors say file, line and field.
+docs/how_to/tables_and_parameters.md describes the whole format. Errors say file, line and field.
 """
 
 from __future__ import annotations
