@@ -41,8 +41,8 @@ HEAD = """\
 
 Every public function and macro of NASA's cFE, OSAL and PSP 7.0.0, and its name in cfepy. `cfe` is the handle that an
 application's main function receives. `cfepy` is a module to import. Failed calls raise an exception, and output
-pointers became return values. If a function differs further, a row of [differences.md](../differences.md) names it, and the last
-column links to it.
+pointers became return values. If a function differs further, a row of [differences.md](../differences.md) names it, and
+the last column links to it.
 
 The column C shows how a [compiled application](../../how_to/c_apps.md) gets the name:
 
