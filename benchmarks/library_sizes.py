@@ -1,4 +1,4 @@
-"""`python -m benchmarks.library_sizes`: what the interface library for C++ costs, as the table of docs/roscfe.md.
+"""`python -m benchmarks.library_sizes`: the cost of the interface library for C++, for docs/reference/roscfe.md.
 
 Of each part all object files together, at -Os: what lies in read-only memory (code, constants, tables for exceptions)
 and what takes writable memory (initialised or not), as `size` says it; the arena of a node is not counted. The linker

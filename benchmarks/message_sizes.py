@@ -1,4 +1,4 @@
-"""`python -m benchmarks.message_sizes`: what messages cost in C++, as the table of docs/roscfe.md.
+"""`python -m benchmarks.message_sizes`: what messages cost in C++, as the table of docs/reference/roscfe.md.
 
 Code is what the compiler makes of a message's length, writing and reading, at -Os, in an object file of its own: a node
 that has several types shares the parts that are the same. Memory is sizeof.

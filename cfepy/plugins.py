@@ -1,7 +1,7 @@
 """Add-ons: how cfepy finds those in `cfepy.extra` and those of other packages.
 
 An add-on is a `Plugin`: a table of the names that it offers. It is loaded only when it is used. Another package offers
-an add-on in its pyproject.toml; docs/plugins.md explains how to write one:
+an add-on in its pyproject.toml; docs/how_to/plugins.md explains how to write one:
 
     [project.entry-points."cfepy.plugins"]
     yamcs = "cfepy_yamcs:PLUGIN"

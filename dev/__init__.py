@@ -1,1 +1,4 @@
-"""Programs for those who work on cfepy; docs/dev_programs.md lists them. Nothing here is part of the package."""
+"""Programs for those who work on cfepy; docs/reference/dev_programs.md lists them.
+
+Nothing here is part of the package.
+"""

@@ -80,7 +80,7 @@ def __getattr__(name: str) -> Any:
 
         raise ROSInitException(
             f"rospy_shim.{name}() works in a node of a cfepy mission only. Run this program with `cfepy run <mission>`"
-            " (see docs/run_your_ros_node.md), or import rospy instead of rospy_shim on a computer with ROS"
+            " (see docs/how_to/run_a_ros_node.md), or import rospy instead of rospy_shim on a computer with ROS"
         )
 
     return refuse

@@ -1,4 +1,4 @@
-"""No public name of cFE, OSAL and PSP is forgotten: each is here or explained, and docs/api_map.md says so."""
+"""Each public name of cFE, OSAL and PSP is here or explained, and docs/reference/generated/api_map.md lists it."""
 
 from __future__ import annotations
 
@@ -75,5 +75,5 @@ def test_a_name_that_nobody_explains_is_missing() -> None:
     assert missing.is_missing
     assert missing._replace(difference=row._replace(reason=api_map.NO_REASON)).is_missing
     explained = missing._replace(difference=row)
-    assert explained.status == "[absent](differences.md#osal): model"
-    assert explained._replace(exists=True).status == "[differs](differences.md#osal)"
+    assert explained.status == "[absent](../differences.md#osal): model"
+    assert explained._replace(exists=True).status == "[differs](../differences.md#osal)"

@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 DEV = ROOT / "dev"
 TESTS = ROOT / "tests"
-PAGE = ROOT / "docs/dev_programs.md"
+PAGE = ROOT / "docs/reference/dev_programs.md"
 OF_PROGRAMS = {
     "dev.convert.stimulus.driver": "stands beside the node that is tried",
     "dev.convert.stimulus.generate": "runs in Debian's Python",
@@ -25,7 +25,7 @@ OF_PROGRAMS = {
 """Modules that a program starts, and nobody else."""
 OF_TESTS = {
     "docs/reader.py": "gives the commands of a page in a network of its own",
-    "ground/page_flight.py": "gives those of docs/ground.md in a network of its own",
+    "ground/page_flight.py": "gives those of docs/how_to/ground_tools.md in a network of its own",
     "ground/yamcs_flight.py": "flies beside Yamcs in a network of its own",
     "mission/eventful.py": "flies in a process of its own",
     "own_network.py": "makes the network",

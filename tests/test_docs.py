@@ -12,7 +12,7 @@ import pytest
 from cfepy.cli import main as cli
 
 ROOT = Path(__file__).parents[1]
-DOCS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("missions/*/*.md")])
+DOCS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("missions/*/*.md")])
 FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ +(.+)$", re.MULTILINE)
@@ -82,5 +82,6 @@ def test_the_readme_has_commands_to_look_at() -> None:
 
 def test_every_document_is_in_the_index() -> None:
     index = (ROOT / "docs/README.md").read_text(encoding="utf-8")
-    missing = [path.name for path in DOCS if path.parent == ROOT / "docs" and f"({path.name})" not in index]
+    pages = [path.relative_to(ROOT / "docs").as_posix() for path in DOCS if path.is_relative_to(ROOT / "docs")]
+    missing = [page for page in pages if f"({page})" not in index]
     assert missing == ["README.md"]

@@ -67,7 +67,7 @@ def tree() -> Tree:
 
 
 def test_every_package_has_a_floor(tree: Tree) -> None:
-    assert not homeless(tree), "give it a place in dev/house/floors.py and in docs/design.md"
+    assert not homeless(tree), "give it a place in dev/house/floors.py and in docs/explanation/design.md"
 
 
 def test_imports_go_down(tree: Tree) -> None:

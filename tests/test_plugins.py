@@ -137,10 +137,10 @@ def test_what_hooks_name_is_there() -> None:
 
 
 def test_each_hook_of_the_code_is_filled_or_documented() -> None:
-    page = (ROOT / "docs" / "plugins.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "how_to" / "plugins.md").read_text(encoding="utf-8")
     offered = {hook for plugin in OWN for hook in plugin.hooks}
     for name in offered | {"report_tables"}:
-        assert f"`{name}`" in page, "docs/plugins.md lists the hooks"
+        assert f"`{name}`" in page, "docs/how_to/plugins.md lists the hooks"
 
 
 def test_a_plugin_names_its_modules_from_its_package() -> None:

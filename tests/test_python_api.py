@@ -18,7 +18,7 @@ import cfepy
 from dev.pages import python_api
 
 ROOT = Path(__file__).parents[1]
-GUIDE = ROOT / "docs" / "python_api.md"
+GUIDE = ROOT / "docs" / "how_to" / "python_api.md"
 MISSIONS = ROOT / "tests" / "quality" / "missions"
 needs_docstrings = pytest.mark.skipif(sys.flags.optimize > 1, reason="python -OO leaves docstrings out")
 EXAMPLES = re.findall(r"^```python\n(.*?)^```", GUIDE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)

@@ -15,13 +15,13 @@ from dev.site import ROOT, linked, pages, slug
 @pytest.mark.parametrize(
     ("source", "text", "on_the_site"),
     [
-        ("docs/faults.md", "[a](../README.md#set-up)", "[a](project/README.md#set-up)"),
-        ("docs/faults.md", "[a](exploration.md) [b](#here)", "[a](exploration.md) [b](#here)"),
-        ("README.md", "[a](docs/faults.md)", "[a](../faults.md)"),
-        ("README.md", "![a](docs/house.svg)", "![a](../house.svg)"),
+        ("docs/how_to/faults.md", "[a](../../README.md#set-up)", "[a](../project/README.md#set-up)"),
+        ("docs/how_to/faults.md", "[a](replay.md) [b](#here)", "[a](replay.md) [b](#here)"),
+        ("README.md", "[a](docs/how_to/faults.md)", "[a](../how_to/faults.md)"),
+        ("README.md", "![a](docs/pictures/house.svg)", "![a](../pictures/house.svg)"),
         ("README.md", "[a](missions/capture/README.md)", "[a](../missions/capture/README.md)"),
         ("README.md", "[the licence](LICENSE), [a](https://ros.org)", "the licence, [a](https://ros.org)"),
-        ("missions/capture/README.md", "[a](../../docs/replay.md#x)", "[a](../../replay.md#x)"),
+        ("missions/capture/README.md", "[a](../../docs/how_to/replay.md#x)", "[a](../../how_to/replay.md#x)"),
         ("missions/capture/README.md", "```\n[a](startup.scr)\n```\n[a](startup.scr)", "```\n[a](startup.scr)\n```\na"),
     ],
 )
@@ -40,5 +40,6 @@ def test_the_site_is_built_without_a_warning(tmp_path: Path) -> None:
     environ = {**os.environ, "NO_MKDOCS_2_WARNING": "1"}
     built = subprocess.run(command, cwd=ROOT, env=environ, capture_output=True, text=True, check=False)
     assert built.returncode == 0, built.stderr
-    for page in ("index.html", "exploration/index.html", "project/index.html", "missions/capture/index.html"):
+    missions, how_to = "missions/capture/index.html", "how_to/explore_schedules/index.html"
+    for page in ("index.html", how_to, "project/index.html", missions):
         assert "cfepy" in (tmp_path / page).read_text(encoding="utf-8")

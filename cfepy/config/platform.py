@@ -171,7 +171,7 @@ class PlatformConfig:
 
     @property
     def is_cfe_7_0_0(self) -> bool:
-        """Whether the release is 7.0.0; docs/differences.md lists the differences from 7.0.1."""
+        """Whether the release is 7.0.0; docs/reference/differences.md lists the differences from 7.0.1."""
         return self.cfe_version == CFE_7_0_0
 
     def with_limits(self, limits: Mapping[str, int | str | tuple[int, ...]]) -> PlatformConfig:

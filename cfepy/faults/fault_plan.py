@@ -4,7 +4,7 @@
     plan = FaultPlan.from_dict({"faults": [{"drop": "/odom", "probability": 0.1}]})
 
 Errors in a plan are reported with their place. A plan can be written again. Each option has one reader and one writer
-for all kinds of faults. See docs/faults.md for the kinds of faults and the form of the file.
+for all kinds of faults. See docs/how_to/faults.md for the kinds of faults and the form of the file.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The mission file: a table of its sections and their readers.
 
 `read_mission_file` reads the file once. Before a run it raises the first mistake; `cfepy check` collects all of them.
-docs/mission_file.md describes the file. The sections with rules for a run (`DEMANDS`) are kept unread;
+docs/reference/mission_file.md describes the file. The sections with rules for a run (`DEMANDS`) are kept unread;
 `cfepy.monitors.run_rules` reads them.
 """
 

@@ -7,7 +7,7 @@
     wait:ARM                of a task: how long it is ready and others run
 
 `latency`, `response` and `age` are measured like the deadlines `latency`, `response` and `at_least_every` of a mission
-file are, which docs/mission_file.md describes, and like them while the mission is OPERATIONAL.
+file are, which docs/reference/mission_file.md describes, and like them while the mission is OPERATIONAL.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Invariants of the messages of a mission: the section `invariants` of a mission file.
 
 An invariant is an expression over a message, a function in the mission's own Python file, or an answer that must come
-in time. They are read here and checked by `cfepy.monitors.invariant_watch`. See docs/mission_file.md.
+in time. They are read here and checked by `cfepy.monitors.invariant_watch`. See docs/reference/mission_file.md.
 """
 
 from __future__ import annotations

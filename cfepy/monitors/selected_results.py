@@ -1,6 +1,6 @@
 """Results of a mission that must not depend on the schedule: the section `results` of a mission file.
 
-`cfepy explore` compares them with the results under the default schedule. See docs/exploration.md.
+`cfepy explore` compares them with the results under the default schedule. See docs/how_to/explore_schedules.md.
 """
 
 from __future__ import annotations

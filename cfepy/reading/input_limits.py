@@ -2,7 +2,7 @@
 
 The limits are far above the sizes of real missions, bags and launch files. An input above a limit is refused with an
 error that names the file, the limit and the remedy. `cfepy.reading.input_files` opens and reads the files.
-docs/security.md lists the limits.
+docs/reference/security.md lists the limits.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Mission scripts: commands at given times and expected answers, one step per line.
 
 Code that reads a script, executes it while a mission flies, or reports the result of each step belongs here. Rules for
-the whole run are in `cfepy.monitors`. See docs/ground_tools.md for the language. The central file is
+the whole run are in `cfepy.monitors`. See docs/how_to/ground_tools.md for the language. The central file is
 `cfepy/script/script_run.py`.
 """
 

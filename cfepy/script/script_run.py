@@ -5,7 +5,7 @@
 
 A script acts at fixed virtual times between parts of the run, so the same script always has the same outcome. An
 expectation stays open until it can be decided. The run continues after resets of the processor. See
-docs/ground_tools.md for the language.
+docs/how_to/ground_tools.md for the language.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The text of a mission script, parsed into steps; see docs/ground_tools.md for the language.
+"""The text of a mission script, parsed into steps; see docs/how_to/ground_tools.md for the language.
 
 One step per line, made of words, quoted texts and numbers of seconds. Everything that can be known before the run is
 checked here: names, fields, values, times. A mistake raises UsageError with file and line.

@@ -3,7 +3,7 @@
 survey.tsv lists nodes of public repositories by commit. SOURCES has a folder OWNER/NAME for each repository, with the
 sources at that commit; those of kind "messages", from which others take definitions, are in _messages/OWNER/NAME. All
 packages of a node's repository are seen, as in a catkin workspace. Each node is checked for the host; one that converts
-there is checked for pool and strict, too. `--report` writes the counts of a JSON file into docs/convertor.md.
+there is checked for pool and strict, too. `--report` writes the counts of a JSON file into docs/how_to/convertor.md.
 
 The JSON file is written node by node, and a survey goes on with it: a verdict counts again as long as the check, the
 interface library and the definitions of messages are the same, bit by bit.
@@ -27,7 +27,7 @@ from cfepy.extra.convert.node_check import ABOUT_HEADERS, Level, RuleFinding, ch
 from cfepy.status import UsageError
 
 LIST = Path(__file__).parent / "survey.tsv"
-DOCUMENT = Path(__file__).parents[2] / "docs" / "convertor.md"
+DOCUMENT = Path(__file__).parents[2] / "docs" / "how_to" / "convertor.md"
 BEGIN, END = "<!-- survey: made by python -m dev.convert.survey --report -->", "<!-- end of survey -->"
 CODE = ("cfepy/extra/convert", "roscfe", "rospy_shim/types/msgs")
 """Folders of what checks, and of what nodes are compiled with."""
@@ -137,7 +137,7 @@ def missing(verdicts: Iterable[Verdict]) -> Iterator[str]:
 
 
 def table(verdicts: list[Verdict]) -> str:
-    """The counts as a part of docs/convertor.md."""
+    """The counts as a part of docs/how_to/convertor.md."""
     total = len(verdicts)
     lines = [f"{total} nodes of {len({each.repository for each in verdicts})} public repositories, by commit:", ""]
     lines += ["| profile | convert | refused |", "|---|---|---|"]
@@ -159,7 +159,7 @@ def table(verdicts: list[Verdict]) -> str:
 
 
 def write_report(verdicts: list[Verdict]) -> None:
-    """Put the counts into docs/convertor.md."""
+    """Put the counts into docs/how_to/convertor.md."""
     text = DOCUMENT.read_text(encoding="utf-8")
     DOCUMENT.write_text(between(text, BEGIN, END, table(verdicts)), encoding="utf-8")
 
@@ -191,7 +191,7 @@ def main() -> None:
     parser.add_argument("--only", default="", help="a part of OWNER/NAME/file")
     parser.add_argument("--json", type=Path, help="verdicts, read by --report")
     parser.add_argument("--missing", type=Path, help="gets what would free the most nodes")
-    parser.add_argument("--report", action="store_true", help="write the counts of --json into docs/convertor.md")
+    parser.add_argument("--report", action="store_true", help=f"write the counts of --json into {DOCUMENT.name}")
     arguments = parser.parse_args()
     if arguments.report:
         write_report(read_verdicts(arguments.json))

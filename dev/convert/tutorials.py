@@ -3,7 +3,7 @@
     python -m dev.convert.tutorials SOURCES TREE [--report]
 
 SOURCES has a checkout of github.com/ros/ros_tutorials in ros/ros_tutorials, as `dev.convert.survey` wants it; TREE is
-a mission tree of cFS 7.0.0 (`dev.convert.mission_tree`). `--report` writes the table in docs/convertor.md anew.
+a mission tree of cFS 7.0.0 (`dev.convert.mission_tree`). `--report` writes the table in docs/how_to/convertor.md anew.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from cfepy.cli.main import main
 from dev.convert.mission_tree import CI_LAB, MissionTree, said
 from dev.twin.real import RealCfe
 
-DOCUMENT = Path(__file__).parents[2] / "docs/convertor.md"
+DOCUMENT = Path(__file__).parents[2] / "docs/how_to/convertor.md"
 BEGIN, END = "<!-- tutorials: made by python -m dev.convert.tutorials --report -->", "<!-- end of tutorials -->"
 PACKAGE = "roscpp_tutorials"
 SECONDS = 8.0
@@ -185,7 +185,7 @@ def run(arguments: list[str]) -> None:
     parser = argparse.ArgumentParser(prog="python -m dev.convert.tutorials", description=__doc__)
     parser.add_argument("sources", type=Path)
     parser.add_argument("tree", type=Path)
-    parser.add_argument("--report", action="store_true", help="write the table into docs/convertor.md")
+    parser.add_argument("--report", action="store_true", help="write the table into docs/how_to/convertor.md")
     given = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory(prefix="cfepy-tutorials-") as scratch:
         made = table(fly(given.sources, given.tree, Path(scratch)))

@@ -1,4 +1,4 @@
-"""docs/compatibility.md, the page about which public nodes run."""
+"""docs/reference/generated/compatibility.md, the page about which public nodes run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dev.corpus.sources import ENVIRONMENT
 from dev.corpus.verdict import Verdict
 
 DRIVE = "drive()"  # the stimulus of a node that nobody has read
-PAGE = Path(__file__).parents[2] / "docs" / "compatibility.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "generated" / "compatibility.md"
 _HEAD = """# Compatibility
 
 {total} scenarios with public ROS 1 nodes in Python, run unmodified from their repositories: the node gets a stimulus
@@ -25,7 +25,8 @@ recording, counts are compared. {silent} of these nodes end on ROS before they a
 parameter, an argument or Python 2, and do the same here. `python -m dev.corpus beside ID`, on a computer with rospy
 and rosmaster, flies a scenario on both and shows what is not alike.
 
-This page is made by `python -m dev.corpus report`. Nodes in C++ are in [convertor.md](convertor.md#public-nodes).
+This page is made by `python -m dev.corpus report`. Nodes in C++ are in
+[convertor.md](../../how_to/convertor.md#public-nodes).
 To try it yourself:
 
 ```

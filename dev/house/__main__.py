@@ -1,4 +1,4 @@
-"""`python -m dev.house`: the figures of this tree or of another, or the pictures of docs/design.md."""
+"""`python -m dev.house`: the figures of this tree or of another, or the pictures of docs/explanation/design.md."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def main() -> None:
     """Print the figures of a checkout, or draw its pictures."""
     parser = argparse.ArgumentParser(prog="python -m dev.house", description=__doc__)
     parser.add_argument("folder", type=Path, nargs="?", default=ROOT, help="another checkout, to compare")
-    parser.add_argument("--picture", action="store_true", help="draw docs/house.svg and docs/message.svg anew")
+    parser.add_argument("--picture", action="store_true", help="draw house.svg and message.svg in docs/pictures anew")
     options = parser.parse_args()
     tree = Tree(options.folder.resolve())
     if not options.picture:

@@ -1,4 +1,4 @@
-"""The pictures of docs/design.md: the floors of the house, and the way of a message through it.
+"""The pictures of docs/explanation/design.md: the floors of the house, and the way of a message through it.
 
 They are drawn from the tree: floors from `floors.py`, what a package is for from the first sentence of its docstring,
 numbers from its imports. The stations of the message name functions, which have to be there. The same tree gives the
@@ -16,8 +16,8 @@ from typing import NamedTuple
 from dev.house.floors import FLOORS, LEVEL
 from dev.house.tree import Tree
 
-HOUSE = Path("docs/house.svg")
-MESSAGE = Path("docs/message.svg")
+HOUSE = Path("docs/pictures/house.svg")
+MESSAGE = Path("docs/pictures/message.svg")
 
 WIDTH = 960
 MARGIN = 16

@@ -1,9 +1,9 @@
-"""Writes docs/api_map.md: every public function of cFE, OSAL and PSP 7.0.0, its name here, and whether it is the same.
+"""Write docs/reference/generated/api_map.md: every public function of cFE, OSAL and PSP 7.0.0, with its name here.
 
     python -m dev.pages.api_map
 
 NASA's names are in tests/data/api, one file for each module; api_names.py knows what they are called here. What differs
-and what is absent is read from the tables of docs/differences.md: a name that a row mentions differs as that row says,
+and what is absent is read from the tables of docs/reference/differences.md: a name in a row differs as the row says,
 or is absent for its reason. So nothing is said twice, and a name that is nowhere is missing. What compiled applications
 can call is read from the declarations of `cfepy.extra.c.api`, for which the engine is built.
 """
@@ -26,8 +26,8 @@ from cfepy.writing.console import Console
 from dev.pages.api_names import python_name
 
 ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "api_map.md"
-DIFFERENCES = ROOT / "docs" / "differences.md"
+PAGE = ROOT / "docs" / "reference" / "generated" / "api_map.md"
+DIFFERENCES = ROOT / "docs" / "reference" / "differences.md"
 LISTS = ROOT / "tests" / "data" / "api"
 MODULES = ("ES", "EVS", "SB", "TBL", "TIME", "FS", "MSG", "SBR", "ResourceId", "Config", "osal", "psp")
 TITLES = {"osal": "OSAL", "psp": "PSP"}
@@ -39,13 +39,18 @@ NOT_OF_PYTHON = ("ROS", "Compiled applications")
 HEAD = """\
 # API map
 
-Every public function and macro of NASA's cFE, OSAL and PSP 7.0.0 and its name here. `cfe` is the handle that an
-application's main function gets; `cfepy` a module to import. Everywhere failed calls raise and output pointers became
-return values. A function differs beyond that when a row of [differences.md](differences.md) names it; the last column
-leads there. C says what a [compiled application](c_apps.md) finds: `call`, a function; `header`, a macro or an inline
-function, which the application has inside; `core`, a function that no header for applications declares, and that only
-NASA's core calls. `python -m dev.pages.api_map` writes this page anew, and a test fails when it is stale or when a name
-is in neither place.
+Every public function and macro of NASA's cFE, OSAL and PSP 7.0.0, and its name in cfepy. `cfe` is the handle that an
+application's main function receives. `cfepy` is a module to import. Failed calls raise an exception, and output
+pointers became return values. If a function differs further, a row of [differences.md](../differences.md) names it, and
+the last column links to it.
+
+The column C shows how a [compiled application](../../how_to/c_apps.md) gets the name:
+
+- `call`: a function;
+- `header`: a macro or an inline function, which the application contains;
+- `core`: a function that no header for applications declares; only NASA's core calls it.
+
+`python -m dev.pages.api_map` writes this page. A test fails if the page is out of date or if a name is missing.
 """
 
 CALL, HEADER, CORE, MISSING = "call", "header", "core", "missing"
@@ -54,7 +59,7 @@ OF_THE_CORE = ("CFE_ES_Main", "CFE_SBR_*")
 
 
 class Difference(NamedTuple):
-    """A row of docs/differences.md: section, names it mentions ("OS_Foo*" for all that begin so), and reason."""
+    """A row of differences.md: section, names it mentions ("OS_Foo*" for all that begin so), and reason."""
 
     section: str
     names: tuple[str, ...]
@@ -91,7 +96,7 @@ class Entry(NamedTuple):
         row = self.difference
         if self.is_missing or row is None:
             return "same" if self.exists else "missing"
-        link = f"differences.md#{_anchor(row.section)}"
+        link = f"../differences.md#{_anchor(row.section)}"
         return f"[differs]({link})" if self.exists else f"[absent]({link}): {row.reason}"
 
 
@@ -107,7 +112,7 @@ def listed(module: str) -> Iterator[tuple[str, str, bool]]:
 
 
 def differences() -> list[Difference]:
-    """The rows of docs/differences.md that mention names."""
+    """The rows of docs/reference/differences.md that mention names."""
     found, section = [], ""
     for line in DIFFERENCES.read_text(encoding="utf-8").splitlines():
         if line.startswith("## "):
@@ -166,7 +171,7 @@ def booted() -> Mission:
 
 
 def page(cfe: Any) -> str:
-    """The text of docs/api_map.md."""
+    """The text of docs/reference/generated/api_map.md."""
     sections = {TITLES.get(module, module): entries(module, cfe) for module in MODULES}
     lines = [HEAD, "| module | names | same | differ | absent | called in C |", "|---|---|---|---|---|---|"]
     lines += [f"| [{title}](#{_anchor(title)}) | {_counts(rows)} |" for title, rows in sections.items()]

@@ -1,4 +1,4 @@
-"""docs/library.ipynb: executed anew, with its outputs written down, by `python -m dev.pages.notebook`.
+"""docs/tutorials/library.ipynb: executed anew, with its outputs written down, by `python -m dev.pages.notebook`.
 
 The outputs are there for those who read it where nothing runs, such as on GitHub. A test executes it as well, and
 compares the texts.
@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-FILE = Path(__file__).parents[2] / "docs" / "library.ipynb"
+FILE = Path(__file__).parents[2] / "docs" / "tutorials" / "library.ipynb"
 LONGEST_S = 600  # for a cell, on a busy machine: kills what hangs
 VARIES = (
     (re.compile(r"[\d.]+ x real time"), "N x real time"),

@@ -1,4 +1,4 @@
-"""The reference of the library, docs/python_api_reference.md: made of the docstrings of what `import cfepy` offers.
+"""Write docs/reference/generated/python_api_reference.md from the docstrings of the names that `import cfepy` offers.
 
 `python -m dev.pages.python_api` writes it anew; a test fails when it is stale.
 """
@@ -15,11 +15,11 @@ from typing import Any
 
 import cfepy
 
-PAGE = Path(__file__).parents[2] / "docs" / "python_api_reference.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "generated" / "python_api_reference.md"
 HEAD = """# Reference of the library
 
 What `import cfepy` offers, made of the docstrings by `python -m dev.pages.python_api`. The guide is
-[python_api.md](python_api.md). Times are virtual and in seconds, unless a name ends with `_ns`.
+[python_api.md](../../how_to/python_api.md). Times are virtual and in seconds, unless a name ends with `_ns`.
 """
 SECTIONS = ("Args", "Attributes", "Returns", "Raises")
 FOREIGN = (tuple, dict, list, Exception, object)  # whose methods are Python's

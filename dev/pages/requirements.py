@@ -1,4 +1,4 @@
-"""Writes docs/requirements.md: every requirement id of cFE and HK 7.0.0, and the tests that are its evidence.
+"""Write docs/reference/generated/requirements.md: every requirement id of cFE and HK 7.0.0, and the tests that show it.
 
     python -m dev.pages.requirements
 
@@ -20,7 +20,7 @@ from dev.pages.not_covered import NOT_COVERED
 from dev.pages.segments import missing, segments
 
 ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "requirements.md"
+PAGE = ROOT / "docs" / "reference" / "generated" / "requirements.md"
 IDS = ROOT / "tests" / "data" / "requirement_ids.txt"
 IN_NAME = re.compile(r"test_((?:c[A-Z]+|HK)\d{4}(?:_\d+)*)(?=_|$)")
 TITLES = {
@@ -75,7 +75,7 @@ def prefix(requirement: str) -> str:
 
 
 def page() -> str:
-    """The text of docs/requirements.md."""
+    """The text of docs/reference/generated/requirements.md."""
     tests, lines = evidence(), [HEAD, "| part | ids | with tests | |", "|---|---|---|---|"]
     parts = [(name, list(group)) for name, group in groupby(ids(), prefix)]
     for name, members in [*parts, ("all", ids())]:

@@ -1,4 +1,4 @@
-"""Showing what came of test files: a line each, and docs/peer_tests.md."""
+"""Showing what came of test files: a line each, and docs/reference/generated/peer_tests.md."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from dev.peers.flight import Verdict
 from dev.peers.peers import Peers
 
-PAGE = Path(__file__).parents[2] / "docs" / "peer_tests.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "generated" / "peer_tests.md"
 _HEAD = """# Tests of ROS packages
 
 {total} public test files of ROS 1's own packages, Python files and launch files for rostest, run unmodified from their

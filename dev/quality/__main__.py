@@ -1,9 +1,10 @@
-"""`python -m dev.quality report`: measure how soon the planted bugs are found, and write docs/planted_bugs.md.
+"""`python -m dev.quality report`: measure how soon the planted bugs are found, and write planted_bugs.md.
 
-`python -m dev.quality programs` does the same with the programs that others try (docs/benchmarks_exploration.md).
+`python -m dev.quality programs` does the same with the programs that others try (benchmarks_exploration.md). Both pages
+are in docs/reference/generated.
 
 `python -m dev.quality edits` tells how many of their shrunk schedules still fail after small edits
-(docs/exploration.md).
+(docs/how_to/explore_schedules.md).
 
 `python -m dev.quality mended` flies the mended forms under many schedules, in search of false alarms (both pages).
 

@@ -14,7 +14,7 @@ from dev.quality.measure import Median, hunts, median
 from dev.quality.programs import PROGRAMS, Program, program_trial
 
 MEASURED = Path(__file__).parent / "measured_programs.json"
-PAGE = Path(__file__).parents[2] / "docs" / "benchmarks_exploration.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "generated" / "benchmarks_exploration.md"
 DEFAULT = "all"
 SCHEDULES = 200
 MOST = 10_000  # of the one search that anyone can repeat

@@ -18,7 +18,7 @@ from dev.quality.measure import LONGEST, POLICIES, TRIALS, Median, median, simpl
 from dev.quality.shrinking import Shrunk, shrunk
 
 MEASURED = Path(__file__).parent / "measured.json"
-PAGE = Path(__file__).parents[2] / "docs" / "planted_bugs.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "generated" / "planted_bugs.md"
 SHRUNK = "shrunk"
 DEFAULT = "all"
 

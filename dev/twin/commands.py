@@ -238,7 +238,7 @@ class Commander:
         data = data[:size].ljust(size, b"\0")
         if random.random() < 0.05:
             name, _, rest = data.partition(b"\0")
-            tail = random.randbytes(len(rest)).translate(None, b"/.")  # docs/differences.md says why not these
+            tail = random.randbytes(len(rest)).translate(None, b"/.")  # why not these: docs/reference/differences.md
             data = (name + b"\0" + tail).ljust(size, b"\0")[:size]
         return data
 

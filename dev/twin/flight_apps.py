@@ -1,6 +1,6 @@
 """Ground commands of NASA's flight applications: MsgIds, function codes, and the fields behind the header.
 
-The releases are those that docs/c_apps.md builds. A field is `name:format` in the letters of `struct`; `-` is padding.
+docs/how_to/c_apps.md builds the same releases. A field is `name:format` in the letters of `struct`; `-` is padding.
 """
 
 from __future__ import annotations

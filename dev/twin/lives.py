@@ -20,7 +20,7 @@ from dev.twin.link_app import REQUEST, REQUEST_MID
 
 PROCESSOR, POWERON = 1, 2
 LEFT_OUT = (to_lab.packets.OUTPUT_ENABLE.code, to_lab.packets.REMOVE_ALL_PKT.code)
-"""Commands of TO_LAB: another address, and one with a fault of NASA's, see docs/differences.md."""
+"""Commands of TO_LAB: another address, and one with a fault of NASA's, see docs/reference/differences.md."""
 LABS = (*LINK_APPS, "SAMPLE_APP")
 BLOCKS = ("A", "STATE", "SIXTEEN_LETTERS_", "SEVENTEEN_LETTERS", "")
 SIZES = (0, 1, 8, 64, 200, 5000, 65535)

@@ -53,7 +53,7 @@ def settled(observed: Observed) -> Observed:
 
     SCH_LAB gets a packet each second, of which its pipe takes four. Whether there is a fifth one between its last look
     and its end depends on how the seconds of ES and TIME lie to each other. Of what SCH_LAB itself sends into a full
-    pipe no event tells in NASA's, since SCH_LAB is not registered with EVS; see docs/differences.md.
+    pipe no event tells in NASA's, since SCH_LAB is not registered with EVS; see docs/reference/differences.md.
     """
     packets = (_without_overflow(each) for each in observed.packets)
     files = {path: _filters_without_overflow(data) for path, data in observed.files.items()}

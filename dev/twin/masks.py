@@ -37,11 +37,11 @@ BLANKS = {
     ("CFE_ES", 68): re.compile(rb"(written:Size=)\d+(?:,EntryCount=\d+)?"),
     ("CFE_SB", 44): re.compile(rb"()\n"),
 }
-"""What rows of docs/differences.md speak of: NASA's texts tell 0, or end with a line feed; and how often tasks ran."""
+"""Rows of differences.md: NASA's texts have 0, or end with a line feed; and how often tasks ran."""
 OF_TELEMETRY = {
     "CFE_ES_HK_TLM": {
         "CFECoreChecksum": "made from the C build",
-        "PerfFilterMask.*|PerfTriggerMask.*": "a fault of NASA's housekeeping, see docs/differences.md",
+        "PerfFilterMask.*|PerfTriggerMask.*": "a fault of NASA's housekeeping, see docs/reference/differences.md",
         "Perf(DataCount|DataStart|DataEnd|TriggerCount|State|DataToWrite)": "how often tasks ran",
         "SysLog(BytesUsed|Entries)": "the lines of the boot name the build",
     },
@@ -96,7 +96,7 @@ OF_RECORDS = {
     header.SUBTYPE_ES_ERLOG: {
         "BaseInfo.TimeCode.*": "a time",
         "BaseInfo.DebugVars.*": "which application ran last",
-        "AppID": "a fault of NASA's, see docs/differences.md",
+        "AppID": "a fault of NASA's, see docs/reference/differences.md",
         "ContextSize|Context.*": "registers",
     },
     header.SUBTYPE_SB_ROUTEDATA: {"MsgCnt": "how many messages went there"},
@@ -109,9 +109,9 @@ STAMP = re.compile(rb"^\d{4}-\d{3}-\d\d:\d\d:\d\d\.\d{5} ")
 NOT_ALIKE = re.compile(rb"(Event Log restored), .*")
 """Lines of the system log with counts of events, to which the modules' versions belong."""
 LAST_OF_NAME = 115
-"""The last byte of the table's name in a dump, which NASA's never sets, as its first word; see docs/differences.md."""
+"""The last byte of the table's name in a dump, which NASA's never sets, as its first word; see differences.md."""
 NO_BYTES = b"\xfc" + b"\xff" * 7
-"""The size of a block of the CDS that lost its bytes; see docs/differences.md."""
+"""The size of a block of the CDS that lost its bytes; see docs/reference/differences.md."""
 MOST_FLYWHEEL = 8
 """Events of flywheel mode that a log of 20 may have, at most."""
 APP_NAME, EVENT_ID, TEXT = slice(16, 36), slice(36, 38), slice(48, 170)

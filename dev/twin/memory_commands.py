@@ -24,7 +24,7 @@ WIDTHS = {MEM8: 8, MEM16: 16, MEM32: 32}
 ENABLED, DISABLED = 1, 2
 TABLES_CHECKED = ("LC.LC_WDT", "SC.RTS_TBL001", "CS.DefMemoryTbl", "NO.Table")
 APPS_CHECKED = ("NOBODY",)
-"""OSAL on Linux does not know where the code of one is; see docs/differences.md."""
+"""OSAL on Linux does not know where the code of one is; see docs/reference/differences.md."""
 PEEK, POKE, LOAD_WID, LOAD_FILE, DUMP_FILE, DUMP_EVENT, FILL, LOOKUP = range(2, 10)
 START_DWELL, STOP_DWELL, JAM_DWELL = 2, 3, 4
 ONE_SHOT, CANCEL_ONE_SHOT = 2, 3

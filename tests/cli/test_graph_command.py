@@ -56,4 +56,4 @@ def test_what_died_on_the_way_is_told(tmp_path: Path, capsys: Capture) -> None:
 def test_the_drawing_in_the_documentation_is_that_of_today(tmp_path: Path) -> None:
     drawing = tmp_path / "graph.svg"
     assert main(["graph", "capture", "--svg", str(drawing)]) == 0
-    assert drawing.read_text(encoding="utf-8") == (ROOT / "docs" / "graph.svg").read_text(encoding="utf-8")
+    assert drawing.read_text(encoding="utf-8") == (ROOT / "docs" / "pictures" / "graph.svg").read_text(encoding="utf-8")

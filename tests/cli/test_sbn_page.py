@@ -1,4 +1,4 @@
-"""docs/sbn.md: its commands, as they stand there."""
+"""docs/how_to/sbn.md: its commands, as they stand there."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 
 from cfepy.cli.main import main
 
-PAGE = Path(__file__).parents[2] / "docs/sbn.md"
+PAGE = Path(__file__).parents[2] / "docs/how_to/sbn.md"
 _BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 

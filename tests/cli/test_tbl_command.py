@@ -246,8 +246,8 @@ def test_layout_file_without_layout(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 
 def test_the_yaml_of_the_documentation_is_good(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    text = (DATA.parents[1] / "docs/tables_and_logs.md").read_text(encoding="utf-8")
-    blocks = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
+    text = (DATA.parents[1] / "docs/how_to/tables_and_parameters.md").read_text(encoding="utf-8")
+    blocks = [block for block in re.findall(r"```yaml\n(.*?)```", text, re.DOTALL) if block.startswith("table:")]
     assert len(blocks) == 2
     for number, block in enumerate(blocks):
         source = tmp_path / f"{number}.yaml"

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[2]
-PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("missions/*/*.md")])
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("missions/*/*.md")])
 SHELLS = {"sh", "bash", "shell", "console"}
 PROGRAMS = {
     *("cfepy", "pip", "pipx", "pytest", "python", "python3", "ruff", "mypy", "mkdocs", "dask"),

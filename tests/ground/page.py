@@ -1,10 +1,10 @@
-"""The code blocks of docs/ground.md by section."""
+"""The code blocks of docs/how_to/ground_tools.md by section."""
 
 from __future__ import annotations
 
 from tests.docs import pages
 
-PAGE = pages.ROOT / "docs/ground.md"
+PAGE = pages.ROOT / "docs/how_to/ground_tools.md"
 
 
 def blocks(section: str) -> list[pages.Block]:

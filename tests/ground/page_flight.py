@@ -1,4 +1,4 @@
-"""The commands of docs/ground.md, as they stand there, in a network in which no port is taken.
+"""The commands of docs/how_to/ground_tools.md, as they stand there, in a network in which no port is taken.
 
 `python -m tests.ground.page_flight PART`, in a network of its own (`tests.own_network`).
 """

@@ -1,4 +1,4 @@
-"""docs/ground.md: its commands do what it says, as they stand there."""
+"""docs/how_to/ground_tools.md: its commands do what it says, as they stand there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A real Yamcs with our XTCE: the way of docs/ground.md, and all commands and telemetry of the shipped missions."""
+"""A real Yamcs with our XTCE: docs/how_to/ground_tools.md, and all commands and telemetry of the shipped missions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A real Yamcs that reads our XTCE, configured as docs/ground.md says.
+"""A real Yamcs that reads our XTCE, configured as docs/how_to/ground_tools.md says.
 
 The variable CFEPY_YAMCS names the folder of an installed one, with `lib` and `bin/yamcsd`. It is spoken to through its
 HTTP API (https://docs.yamcs.org/yamcs-http-api/).

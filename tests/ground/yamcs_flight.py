@@ -1,6 +1,6 @@
 """What a real Yamcs makes of our XTCE, in a network of its own (`tests.own_network`).
 
-`python -m tests.ground.yamcs_flight loop` goes through docs/ground.md as it stands there; `compare TIMES` lets Yamcs
+`python -m tests.ground.yamcs_flight loop` gives the commands of docs/how_to/ground_tools.md; `compare TIMES` lets Yamcs
 send every command of every shipped mission and read all of their telemetry, with random values.
 """
 

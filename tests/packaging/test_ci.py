@@ -1,4 +1,4 @@
-"""The workflow that docs/ci.md offers: it is the file of the example, and its steps work, the first time and later."""
+"""The workflow of docs/how_to/ci.md is the file of the example, and its steps work, the first time and later."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def job_of(file: Path, name: str) -> dict[str, Any]:
 
 
 def test_the_page_shows_the_workflow_of_the_example() -> None:
-    page = (ROOT / "docs" / "ci.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "how_to" / "ci.md").read_text(encoding="utf-8")
     assert f"```yaml\n{WORKFLOW.read_text(encoding='utf-8')}```\n" in page
 
 

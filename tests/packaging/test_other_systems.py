@@ -1,7 +1,7 @@
 """cfepy goes without what other systems lack: every module is imported, and the demonstration is the same run.
 
 What is taken away here is what Windows' or macOS's Python does not have. What those have instead is not there either,
-so this finds code that cannot do without, and nothing more; docs/install.md says what was run on a system's own Python.
+so this finds code that cannot do without, and nothing more; docs/how_to/install.md lists runs on real ones.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`python -m dev.release`, as docs/install.md has it: what it refuses, and a whole one."""
+"""`python -m dev.release`, as docs/how_to/install.md has it: what it refuses, and a whole one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The lines of README.md, docs/install.md and docs/run_your_ros_node.md that install cfepy work in a fresh checkout."""
+"""The lines that install cfepy work in a fresh checkout, on each of three pages."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ def lines_of(page: str) -> list[str]:
     return [line for line in commands(ROOT / page) if " -m venv " in line and "-m pytest" not in line]
 
 
-LINES = [line for page in ("README.md", "docs/install.md", "docs/run_your_ros_node.md") for line in lines_of(page)]
+PAGES = ("README.md", "docs/how_to/install.md", "docs/how_to/run_a_ros_node.md")
+LINES = [line for page in PAGES for line in lines_of(page)]
 
 
 def test_each_page_has_one() -> None:

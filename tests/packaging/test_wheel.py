@@ -106,7 +106,7 @@ def test_a_compiled_application_is_made_built_and_flown_away_from_the_checkout(h
 
 @needs_compiler
 def test_engine_kernel_and_bus_are_compiled_where_they_are_wanted(home: Path, tmp_path: Path) -> None:
-    """As docs/install.md has it."""
+    """As docs/how_to/install.md has it."""
     venv.create(tmp_path / "venv", with_pip=True)
     python = str(tmp_path / "venv/bin/python")
     execute([python, "-m", "pip", "install", "--quiet", str(ROOT)], tmp_path, CFEPY_ENGINE="1")

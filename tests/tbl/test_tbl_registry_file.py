@@ -21,7 +21,7 @@ CFE_APP, hk,      HK_AppMain,      HK,         90, 16384, 0x0, 0;
 RECORDED_WITH = 'cfe_version: "7.0.0"'
 GOLDEN = (DATA / "cfe_tbl_reg.log").read_bytes()
 SIZE = pk.REGISTRY_RECORD.size
-OTHER_BYTES = {"HK.CopyTable": {"Crc"}}  # NASA's copies spare bytes; see docs/differences.md
+OTHER_BYTES = {"HK.CopyTable": {"Crc"}}  # NASA's copies spare bytes; see docs/reference/differences.md
 
 
 def test_records_are_packed_to_the_byte() -> None:

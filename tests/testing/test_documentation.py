@@ -1,4 +1,4 @@
-"""docs/testing.md is true: its examples are tests of the example package, and pass."""
+"""docs/how_to/testing.md is true: its examples are tests of the example package, and pass."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from cfepy.testing import Flight
 from tests.testing.test_example_package import PROBE, ROOT
 
-TEXT = (ROOT / "docs/testing.md").read_text(encoding="utf-8")
+TEXT = (ROOT / "docs/how_to/testing.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"^```python\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
 
 

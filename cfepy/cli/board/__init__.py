@@ -33,7 +33,7 @@ def _add_board(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "new",
         help="write a profile from three measurements",
         description="Write a profile of a board, whose costs follow from three times that were measured on it; "
-        "docs/board_profiles.md says how.",
+        "docs/reference/board_profiles.md says how.",
     )
     new.add_argument("file", metavar="FILE.yaml", help="the profile to write; the board has the name of this file")
     new.add_argument("--cpu-hz", type=_cycles_of, required=True, metavar="HZ", help="processor clock, such as 120e6")

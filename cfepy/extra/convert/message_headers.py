@@ -44,7 +44,7 @@ _LONGEST_LITERAL = 2000  # characters of a line of a definition that a string li
 
 
 class Profile(StrEnum):
-    """What messages are made of; see docs/roscfe.md."""
+    """What messages are made of; see docs/reference/roscfe.md."""
 
     HOST = "host"
     """std::string and std::vector."""

@@ -5,7 +5,7 @@
     rows:
     - {InputMid: 0x0801, InputOffset: 16, OutputMid: 0x089C, OutputOffset: 16, NumBytes: 4}
 
-See docs/tables_and_logs.md for the format. Errors give file, line and field.
+See docs/how_to/tables_and_parameters.md for the format. Errors give file, line and field.
 """
 
 from __future__ import annotations

@@ -75,12 +75,14 @@ def _wrong_imports(file: Path, tree: ast.Module) -> Iterator[MissionProblem]:
             continue
         source = sources.source_of(module) if _is_module(module) else None
         if source is None:
-            yield MissionProblem(file, node.lineno, f"unknown module {module}; docs/api_map.md lists all names")
+            yield MissionProblem(
+                file, node.lineno, f"unknown module {module}; docs/reference/generated/api_map.md lists all names"
+            )
             continue
         for alias in node.names:
             if not (alias.name == "*" or sources.defines(source, alias.name) or _is_module(f"{module}.{alias.name}")):
                 known = [*sources.functions_and_classes_of(source), *sorted(_imported(sources.tree_of(source)))]
-                hint = did_you_mean(alias.name, known, "docs/api_map.md lists all names")
+                hint = did_you_mean(alias.name, known, "docs/reference/generated/api_map.md lists all names")
                 yield MissionProblem(file, node.lineno, f"{module} has no name {alias.name!r}; {hint}")
 
 
@@ -461,7 +463,7 @@ def _has(service: str, name: str) -> bool:
 def _absence(service: str, name: str) -> str:
     path = f"{HANDLE}.{service}" if service else HANDLE
     known = sorted(each for each in _names(service) if each[0] != "_")
-    hint = did_you_mean(_pythonic(name), known, "docs/api_map.md has all names", form=f"{path}.{{}}")
+    hint = did_you_mean(_pythonic(name), known, _ALL_NAMES, form=f"{path}.{{}}")
     return f"{path} has no {name!r}; {hint}"
 
 

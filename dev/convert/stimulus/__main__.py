@@ -2,7 +2,7 @@
 
 SOURCES is the folder of `dev.convert.survey`. Each node that converts for the host is built as it is with Debian's
 roscpp, and by cfepy. A driver sends both the same random messages and requests for five seconds, twice with roscpp, and
-all that the node publishes, answers and prints is compared. `--report` writes results.tsv and docs/convertor.md.
+all that the node publishes, answers and prints is compared. `--report` writes results.tsv and docs/how_to/convertor.md.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What became of each node, results.tsv, and the counts in docs/convertor.md; explained.tsv says why some differ."""
+"""The result of each node, results.tsv, and the counts in convertor.md; explained.tsv explains those that differ."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def _verdict(node: str, result: Mapping[str, Any], known: Mapping[tuple[str, str
 
 
 def write(results: Iterable[Mapping[str, Any]]) -> list[Row]:
-    """Write results.tsv and the counts in docs/convertor.md."""
+    """Write results.tsv and the counts in docs/how_to/convertor.md."""
     made = list(rows(results, explained()))
     with RESULTS.open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream, delimiter="\t", lineterminator="\n")
@@ -106,7 +106,7 @@ def write(results: Iterable[Mapping[str, Any]]) -> list[Row]:
 
 
 def table(made: list[Row]) -> str:
-    """The counts as a part of docs/convertor.md."""
+    """The counts as a part of docs/how_to/convertor.md."""
     counts = Counter(row.verdict for row in made)
     there = [row for row in made if row.verdict in ("equal", "explained", "different")]
     lines = [

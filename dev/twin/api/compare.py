@@ -14,9 +14,9 @@ OSAL_NUMBER = re.compile(r"\b(?:[1-9]\d{4,5}|0x000[1-9A-Fa-f][0-9A-Fa-f]{4})\b")
 OF_ANOTHER_POOL = re.compile(r"(Bad offset\()\d+")
 """The distance of a block of one pool to another pool."""
 IN_FULL_HERE = re.compile(r"(Send Err:Invalid MsgId\(0x|Send Err:Msg Too Big .*size=)\w+")
-"""NASA's code tells 0 there: rows of docs/differences.md."""
+"""NASA's code tells 0 there: rows of docs/reference/differences.md."""
 DIFFERENT = re.compile(r"\w MSG_Init 0 ")
-"""A call that NASA's 7.0.1 accepts: a row of docs/differences.md."""
+"""A call that NASA's 7.0.1 accepts: a row of docs/reference/differences.md."""
 ID = re.compile(r"#([0-9a-f]+)")
 OSAL_KINDS = 0x10
 """Ids above are cFE's, and exactly the same on both sides. Ids of OSAL count what the core made, too."""

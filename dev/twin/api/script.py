@@ -27,7 +27,7 @@ CDS_NAMES = ("A", "B", "C", "SIXTEEN_LETTERS_", "SEVENTEEN_LETTERS", "", "M" * 4
 PATHS = ("/cf/a.txt", "/cf/b.txt", "/cf/d/c.txt", "/ram/a.txt", "/ram/nn.txt", "/cf/none", "/no/a", "a.txt", "", "/cf",
          "/cf/" + "n" * 19, "/cf/" + "n" * 30, "/" + "p" * 70)  # fmt: skip
 FILES = tuple(each for each in PATHS if each not in ("/cf", "/cf/none"))
-"""Those that are no directories, which differ: rows of docs/differences.md."""
+"""Those that are no directories, which differ: rows of docs/reference/differences.md."""
 MADE = ("/cf/d", "/cf/d2", "/cf/d3", "/no", "", "x")
 FOLDERS = ("/cf", "/ram", "/cf/d", "/cf/none", "/no", "", "x", "/cf/d2")
 WRONG = (0, 0x110001, 0x1FFFF, 0x2FFFF, 0x130001, 0x140009, 0x160009, 0xFFFFFFFF, 0x1B0009, 0x150001)

@@ -1,6 +1,6 @@
 """Mistakes that people make in C, planted in small applications: what finds each, and that the mended form is clean.
 
-docs/c_apps.md has the table.
+docs/how_to/c_apps.md has the table.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""docs/interface_library.md, nodes in C++: what the tables name is there, in the headers and for nodes in Python."""
+"""interface_library.md, nodes in C++: the names of its tables are in the headers and in rospy."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rospy_shim.types.msgs import shipped
 from tests.ros_libraries.world import universe
 
 ROOT = Path(__file__).parents[3]
-PAGE = (ROOT / "docs/interface_library.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/reference/interface_library.md").read_text(encoding="utf-8")
 INCLUDE = ROOT / "roscfe/include"
 OF_FUNCTIONS = {"MinMax": "tfMin(1, 2)", "Scalar": "tfScalar(1)"}
 """Headers of LinearMath without a class of their own, and something that they have."""

@@ -1,4 +1,4 @@
-"""docs/porting.md: a section a step, each with one command, and the commands do what is said there."""
+"""docs/how_to/porting.md: a section a step, each with one command, and the commands do what is said there."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cfepy.cli.main import main
 from tests.test_docs import FENCE
 
 ROOT = Path(__file__).parents[3]
-GUIDE = (ROOT / "docs/porting.md").read_text(encoding="utf-8")
+GUIDE = (ROOT / "docs/how_to/porting.md").read_text(encoding="utf-8")
 SECTION = re.compile(r"^## (\d+)\. [^\n]+\n(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
 BY_HAND = "make "  # in a mission tree of cFS, which is not here; dev.convert.mission_tree does it
 CROSS = "aarch64-linux-gnu-g++"

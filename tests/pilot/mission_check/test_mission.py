@@ -237,7 +237,7 @@ def read_all(path: Path) -> None:
 
 @pytest.mark.parametrize(("document", "read"), [("mission_file", read_all), ("board_profiles", load_profile)])
 def test_the_example_in_the_documentation(tmp_path: Path, document: str, read: Callable[[Path], object]) -> None:
-    text = (ROOT / "docs" / f"{document}.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs/reference" / f"{document}.md").read_text(encoding="utf-8")
     example = tmp_path / "example.yaml"
     example.write_text(text.partition("```yaml\n")[2].partition("```")[0], encoding="utf-8")
     read(example)

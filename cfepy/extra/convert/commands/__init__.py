@@ -46,7 +46,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         description="Make applications for a cFS 7.0.0 mission tree, and a mission for cfepy, of the ROS nodes in C++ "
         "of a launch file or a package. Their sources stay as they are. `cfepy convert check WORD` makes nothing, but "
         "tells all that keeps nodes from being converted and what is to be known of them, by the rules of "
-        "docs/convertor.md.",
+        "docs/how_to/convertor.md.",
         epilog=_STATUS,
     )
     convert.add_argument("words", metavar="WORD", nargs="+", help=_WORDS)

@@ -1,6 +1,6 @@
 """The rules of `cfepy convert check`: what is looked for in a node's sources, how bad it is, why, and what to do.
 
-docs/convertor.md has this table too; a test holds them together.
+docs/how_to/convertor.md has this table too; a test holds them together.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ RULES: dict[str, CheckRule] = {
             *("ros-library", _E, _E, _E),
             "a header of a ROS library that is not in the interface library",
             "without it the node would be built against another ROS, whose code waits in threads and sockets",
-            "leave the library out; docs/convertor.md lists the available libraries",
+            "leave the library out; docs/how_to/convertor.md lists the available libraries",
         ),
         CheckRule(
             *("boost-header", _E, _E, _E),
@@ -100,7 +100,7 @@ RULES: dict[str, CheckRule] = {
             *("api-missing", _E, _E, _E),
             "a class, function or overload of ROS that the interface library does not have",
             "it has no implementation on cFE yet",
-            "use another call; docs/convertor.md lists the available calls",
+            "use another call; docs/how_to/convertor.md lists the available calls",
         ),
         CheckRule(
             *("message-definition", _E, _E, _E),
