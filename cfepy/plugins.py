@@ -36,6 +36,7 @@ class Plugin(NamedTuple):
         parser: the module whose function `add` adds the parsers of these commands; it imports little, to keep the help
             quick.
         hooks: for each hook name the object that fills it, as "MODULE:NAME".
+        needs: names of add-ons without which it counts as not installed.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Plugin(NamedTuple):
     title: str = "Add-ons"
     parser: str = ".commands"
     hooks: Mapping[str, str] = MappingProxyType({})
+    needs: tuple[str, ...] = ()
 
     def load(self, hook: str) -> Any:
         """Import the object that fills a hook, which must be in `hooks`.
@@ -97,6 +99,7 @@ OWN = (
         commands=("convert",),
         title="ROS nodes in C++",
         hooks={"build_node": ".flight_build:build_for_flight", "check_sections": ".capacities:check_cpp_nodes"},
+        needs=("c",),
     ),
     _own(
         "exploration",
@@ -189,7 +192,9 @@ def owner_of(command: str) -> Plugin | None:
 @cache
 def installed() -> tuple[Plugin, ...]:
     """Return the installed add-ons: cfepy's own first, then the others by name."""
-    return (*(each for each in OWN if find_spec(each.package) is not None), *_outside())
+    there = [each for each in OWN if find_spec(each.package) is not None]
+    names = {each.name for each in there}
+    return (*(each for each in there if names.issuperset(each.needs)), *_outside())
 
 
 def _outside() -> Iterator[Plugin]:

@@ -2,8 +2,8 @@
 
 Code for tests of flight software belongs here: the plugin (`plugin`), which pytest finds by itself, the booting of
 missions for tests (`missions`) and generated inputs (`strategies`). A mission under test is a `Flight` of
-`cfepy.flight`; checking runs belongs to `cfepy.monitors`. See docs/how_to/testing.md for examples. Everything here is loaded
-on first use, so other test suites are not slowed down. The central file is `cfepy/testing/missions.py`.
+`cfepy.flight`; checking runs belongs to `cfepy.monitors`. See docs/how_to/testing.md for examples. Everything here is
+loaded on first use, so other test suites are not slowed down. The central file is `cfepy/testing/missions.py`.
 """
 
 from __future__ import annotations

@@ -228,6 +228,15 @@ def test_a_reader_that_went_away_leaves_a_whole_journal(tmp_path: Path) -> None:
     assert_whole(bag, journal)
 
 
+@pytest.fixture
+def _sighup_is_not_ignored() -> Iterator[None]:
+    """Let the signal count where the tests run under nohup, too."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.usefixtures("_sighup_is_not_ignored")
 def test_sighup_counts_once_and_another_signal_raises() -> None:
     before = signal.getsignal(signal.SIGHUP)
     with Interrupts() as interrupts:

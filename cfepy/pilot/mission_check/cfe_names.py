@@ -27,6 +27,7 @@ from cfepy.pilot.mission_check.problem import MissionProblem
 from cfepy.reading.suggestions import did_you_mean
 
 HANDLE = "cfe"
+_ALL_NAMES = "docs/reference/generated/api_map.md lists all names"
 _MOST = 500  # maximum number of reported problems of a file
 _LONGEST_CHAIN = 20
 GUARDS = ("AttributeError", "TypeError")
@@ -75,14 +76,12 @@ def _wrong_imports(file: Path, tree: ast.Module) -> Iterator[MissionProblem]:
             continue
         source = sources.source_of(module) if _is_module(module) else None
         if source is None:
-            yield MissionProblem(
-                file, node.lineno, f"unknown module {module}; docs/reference/generated/api_map.md lists all names"
-            )
+            yield MissionProblem(file, node.lineno, f"unknown module {module}; {_ALL_NAMES}")
             continue
         for alias in node.names:
             if not (alias.name == "*" or sources.defines(source, alias.name) or _is_module(f"{module}.{alias.name}")):
                 known = [*sources.functions_and_classes_of(source), *sorted(_imported(sources.tree_of(source)))]
-                hint = did_you_mean(alias.name, known, "docs/reference/generated/api_map.md lists all names")
+                hint = did_you_mean(alias.name, known, _ALL_NAMES)
                 yield MissionProblem(file, node.lineno, f"{module} has no name {alias.name!r}; {hint}")
 
 
