@@ -7,12 +7,13 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 from cfepy import plugins
-from cfepy.plugins import OWN, Hook, Plugin
+from cfepy.plugins import OWN, Hook, Plugin, installed
 from cfepy.status import UsageError
 from dev.house.tree import ROOT
 
@@ -147,3 +148,15 @@ def test_a_plugin_names_its_modules_from_its_package() -> None:
     plugin = Plugin("x", "cfepy.extra.viewers", hooks={"a": ".viewer_options:Viewers", "b": "cfepy.units:NS_PER_S"})
     assert plugin.load("a").__name__ == "Viewers"
     assert plugin.load("b") == 1_000_000_000
+
+
+def test_an_add_on_whose_need_is_missing_counts_as_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plugins, "find_spec", lambda name: None if name == "cfepy.extra.c" else find_spec(name))
+    installed.cache_clear()
+    try:
+        names = {each.name for each in installed()}
+    finally:
+        monkeypatch.undo()
+        installed.cache_clear()
+    assert "exploration" in names
+    assert names.isdisjoint({"c", "convert"})

@@ -184,7 +184,7 @@ def test_what_is_no_whole_message_of_a_topic_is_refused() -> None:
     topic = Topic("/count", 0x0950, "std_msgs/UInt32")
     packet = telemetry(0x0950, bytes([1, 0, 0, 0]))
     assert topic.read(bytes(packet)) == {"data": 1}
-    with pytest.raises(UsageError, match="no std_msgs/UInt32"):
+    with pytest.raises(UsageError, match="invalid std_msgs/UInt32"):
         topic.read(bytes(telemetry(0x0950, b"x")))
     packet[2] = 0x40  # the first of several
     with pytest.raises(UsageError, match="one segment"):

@@ -121,9 +121,7 @@ def test_locking_again_changes_nothing_but_adds(tmp_path: Path, capsys: pytest.C
 def test_a_lock_that_gives_an_id_twice_is_refused(tmp_path: Path) -> None:
     mission = write_mission(tmp_path, STARTUP, n=NODE, mission_yaml="topics: {/a: {msg_id: 0x0910}, /c: {msg_id: 5}}\n")
     (tmp_path / "topics.lock").write_text("topics:\n  /a: 0x0911\n  /b: 0x0910\nservices: {}\n", encoding="utf-8")
-    with pytest.raises(
-        UsageError, match=r"topics.lock:3: topics./b: the MsgId 0x0910 is already used by /a; remove one"
-    ):
+    with pytest.raises(UsageError, match=r"topics.lock:3: topics./b: the MsgId 0x0910 is already used by /a; remove"):
         read_mission(mission)
     assert [(found.file.name, found.line) for found in check_mission(mission)] == [("topics.lock", 3)]
 
