@@ -69,7 +69,12 @@ def _add(config: pytest.Config, name: str, plugin: type) -> None:
 
 @pytest.fixture(scope="session")
 def mission(request: pytest.FixtureRequest) -> Missions:
-    """Return a function that boots missions: `flight = mission("capture", seed=1)`, by folder, launch file or name."""
+    """Boot missions: `flight = mission("capture", seed=1)`, by folder, launch file or shipped name.
+
+    A relative path starts at the folder of the test's file. The flight ends with the test, or with the fixture that
+    made it. Give board=, seed=, schedule=, tasks=, faults=, args= (of a launch file) or attachments= as needed.
+    docs/how_to/testing.md has examples.
+    """
     from cfepy.testing.missions import Missions
 
     found = request.config.pluginmanager.get_plugin("cfepy-missions")

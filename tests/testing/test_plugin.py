@@ -217,7 +217,7 @@ def test_journals_of_failed_tests_are_kept_and_replay(suite: Suite, missions: Pa
 @pytest.mark.skipif(sys.flags.optimize > 1, reason="python -OO leaves docstrings out")
 def test_the_fixture_tells_what_it_is(pytester: pytest.Pytester) -> None:
     result = pytester.runpytest_inprocess("-p", "cfepy.testing.plugin", "--fixtures")
-    result.stdout.fnmatch_lines(["mission [[]session scope[]]*", "*Boots missions*"])
+    result.stdout.fnmatch_lines(["mission [[]session scope[]]*", "*Boot missions*"])
 
 
 def test_other_suites_import_nothing() -> None:
