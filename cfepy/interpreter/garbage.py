@@ -69,9 +69,10 @@ def freeze() -> None:
 def freeze_many() -> None:
     """Freeze all objects if there are so many that a collection takes long.
 
-    They stay frozen, because counting many objects at each run takes just as long.
+    They stay frozen, because counting many objects at each run takes just as long. Garbage that `collect_leftovers` has
+    not looked for yet must not be frozen, because no collection would find it.
     """
-    if CAN_FREEZE and len(gc.get_objects()) > MOST_OBJECTS:
+    if _runs % _every == 0 and CAN_FREEZE and len(gc.get_objects()) > MOST_OBJECTS:
         gc.freeze()
 
 

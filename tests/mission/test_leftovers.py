@@ -11,6 +11,7 @@ from collections.abc import Iterator
 import pytest
 
 from cfepy.extra.exploration.trial import Trial
+from cfepy.interpreter import garbage
 from cfepy.interpreter.garbage import collect_every
 from cfepy.mission import Mission, read_mission
 from cfepy.nodes import Universe
@@ -73,6 +74,21 @@ def test_garbage_is_looked_for_as_seldom_as_a_suite_wants() -> None:
         for _ in range(6):
             fly(0.1)
         assert gc.get_stats()[-1]["collections"] == looks + 2
+    finally:
+        collect_every(1)
+
+
+def test_missions_that_no_collection_has_looked_for_are_not_frozen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(garbage, "MOST_OBJECTS", 0)
+    monkeypatch.setattr(garbage, "_runs", 0)
+    collect_every(3)
+    gc.unfreeze()
+    before = parts()["Mission"]
+    try:
+        for _ in range(6):
+            fly(0.1)
+        gc.unfreeze()
+        assert parts()["Mission"] - before <= 1
     finally:
         collect_every(1)
 
