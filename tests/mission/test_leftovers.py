@@ -78,19 +78,21 @@ def test_garbage_is_looked_for_as_seldom_as_a_suite_wants() -> None:
         collect_every(1)
 
 
-def test_missions_that_no_collection_has_looked_for_are_not_frozen(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(garbage, "MOST_OBJECTS", 0)
+def test_garbage_that_no_collection_has_looked_for_is_not_frozen(monkeypatch: pytest.MonkeyPatch) -> None:
+    fly(0.1)
+    gc.collect()
+    of_one_run = len(gc.get_objects())
+    gc.freeze()
+    monkeypatch.setattr(garbage, "MOST_OBJECTS", 3 * of_one_run + 1000)
     monkeypatch.setattr(garbage, "_runs", 0)
-    collect_every(3)
-    gc.unfreeze()
-    before = parts()["Mission"]
+    before = gc.get_freeze_count()
+    collect_every(8)
     try:
-        for _ in range(6):
+        for _ in range(8):
             fly(0.1)
-        gc.unfreeze()
-        assert parts()["Mission"] - before <= 1
     finally:
         collect_every(1)
+    assert gc.get_freeze_count() <= before
 
 
 @pytest.mark.slow
