@@ -24,8 +24,8 @@ PORTFOLIO_DEPTHS = (2, 3, 1)
 """Depths of PCT in the policy `all`: most races need two ordered events, some three, and starvation one."""
 PORTFOLIO_HOLD_NS = 1_000_000
 """Delay in the policy `all`, for one schedule in six (with points: for two), unless the board's tick is longer.
-A race with a timer, or with a more urgent task that waits for one, shows only when code takes time. A longer delay would
-break a mission's justified assumptions about its own sleeps; less than a tick would reach no timer."""
+A race with a timer, or with a more urgent task that waits for one, shows only when code takes time. A longer delay
+would break a mission's justified assumptions about its own sleeps; less than a tick would reach no timer."""
 
 
 class SeededSearch:

@@ -269,7 +269,7 @@ class StepLog:
         log.append((task, task.passed, touched, *self._ready.pop(task, (0, TIMER)), is_shut))
         return log[-1]
 
-    # -- kernel methods -----------------------------------------------------------------------------------------------
+    # -- kernel methods ------------------------------------------------------------------------------------------------
 
     def _passing(self, original: Callable[..., Any]) -> Callable[..., Any]:
         def passing(kernel: ExploringKernel, *args: Any) -> Any:
