@@ -1,12 +1,15 @@
 """Compiled applications: unmodified C, built against NASA's headers, as lines of a startup script.
 
-What belongs here: the engine, a C extension that runs such code as coroutines (`engine/`), what loads a shared object
-without the host's loader (`elf.py`, `image.py`), the memory that C code sees (`arena.py`), and in `api/` what the
-public functions of OSAL, the PSP and cFE mean for C: arguments, outputs, structures; and what builds applications from
-their sources (`toolchain/`, with `headers/`). What does not: the services.
+Code that runs or builds compiled applications belongs here:
 
-It is imported only when a mission has an ELF file where a startup script names one, or when an application is built.
-The central file is `cfepy/extra/c/runtime.py`.
+- the engine, a C extension that runs such code as coroutines (`engine/`);
+- the loader for shared objects, which does not use the host's (`elf.py`, `image.py`);
+- the memory that C code sees (`arena.py`);
+- the public functions of OSAL, the PSP and cFE for C, with their arguments, outputs and structures (`api/`);
+- the build of applications from their sources (`toolchain/`, with `headers/`).
+
+The services do not belong here. The package is imported only when a mission has an ELF file where a startup script
+names one, or when an application is built. The central file is `cfepy/extra/c/runtime.py`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Which of cFE's two ABIs an object was compiled for, as far as its debug data tells.
+"""Determines for which of cFE's two ABIs an object was compiled, as far as its debug data shows it.
 
-A build with OMIT_DEPRECATED has a CFE_TBL_Handle_t of 32 bits, others one of 16. Nothing in the code itself names that,
-so an object of the one runs with the other, and calls with handles that are no handles.
+A build with OMIT_DEPRECATED has a CFE_TBL_Handle_t of 32 bits, other builds one of 16. Nothing in the code itself shows
+this, so an object of one build runs with the other, and passes invalid handles.
 """
 
 from __future__ import annotations
@@ -27,22 +27,22 @@ _WITH_HANDLES = frozenset(
 
 
 class AbiProfile(Enum):
-    """What an object was compiled for."""
+    """The ABI that an object was compiled for."""
 
     EITHER = "either"
-    """It calls no function of tables, with which alone it matters."""
+    """It calls no table function; the ABIs differ only for these."""
     UNKNOWN = "unknown"
-    """It has no debug data that tells."""
+    """It has no debug data for table handles."""
     DEPRECATED = "with OMIT_DEPRECATED=false, where handles of tables are int16"
     OMIT_DEPRECATED = "with OMIT_DEPRECATED=true, where handles of tables are ids of 32 bits"
 
     def contradicts(self, omit_deprecated: bool) -> bool:
-        """Whether this is certainly another one than the mission says."""
+        """Return True if this certainly differs from the mission's setting."""
         return self is (AbiProfile.DEPRECATED if omit_deprecated else AbiProfile.OMIT_DEPRECATED)
 
 
 def abi_profile(source: SharedObject) -> AbiProfile:
-    """Which ABI an object was compiled for.
+    """Return the ABI that an object was compiled for.
 
     Args:
         source: the object.
@@ -57,16 +57,16 @@ def abi_profile(source: SharedObject) -> AbiProfile:
 
 @lru_cache(64)  # a mission may boot many times in a process
 def _size_of_handle(data: bytes) -> int:
-    """Bytes of a CFE_TBL_Handle_t; 0 if that is not known."""
+    """Return the bytes of a CFE_TBL_Handle_t; 0 if that is not known."""
     elf = elf_file(BytesIO(data))
     try:
         return next(_sizes(elf), 0)
-    except Exception:  # debug data may be damaged: pyelftools raises its own errors, and those of what it finds
+    except Exception:  # debug data may be damaged: pyelftools raises errors of many types
         return 0
 
 
 def _sizes(elf: Any) -> Iterator[int]:
-    """What each unit that has a CFE_TBL_Handle_t tells of its size."""
+    """Yield the size of CFE_TBL_Handle_t from each unit that has it."""
     for unit in elf.get_dwarf_info().iter_CUs() if elf.has_dwarf_info() else ():
         for entry in unit.get_top_DIE().iter_children():
             name = entry.attributes.get("DW_AT_name")
@@ -75,7 +75,7 @@ def _sizes(elf: Any) -> Iterator[int]:
 
 
 def _size_of(entry: Any) -> int:
-    """Bytes of a type, which a typedef has of another one."""
+    """Return the bytes of a type; for a typedef, of the type behind it."""
     while "DW_AT_byte_size" not in entry.attributes:
         if "DW_AT_type" not in entry.attributes:
             return 0

@@ -1,8 +1,8 @@
-"""The memory of C code: stretches at addresses that are the same in each run.
+"""The memory of C code: blocks at addresses that are the same in each run.
 
-A processor has a region of its own, of 8 GiB of address space, the lowest that no other living processor of this
-process has. In it memory is given out by whole pages, lowest first, with a gap of a page that nobody may touch behind
-each piece. What only the guard needs comes from its end, so that all else has the same addresses with and without it.
+A processor has its own region of 8 GiB of address space: the lowest one that no other living processor of this process
+has. The arena hands out whole pages of it, lowest first, with an inaccessible page after each block. Memory that only
+the guard needs comes from the end of the region, so all other memory has the same addresses with and without the guard.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ _FIRST = PAGE
 
 
 def pages(size: int) -> int:
-    """Bytes of whole pages, at least one."""
+    """Return the bytes of whole pages for a size, at least one page."""
     return max(-(-size // PAGE), 1) * PAGE
 
 
 _left: dict[int, int] = {}
-"""Address and bytes of what processors of before left in place.
+"""Address and bytes of memory that earlier processors left in place.
 
-It is the process's and no processor's: Python may still look at such memory through views that outlive the processor,
-so it stays until another one's region needs the place; in a region's second half, until another one has the region.
-If views owned it, where a processor's memory is would depend on when garbage is collected, and addresses are to be the
-same in each run.
+It belongs to the process and to no processor. Python may still read such memory through views that outlive the
+processor, so it stays until another region needs the place. In a region's second half, it stays until another processor
+has the region. If views owned the memory, addresses would depend on the time of garbage collection, and addresses must
+be the same in each run.
 """
 
 
@@ -51,7 +51,7 @@ class Arena:
         self._shared: set[int] = set()
 
     def _take_region(self) -> int:
-        """Whoever maps the first page of a region has it."""
+        """Take a region by mapping its first page, and return its address."""
         low, high = self._engine.ARENA_LOW, self._engine.ARENA_HIGH
         for base in range(low, high, REGION):
             try:
@@ -65,13 +65,16 @@ class Arena:
         )
 
     def map(self, size: int, shares: bool = False, is_last: bool = False) -> int:
-        """New memory of zeros, readable and writable; its address.
+        """Map new memory of zeros, readable and writable.
 
         Args:
             size: bytes; rounded up to pages.
-            shares: objects of Python have it as well, and may do so longer than the processor lives: it stays where it
-                is until another processor has this region.
+            shares: Python objects use it as well, perhaps after the processor has ended; it stays until another
+                processor has this region.
             is_last: from the end of the region.
+
+        Returns:
+            Its address.
         """
         room = pages(size)
         address = None if is_last else self._reuse(room)
@@ -91,7 +94,7 @@ class Arena:
         return address
 
     def _drop_left(self, start: int, end: int) -> None:
-        """Unmap what others left in place in a stretch."""
+        """Unmap memory of earlier processors in an address range."""
         for left in [each for each, size in _left.items() if each < end and start < each + size]:
             self._engine.unmap(left, _left.pop(left))
 
@@ -103,13 +106,13 @@ class Arena:
         return None
 
     def unmap(self, address: int) -> None:
-        """Give memory back that `map` gave."""
+        """Free memory from `map`."""
         room = self._sizes.pop(address)
         self._engine.unmap(address, room)
         insort(self._free, (address, room))
 
     def close(self) -> None:
-        """Give everything back, and the region with it."""
+        """Free all memory, and the region with it."""
         for address, room in self._sizes.items():
             if address in self._shared:
                 _left[address] = room

@@ -1,8 +1,8 @@
-"""The folder that keeps what cfepy builds from one run to the next: the engine, C headers, ROS nodes in C++.
+"""The folder that keeps cfepy's built files from one run to the next: the engine, C headers, ROS nodes in C++.
 
-`CFEPY_CACHE` names it. Without that it is `cfepy` in the user's cache folder, or, where that cannot be written (a
-container's user often has no home), a folder of the user's below the one for temporary files. What is loaded from it is
-machine code, so a fallback folder that another user could write is refused.
+`CFEPY_CACHE` names it. Without that it is `cfepy` in the user's cache folder. If that cannot be written (a container's
+user often has no home), it is a folder of the user's below the one for temporary files. cfepy loads machine code from
+this folder, so a fallback folder that another user could write is refused.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _ADVICE = f"set {VARIABLE} to a writable folder with free space"
 
 
 def cache_folder() -> Path:
-    """Make the cache folder if it is not there yet.
+    """Make the cache folder if it does not exist.
 
     Returns:
         Its path.
@@ -64,7 +64,7 @@ def writing_cache(folder: Path) -> Iterator[None]:
 
 
 def _fallback(reason: str) -> Path:
-    """Make the folder below the one for temporary files, and say so on standard error when it is new."""
+    """Make the folder below the one for temporary files, and report it on standard error when it is new."""
     owner = os.getuid() if hasattr(os, "getuid") else 0
     folder = Path(tempfile.gettempdir()) / f"cfepy-cache-{owner}"
     try:
@@ -81,10 +81,10 @@ def _fallback(reason: str) -> Path:
 
 
 def _check_owned(folder: Path, owner: int) -> None:
-    """Check that an existing fallback folder can be written by its owner alone, who is this user.
+    """Check that an existing fallback folder can be written only by its owner, who is this user.
 
     Raises:
-        UsageError: it is something else, such as a link of another user's.
+        UsageError: it is not, for example because it is a link of another user's.
     """
     found = folder.lstat()
     theirs = hasattr(os, "getuid") and (found.st_uid != owner or found.st_mode & 0o022)

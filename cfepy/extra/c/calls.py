@@ -1,4 +1,4 @@
-"""The functions that C code can call: what the API declares, and the stubs in the arena through which it is called."""
+"""The functions that C code can call: the declarations of the API, and the stubs in the arena for its calls."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.engine import engine
 
 STUB = 32
-"""Bytes that are kept for one."""
+"""Bytes of a stub."""
 DESCRIPTOR = "(thread-local)"
-"""The function in descriptors of thread-local variables on aarch64, which is called as no other."""
+"""The function in descriptors of thread-local variables on aarch64, with a special calling convention."""
 _STUB_PAGES = 16 * PAGE
 
 
 class Declared(NamedTuple):
-    """A function of the API: who answers, how its arguments are handed over, and what a NULL pointer is answered with.
+    """A function of the API: its Python function, its signature, and its status for a NULL pointer.
 
-    `signature` has a letter for each parameter; the head of `engine/calls.c` tells them. `on_null` is called before a
-    NULL is answered, with the first three arguments as they are, such as for an event.
+    `signature` has a letter for each parameter; the head of `engine/calls.c` lists them. `on_null` is called before a
+    NULL is answered, with the first three arguments as they are, for example for an event.
     """
 
     function: Callable[..., object] | None
@@ -33,7 +33,7 @@ class Declarations:
     """The functions of the API, by name.
 
     Attributes:
-        functions: what was declared.
+        functions: the declared functions.
         data: variables of libc, by name: their first value.
     """
 
@@ -49,7 +49,7 @@ class Declarations:
         null_status: int = 0,
         on_null: Callable[[int, int, int], object] | None = None,
     ) -> None:
-        """Declare a function; one that the engine has as well is asked only when the engine wants that."""
+        """Declare a function. If the engine has it as well, Python is called only when the engine requests it."""
         self.functions[name] = Declared(function, signature, null_status, on_null)
 
     def __contains__(self, name: str) -> bool:
@@ -57,10 +57,10 @@ class Declarations:
 
 
 class CallTable:
-    """The functions that were asked for so far, each behind a stub of its own.
+    """The functions that were requested so far, each behind its own stub.
 
     Args:
-        arena: where stubs are.
+        arena: memory for the stubs.
         table: the engine's table.
         declared: the API.
     """
@@ -75,14 +75,14 @@ class CallTable:
         engine().make_end(table.end)
 
     def address(self, name: str) -> int:
-        """Where a function is called; one that nobody has is a fault of whoever calls it."""
+        """Return the address for calls of a function. A call of an undefined function is a fault of the caller."""
         stub = self._stubs.get(name)
         if stub is None:
             stub = self._stubs[name] = self._make(name)
         return stub
 
     def name_at(self, address: int) -> str | None:
-        """The function whose stub is at an address."""
+        """Return the function whose stub is at an address."""
         return next((name for name, at in self._stubs.items() if at <= address < at + STUB), None)
 
     def _make(self, name: str) -> int:
@@ -108,7 +108,7 @@ _INSTEAD = {
     "fork": "a flight computer has no processes; a task is made by OS_TaskCreate",
     "system": "a flight computer has no shell; see OS_ShellOutputToFile",
 }
-"""What flight software has in place of functions of a workstation."""
+"""Flight software's replacements for functions of a workstation."""
 
 
 def _absent(name: str) -> Callable[[], object]:

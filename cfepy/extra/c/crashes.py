@@ -1,4 +1,4 @@
-"""What goes wrong in C code, as exceptions."""
+"""Failures of C code, as exceptions."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from cfepy.interpreter.host_system import signal_number
 
 
 class CFault(Exception):
-    """A processor exception in C code, or a bad address that it handed over: its text tells what and where.
+    """A processor exception in C code, or a bad address that it passed. Its text names the fault and the place.
 
     Attributes:
         called_from: the address to which the last call of that code returns; 0 for none.
-        at: the address of the code whose fault it is; 0 when that is not known.
-        is_anywhere: the code was stopped from outside, elsewhere in each run: its stack is no part of what is recorded.
+        at: the address of the code at fault; 0 when that is not known.
+        is_anywhere: the code was stopped from outside, at a place that differs in each run, so its stack is not
+            recorded.
         registers: of the code that it came from last, and whether that is in a call; see
             `cfepy.extra.c.unwinding.Unwinder`.
     """
@@ -39,14 +40,14 @@ _BAD_ADDRESS = re.compile("bad address (0x[0-9a-f]+)")
 
 
 def explained(fault: CFault, place_of: Callable[[int], str], about: Callable[[int], str]) -> CFault:
-    """A fault of the engine's, in words, with the address of the code whose fault it is.
+    """Return a fault of the engine's in words, with the address of the code at fault.
 
     Args:
-        fault: as the engine raised it: signal, address of the instruction, of the caller if the instruction is none
-            of an application's, address that was used, bytes from the stack's lowest to its pointer. Or a text: the
-            last call of the code is at fault then.
-        place_of: where an address of code is: `CASE_Main (case.c:12)`.
-        about: what is at an address of data; empty when that is not known.
+        fault: as the engine raised it: signal, address of the instruction, of the caller if the instruction is not in
+            an application, address that was used, bytes from the stack's lowest to its pointer. Or a text: then the
+            last call of the code is at fault.
+        place_of: the place of an address of code: `CASE_Main (case.c:12)`.
+        about: description of an address of data; empty when that is not known.
     """
     if len(fault.args) != 5:
         return _of_call(fault, place_of, about)
@@ -72,7 +73,7 @@ def explained(fault: CFault, place_of: Callable[[int], str], about: Callable[[in
 
 
 def _of_call(fault: CFault, place_of: Callable[[int], str], about: Callable[[int], str]) -> CFault:
-    """A fault in what a call was given; one that has its place already stays as it is."""
+    """Return a fault of a call's arguments with its place. A fault that has its place already is returned as it is."""
     if fault.at or not fault.called_from:
         return fault
     bad = _BAD_ADDRESS.match(str(fault))

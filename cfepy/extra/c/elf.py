@@ -1,4 +1,4 @@
-"""Shared objects (ELF files): what one needs and has, read with pyelftools (the extra `cfepy[c]`)."""
+"""Shared objects (ELF files): their needs and contents, read with pyelftools (the extra `cfepy[c]`)."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ RELATIVE = {"x86_64": 8, "aarch64": 1027}
 
 
 def is_elf(file: Path) -> bool:
-    """Whether there is a file, and it is an ELF file."""
+    """Return True if the file exists and is an ELF file."""
     return beginning_of(file, len(MAGIC)) == MAGIC
 
 
 class ElfError(Exception):
-    """A file that is no shared object for this computer."""
+    """A file is not a shared object for this computer."""
 
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A stretch of the file that is loaded: `rights` are 4 read, 2 write, 1 execute."""
+    """A part of the file that is loaded: `rights` are 4 read, 2 write, 1 execute."""
 
     offset: int
     address: int
@@ -62,7 +62,7 @@ class Symbol:
 
 @dataclass(frozen=True, slots=True)
 class Relocation:
-    """A word to be filled in: `symbol` is a number in the list of symbols."""
+    """A word to fill in: `symbol` is a number in the list of symbols."""
 
     address: int
     kind: int
@@ -72,19 +72,19 @@ class Relocation:
 
 @dataclass(slots=True)
 class SharedObject:
-    """A shared object as its file has it.
+    """The contents of a shared object's file.
 
     Attributes:
         name: of its file, for errors.
         data: its bytes.
-        segments: what is loaded.
+        segments: the parts that are loaded.
         symbols: those that the loader needs, by number.
-        relocations: words to be filled in.
+        relocations: words to fill in.
         needed: libraries that it was linked with.
-        functions_at_load: address of the array of functions to be called when it was loaded, and how many.
-        function_at_load: address of one to be called before them, or 0.
+        functions_at_load: address of the array of functions to call after loading, and their number.
+        function_at_load: address of a function to call before them, or 0.
         functions_at_end, function_at_end: the same for its end.
-        headers: where its program headers are, and how many.
+        headers: address of its program headers, and their number.
         unwinding: address of the table by which exceptions of C++ find frames (PT_GNU_EH_FRAME), or 0.
         thread_local: (address, bytes in the file, bytes in memory, alignment) of its thread-local variables.
     """
@@ -105,11 +105,11 @@ class SharedObject:
     thread_local: tuple[int, int, int, int] | None = None
 
     def wanted(self) -> list[str]:
-        """Names that it needs of others."""
+        """Return the names that it needs from other objects."""
         return [each.name for each in self.symbols if each.name and not each.is_defined and not each.is_weak]
 
     def initial(self, address: int, size: int) -> bytes:
-        """Bytes of the file that belong to an address."""
+        """Return the bytes of the file that belong to an address."""
         for each in self.segments:
             if each.address <= address < each.address + each.memory_size:
                 at = each.offset + address - each.address
@@ -118,7 +118,7 @@ class SharedObject:
 
     @property
     def has_coverage(self) -> bool:
-        """Whether libgcov is linked into it, which counts the lines that run."""
+        """Whether libgcov is linked into it, which counts executed lines."""
         return _MARK_OF_GCOV in self.data
 
     @property
@@ -128,7 +128,7 @@ class SharedObject:
 
 
 def elf_file(stream: BytesIO) -> Any:
-    """An ELF file as pyelftools reads it.
+    """Return an ELF file as pyelftools reads it.
 
     Raises:
         UsageError: pyelftools is not installed.
@@ -148,14 +148,14 @@ def read_shared_object(data: bytes, name: str) -> SharedObject:
         name: of the file, for errors.
 
     Raises:
-        ElfError: it is none, or for another computer.
+        ElfError: it is not a shared object, or is for another computer.
         UsageError: pyelftools is not installed.
     """
     try:
         return _read(elf_file(BytesIO(data)), data, name)
     except (ElfError, UsageError):
         raise
-    except Exception as error:  # pyelftools raises its own errors, and those of what it finds: KeyError, UnicodeError
+    except Exception as error:  # pyelftools raises many types, such as KeyError and UnicodeError
         raise ElfError(f"{name}: damaged ELF file: {error}") from error
 
 
@@ -187,7 +187,7 @@ def _read(elf: Any, data: bytes, name: str) -> SharedObject:
 
 
 def _check_bounds(made: SharedObject) -> None:
-    """Refuse a file whose parts do not lie in it, or in its memory: the loader takes them as they are."""
+    """Refuse a file with parts outside of it or of its memory, because the loader does not check them."""
     size, in_file = made.size, len(made.data)
     if size > LARGEST:
         raise ElfError(f"{made.name} requires {size:,} bytes of memory; at most {LARGEST:,} can be loaded")
@@ -228,9 +228,9 @@ def _read_dynamic(made: SharedObject, dynamic: Any) -> None:
 
 
 def _packed(made: SharedObject, raw: bytes) -> Iterator[Relocation]:
-    """Relative relocations that are packed (DT_RELR); the words that they fill in have their addends.
+    """Yield packed relative relocations (DT_RELR). The words to fill in contain their addends.
 
-    An even number is the address of a word; an odd one says with its bits which of the 63 words behind are the next.
+    An even number is the address of a word. The bits of an odd number select words among the next 63.
     """
 
     def at(address: int) -> Relocation:
@@ -248,7 +248,7 @@ def _packed(made: SharedObject, raw: bytes) -> Iterator[Relocation]:
 
 
 def symbols_in(raw: bytes, names: bytes) -> Iterator[Symbol]:
-    """The symbols of a table; by hand, since there may be thousands.
+    """Yield the symbols of a table. It does not use pyelftools, because there may be thousands.
 
     Args:
         raw: the table.

@@ -1,7 +1,7 @@
-"""The engine: the C extension `cfepy.extra.c._engine`, found, or built when it is used for the first time.
+"""The engine: finds the C extension `cfepy.extra.c._engine`, or builds it when it is used for the first time.
 
 A wheel may have it beside this file. Otherwise it is compiled into the user's cache folder, once for each version of
-its sources and of Python; that needs a C compiler and Python's headers.
+its sources and of Python. That needs a C compiler and Python's headers.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ FLAGS = ("-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-fno-strict-aliasing
 
 @cache
 def engine() -> ModuleType:
-    """The engine, built before if need be.
+    """Return the engine, and build it first if necessary.
 
     Raises:
-        UsageError: this computer cannot have it; says what is missing.
+        UsageError: this computer cannot have it; the text names the missing part.
     """
     if sys.platform != "linux" or platform.machine() not in MACHINES:
         here = f"{sys.platform} on {platform.machine()}"
@@ -50,7 +50,7 @@ def engine() -> ModuleType:
 
 
 def built(folder: Path | None = None) -> Path:
-    """The file of the extension in the cache, or in another folder, compiled if it is not there yet.
+    """Return the file of the extension in the cache, or in another folder, and compile it if it does not exist.
 
     Raises:
         UsageError: there is no compiler, or it failed.
@@ -70,12 +70,12 @@ def built(folder: Path | None = None) -> Path:
 
 
 def compiler() -> list[str]:
-    """The command of the C compiler: CC in the environment, or that which Python was built with."""
+    """Return the command of the C compiler: CC in the environment, or the one that Python was built with."""
     return (os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc").split()
 
 
 def _compile(sources: list[Path], target: Path) -> None:
-    """Compile to a file beside the target first: two processes may do it at the same time."""
+    """Compile to a temporary file beside the target first, because two processes may do it at the same time."""
     command = compiler()
     include = f"-I{sysconfig.get_paths()['include']}"
     with tempfile.TemporaryDirectory(dir=target.parent) as folder:

@@ -1,9 +1,9 @@
-"""The guard: blocks of memory that end where a page does that nobody may touch, and what is found of them.
+"""The guard: memory blocks that end at an inaccessible page, and reports of writes outside of them.
 
-malloc and the messages have heaps of their own, which the engine fills. The third one is for what other functions give
-to C code: blocks of memory pools, images of tables, areas of the PSP. An access behind a block is a fault. Where the
-alignment of a block leaves a gap before that page, and in the page before the block, there are bytes that are looked at
-when the block is given back, and at the end of its application and of the processor.
+malloc and the messages have their own heaps, which the engine fills. The third heap has blocks from other functions:
+blocks of memory pools, images of tables, areas of the PSP. An access behind a block is a fault. The gap that alignment
+leaves before that page, and the page before the block, contain check bytes. cfepy checks them when the block is given
+back, and at the end of its application and of the processor.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from cfepy.extra.c.engine import engine
 from cfepy.extra.c.memory import CMemory
 
 POISON = b"\xa5"
-"""What is in memory that was never written, where that is to be found out."""
+"""Fills memory that was never written, so that a read of it shows."""
 ROOM = 2 << 30
-"""Bytes of address space for blocks, which are not used twice."""
+"""Bytes of address space for blocks; addresses are not used twice."""
 ALIGNMENT = 16
-"""The strictest of a type in C."""
+"""The strictest alignment of a type in C."""
 
 
 class BlockLabel(NamedTuple):
-    """What a block is for a person, and the application whose it is; empty for nobody's."""
+    """The description of a block, and the application that owns it; empty for none."""
 
     what: str
     app: str = ""
@@ -35,9 +35,9 @@ class GuardedHeap(NamedTuple):
     """One of the engine's heaps.
 
     Attributes:
-        heap: it.
-        block_at: what the block at an address is, given the number of its owner.
-        fate: what became of one that is in use no more.
+        heap: the heap.
+        block_at: returns the label of the block at an address, given the number of its owner.
+        fate: the state of a block that is no longer in use.
     """
 
     heap: Any
@@ -49,12 +49,11 @@ class Guard:
     """The guard of one processor.
 
     Args:
-        arena: where blocks are.
+        arena: memory for blocks.
         malloc: the heap of malloc.
-        messages: that of messages.
-        name_of: the application that has an AppId; empty for none.
-        on_overwrite: gets the application and a text for each block of which it is found that it was written past when
-            no call can be told so.
+        messages: the heap of messages.
+        name_of: returns the application with an AppId; empty for none.
+        on_overwrite: gets the application and a text for each overwritten block that is found outside of a call.
     """
 
     def __init__(
@@ -77,12 +76,12 @@ class Guard:
     # -- blocks ------------------------------------------------------------------------------------------------------
 
     def take(self, size: int, what: str, app: str = "", alignment: int = ALIGNMENT) -> int:
-        """A block of zeros; its address.
+        """Return the address of a new block of zeros.
 
         Args:
             size: bytes.
-            what: it is, for a person.
-            app: whose it is; empty for nobody's.
+            what: description of the block for the user.
+            app: the application that owns it; empty for none.
             alignment: a power of 2.
 
         Raises:
@@ -95,23 +94,23 @@ class Guard:
         return address
 
     def give(self, address: int, is_kept: bool = False) -> None:
-        """Give a block back: who uses it then has a fault.
+        """Give a block back. Any later access to it is a fault.
 
         Args:
-            address: of the block; another one does nothing.
-            is_kept: it stays as it is, since Python may still look at it.
+            address: of the block; another address does nothing.
+            is_kept: it stays as it is, because Python may still read it.
         """
         self._own.give(address, is_kept)
 
     def check(self, address: int, call: str) -> None:
-        """Look at a block in a call of C code that gives it back.
+        """Check a block in a call of C code that gives it back.
 
         Args:
-            address: of the block; another one is not looked at.
-            call: what is done to it, such as a call of a function.
+            address: of the block; another address is not checked.
+            call: the operation on it, such as a call of a function.
 
         Raises:
-            CFault: it was written past; that is told once.
+            CFault: the code wrote past it; this is raised once.
         """
         found = self._own.damage(address)
         if found is not None:
@@ -119,27 +118,27 @@ class Guard:
             raise CFault(f"{call} of 0x{address:x}, {block} that was written {found}")
 
     def near(self, address: int) -> tuple[int, int] | None:
-        """The block in whose pages, or in the guard behind them, an address is: its own address and bytes; or None."""
+        """Return address and bytes of the block whose pages, or the guard behind them, contain an address; or None."""
         found = self._own.near(address)
         return None if found is None else found[:2]
 
-    # -- what is found -----------------------------------------------------------------------------------------------
+    # -- findings ------------------------------------------------------------------------------------------------------
 
     def tell(self) -> None:
-        """Tell of the blocks that were found to be written past when they were given back."""
+        """Report the blocks that were found to be overwritten when they were given back."""
         for heap, block_at, _ in self._heaps:
             for address, size, owner, found in heap.noted():
                 what, app = block_at(address, owner)
                 self._on_overwrite(app, f"{what} of {size} bytes at 0x{address:x} was written {found}")
 
     def check_all(self) -> None:
-        """Look at all blocks, and tell."""
+        """Check all blocks, and report."""
         for each in self._heaps:
             each.heap.check()
         self.tell()
 
     def about(self, address: int) -> str:
-        """Which block an address is in, or next to, for the text of a fault; empty for none."""
+        """Return the block that contains an address, or is next to it, for the text of a fault; empty for none."""
         for heap, block_at, fate in self._heaps:
             found = heap.near(address)
             if found is not None:
@@ -150,7 +149,7 @@ class Guard:
 
 
 class GuardedTables:
-    """Where images of tables are; see `cfepy.tbl.BufferPlaces`. They end where a page does, and stay when given back.
+    """Places for images of tables; see `cfepy.tbl.BufferPlaces`. They end at a page's end, and stay when given back.
 
     Args:
         guard: of the processor.
@@ -162,7 +161,7 @@ class GuardedTables:
         self._addresses: set[int] = set()
 
     def take(self, size: int, name: str) -> memoryview:
-        """Room for an image.
+        """Return memory for an image.
 
         Args:
             size: bytes.
@@ -175,21 +174,21 @@ class GuardedTables:
         return view
 
     def give(self, data: memoryview) -> None:
-        """An image's room is not needed any more; Python may still look at it."""
+        """Give an image's memory back. Python may still read it."""
         self._guard.give(self._memory.address_of(data), is_kept=True)
 
     def check(self, images: Iterable[memoryview], call: str) -> None:
-        """Look at images in a call of C code that gives their addresses back.
+        """Check images in a call of C code that gives their addresses back.
 
         Raises:
-            CFault: one was written past.
+            CFault: the code wrote past an image.
         """
         for image in images:
             if len(image):
                 self._guard.check(self._memory.address_of(image), call)
 
     def judge(self, image: memoryview, name: str, function: Callable[[int], int]) -> int:
-        """Call the validation function of a table with an image: with a copy of its size where it is part of a buffer.
+        """Call a table's validation function with an image, or with a copy if the image is only part of a buffer.
 
         Args:
             image: as large as the table.
@@ -215,5 +214,5 @@ class GuardedTables:
 
 
 def alignment_of(size: int) -> int:
-    """The strictest alignment with which a type of so many bytes can be: none leaves a gap behind it."""
+    """Return the strictest alignment that a type of this size can have, so that no gap follows the type."""
     return min(size & -size, ALIGNMENT) or ALIGNMENT

@@ -1,8 +1,8 @@
-"""A shared object in memory: loaded by cfepy itself, so that it is at an address that is the same in each run.
+"""A shared object in memory, loaded by cfepy itself, so that its address is the same in each run.
 
-The host's loader would put it elsewhere in each run, share its variables between missions of one process, and take
-names from any library of the host. Here each load is a fresh copy, sees exactly the symbols that it is given, and is
-gone when it is unmapped.
+The host's loader would use another address in each run, share its variables between missions of one process, and take
+names from any library of the host. Here each load is a fresh copy, sees exactly the symbols that it is given, and ends
+when it is unmapped.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ _64_BITS = (1 << 64) - 1
 
 
 def without_thread_pointer(code: bytes) -> bytes:
-    """Code of aarch64 that gets 0 where it asks for the thread pointer (mrs xN, tpidr_el0 becomes mov xN, 0).
+    """Return aarch64 code that gets 0 for the thread pointer (mrs xN, tpidr_el0 becomes mov xN, 0).
 
-    The register has an address of the host's thread, another in each run. Compilers keep it for the thread-local
-    variables of a whole function, so each function that is called leaves it on its stack. With 0, what a descriptor
-    answers is the address of the variable itself. The register cannot be another one meanwhile: handlers of signals,
-    such as Python's, use it.
+    The register has an address of the host's thread, which differs in each run. Compilers keep it for the thread-local
+    variables of a whole function, so each called function leaves it on its stack. With 0, a descriptor returns the
+    address of the variable itself. The register itself cannot be changed meanwhile, because signal handlers, such as
+    Python's, use it.
     """
     made = bytearray(code)
     for found in _THREAD_POINTER.finditer(code):
@@ -55,22 +55,22 @@ def without_thread_pointer(code: bytes) -> bytes:
 
 
 class Linker(Protocol):
-    """What an image sees of others."""
+    """The symbols of other objects that an image can use."""
 
     def resolve(self, name: str) -> int:
-        """The address of a symbol that it does not have itself."""
+        """Return the address of a symbol that the image does not have itself."""
 
     def resolve_weak(self, name: str) -> int:
-        """The same for one that need not be there; 0 if it is not."""
+        """Return the address of a symbol that may be missing; 0 if it is."""
 
     def resolve_thread_local(self, name: str) -> tuple[int, int]:
-        """Module and offset of a thread-local variable of another object."""
+        """Return module and offset of a thread-local variable of another object."""
 
     def thread_local_function(self) -> int:
-        """What a descriptor of a thread-local variable calls (aarch64)."""
+        """Return the function that a descriptor of a thread-local variable calls (aarch64)."""
 
     def module_of(self, image: Image) -> int:
-        """The number under which an image's thread-local variables are known."""
+        """Return the number of an image's thread-local variables."""
 
     def run(self, function: int, *args: int) -> int:
         """Call a function of the image, which is in its place by then."""
@@ -81,17 +81,17 @@ class Image:
 
     Args:
         source: its file.
-        arena: where it is put.
-        linker: what it sees of others.
+        arena: memory for it.
+        linker: gives symbols of other objects.
 
     Attributes:
         base: its lowest address.
         size: its bytes.
-        symbols: addresses of what it exports.
-        thread_locals: offsets of thread-local variables that it exports.
+        symbols: addresses of its exports.
+        thread_locals: offsets of its exported thread-local variables.
 
     Raises:
-        ElfError: it needs something of the loader that this one does not have.
+        ElfError: it needs a loader feature that this one does not have.
     """
 
     def __init__(self, source: SharedObject, arena: Arena, linker: Linker) -> None:
@@ -132,7 +132,7 @@ class Image:
             self._choose(chosen)
 
     def _relocate(self, memory: memoryview) -> list[tuple[int, int]]:
-        """Fill in the words; of those whose value a function of the image itself tells, where they are, and that."""
+        """Fill in the words. Returns the addresses of indirect words, each with the function that gives its value."""
         kinds, base = _KINDS[self.source.machine], self.base
         known: dict[int, int] = {}
         chosen = []
@@ -180,7 +180,7 @@ class Image:
             raise ElfError(f"{name}: relocation {word.kind} of {self.source.machine} is not supported")
 
     def _thread_local(self, word: Relocation) -> tuple[int, int]:
-        """Module and offset of a thread-local variable."""
+        """Return module and offset of a thread-local variable."""
         symbol = self.source.symbols[word.symbol]
         if word.symbol == 0 or symbol.is_defined:
             return self._linker.module_of(self), (symbol.address if word.symbol else 0) + word.addend
@@ -188,20 +188,20 @@ class Image:
         return module, offset + word.addend
 
     def _choose(self, chosen: list[tuple[int, int]]) -> None:
-        """Indirect functions (STT_GNU_IFUNC): the image says itself which of several it takes."""
+        """Resolve indirect functions (STT_GNU_IFUNC), for which the image chooses one of several implementations."""
         for address, function in chosen:
             self._engine.poke(self.base + address, _WORD.pack(self._linker.run(function)))
 
     @property
     def functions_at_load(self) -> list[int]:
-        """Addresses of functions that are called when it was loaded, such as constructors of C++."""
+        """Addresses of functions to call after loading, such as constructors of C++."""
         source = self.source
         first = [self.base + source.function_at_load] if source.function_at_load else []
         return first + self._array(*source.functions_at_load)
 
     @property
     def functions_at_end(self) -> list[int]:
-        """Addresses of functions that are called before it is unloaded, such as destructors of C++."""
+        """Addresses of functions to call before it is unloaded, such as destructors of C++."""
         source = self.source
         last = [self.base + source.function_at_end] if source.function_at_end else []
         return self._array(*source.functions_at_end)[::-1] + last
@@ -219,15 +219,15 @@ class Image:
         return FrameInfo(self.source)
 
     def frame_row(self, address: int) -> FrameRow | None:
-        """How the frame at an address of code is found; None if that is not known."""
+        """Return the rules for the frame at an address of code; None if they are not known."""
         return self._frames.row(address - self.base)
 
     def place_at(self, address: int) -> CodePlace:
-        """Where in its source an address in this image is."""
+        """Return the place in its source of an address in this image."""
         return self._places.at(address - self.base)
 
     def variable_at(self, address: int) -> str:
-        """The variable that an address in this image belongs to; empty without symbols."""
+        """Return the variable that an address in this image belongs to; empty without symbols."""
         return self._places.variable_at(address - self.base)
 
     def __contains__(self, address: int) -> bool:
@@ -239,20 +239,20 @@ class Image:
 
 
 class LoadedModule(NamedTuple):
-    """What OS_ModuleLoad loaded: its id, and whether code that is loaded later sees its symbols."""
+    """A module from OS_ModuleLoad: its id, and whether code that is loaded later sees its symbols."""
 
     id: int
     is_global: bool
 
 
 class LoadedCode:
-    """A loaded object, with its symbols as attributes: their addresses.
+    """A loaded object, with the addresses of its symbols as attributes.
 
     Args:
         image: the object.
 
     Attributes:
-        image_: the same; called so because symbols are attributes, too.
+        image_: the object; the underscore avoids a clash with a symbol.
     """
 
     def __init__(self, image: Image) -> None:

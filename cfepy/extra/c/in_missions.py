@@ -1,4 +1,4 @@
-"""Compiled code in a mission: the C side of a processor, tied to its services, and what takes messages of its nodes."""
+"""Compiled code in a mission: the C side of a processor with its services, and a watch for messages of its nodes."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 
 def compiled_loader(processor: Processor, polling_ns: int, start_ros: Callable[[], object]) -> CompiledLoader:
-    """Make what loads compiled code for a processor.
+    """Make the loader of compiled code for a processor.
 
     Args:
-        processor: whose services the code calls.
-        polling_ns: time that a call takes which only looks.
+        processor: its services are called by the code.
+        polling_ns: time that a polling call takes.
         start_ros: called before a node runs.
     """
     machine, cfe = processor.machine, processor.cfe

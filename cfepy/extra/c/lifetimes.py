@@ -1,4 +1,4 @@
-"""What begins and ends with tasks and with loaded objects: thread-local variables, and what is called at an end."""
+"""Objects that begin and end with tasks and with loaded objects: thread-local variables, and calls at an end."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ _LEAST = 16
 
 
 class ThreadLocals:
-    """The thread-local variables of a processor: a block for each task and object that has any, made when first used.
+    """The thread-local variables of a processor: a block for each task and object, made when first used.
 
     Args:
-        kernel: tells the current task.
-        heap: the engine's heap, where blocks are.
+        kernel: knows the current task.
+        heap: the engine's heap, for the blocks.
         run: calls a function of C.
     """
 
@@ -36,7 +36,7 @@ class ThreadLocals:
         self._running: set[Task] = set()
 
     def module_of(self, image: Image) -> int:
-        """The number of an image, which the code hands to `address`."""
+        """Return the number of an image, which the code passes to `address`."""
         number = self._numbers.get(image)
         if number is None:
             number = self._numbers[image] = self._next
@@ -45,13 +45,13 @@ class ThreadLocals:
         return number
 
     def forget(self, image: Image) -> None:
-        """An image is unloaded."""
+        """Forget an unloaded image."""
         number = self._numbers.pop(image, None)
         if number is not None:
             del self._images[number]
 
     def address(self, module: int, offset: int) -> int:
-        """Where a variable is for the current task (__tls_get_addr)."""
+        """Return the address of a variable for the current task (__tls_get_addr)."""
         blocks = self._blocks.setdefault(self._kernel.current, {})
         block = blocks.get(module)
         if block is None:
@@ -59,7 +59,7 @@ class ThreadLocals:
         return block[1] + offset
 
     def errno(self) -> int:
-        """Where errno is for the current task."""
+        """Return the address of errno for the current task."""
         return self.address(_ERRNO, 0)
 
     def _make(self, module: int) -> tuple[int, int]:
@@ -69,7 +69,7 @@ class ThreadLocals:
             assert image.source.thread_local is not None
             start, in_file, size, alignment = image.source.thread_local
             first = image.source.initial(start, in_file)
-        self._heap.owner = 0  # it goes with its task, not with whoever uses it first
+        self._heap.owner = 0  # it belongs to its task, not to its first user
         block = int(self._heap.take(size + alignment))
         if not block:
             raise MemoryError(f"not enough memory for {size} more bytes of thread-local variables")
@@ -80,7 +80,7 @@ class ThreadLocals:
     # -- lives of tasks ----------------------------------------------------------------------------------------------
 
     def begin(self) -> bool:
-        """The current task calls C; whether it is in none yet."""
+        """Record that the current task calls C. Returns True if it was not in a C call before."""
         task = self._kernel.current
         if task in self._running:
             return False
@@ -92,13 +92,13 @@ class ThreadLocals:
         self._at_end.setdefault(self._kernel.current, []).append((function, argument))
 
     def finish(self) -> None:
-        """The current task has returned from its entry point: destroy its variables."""
+        """Destroy the variables of the current task, which has returned from its entry point."""
         waiting = self._at_end.get(self._kernel.current)
         while waiting:
             self._run(*waiting.pop())
 
     def leave(self, task: Task) -> None:
-        """A task calls C no longer: give its blocks back."""
+        """Give back the blocks of a task that no longer calls C."""
         self._running.discard(task)
         self._at_end.pop(task, None)
         for block, _ in self._blocks.pop(task, {}).values():
@@ -106,11 +106,11 @@ class ThreadLocals:
 
 
 class Ends:
-    """The functions that wait for the end of their image.
+    """The functions to call at the end of their image.
 
     Args:
         run: calls a function of C.
-        image_at: the image that an address is in.
+        image_at: returns the image that contains an address.
     """
 
     def __init__(self, run: Callable[..., int], image_at: Callable[[int], Image | None]) -> None:
@@ -119,7 +119,7 @@ class Ends:
         self._waiting: list[tuple[int, int, Image | None]] = []
 
     def add(self, function: int, argument: int, handle: int) -> None:
-        """Call a function at the end of the image that has the address `handle`, or this function (__cxa_atexit)."""
+        """Call a function at the end of the image with the address `handle`, or of its own image (__cxa_atexit)."""
         self._waiting.append((function, argument, self._image_at(handle) or self._image_at(function)))
 
     def finalize(self, handle: int) -> None:
@@ -129,17 +129,17 @@ class Ends:
             self._run(function, argument)
 
     def finish(self, image: Image) -> None:
-        """Call all that an image wants at its end."""
+        """Call all end functions of an image."""
         for function in image.functions_at_end:
             self._run(function)
         self.finalize(image.base)
 
     def forget(self, image: Image) -> None:
-        """An image is unloaded."""
+        """Forget an unloaded image."""
         self._waiting = [each for each in self._waiting if each[2] is not image]
 
     def _taken(self, image: Image | None) -> Iterator[tuple[int, int]]:
-        """Those of an image; one that is called may add more."""
+        """Take and yield the functions of an image. A called function may add more."""
         while True:
             mine = [each for each in self._waiting if each[2] is image]
             if not mine:

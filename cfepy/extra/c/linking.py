@@ -1,8 +1,8 @@
-"""What a loaded object is linked with: the API, libraries of the mission, and libraries of the host.
+"""The links of a loaded object: the API, libraries of the mission, and libraries of the host.
 
-The libraries of the host are those that come with its C++ compiler. They are loaded as any other code is, so they have
-the memory, the files and the clock of the simulation, and exceptions find their way through them. Each application has
-copies of its own, as if they were linked into it: what they remember ends with it.
+The libraries of the host come with its C++ compiler. They are loaded as all other code, so they use the memory, the
+files and the clock of the simulation, and exceptions pass through them. Each application has its own copies, as if they
+were linked into it, so their state ends with it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from cfepy.reading.input_limits import OBJECT_BYTES
 LIBRARIES = ("libgcc_s.so.1", "libstdc++.so.6")
 """In the order in which they are loaded."""
 IN_IT = "__cxa_throw"
-"""What an object has that libstdc++ is linked into."""
+"""A symbol of objects with a statically linked libstdc++."""
 UNUSED = frozenset(
     (
         *("__strftime_l", "__wcscoll_l", "__wcsftime_l", "__wcsxfrm_l", "bind_textdomain_codeset"),
@@ -35,15 +35,15 @@ UNUSED = frozenset(
         *("wcrtomb", "wcsnrtombs", "write", "writev"),
     )
 )
-"""What libstdc++ needs of libc for files, other locales and wide characters: for these parts of it, it is not there."""
+"""libc functions of libstdc++ for files, other locales and wide characters, which cfepy does not provide."""
 GUARDS = ("__cxa_guard_acquire", "__cxa_guard_release", "__cxa_guard_abort")
-"""What libstdc++ has as well; the API's know how a task waits, and what orders tasks."""
+"""Functions that libstdc++ also has; the API's versions know waits of tasks and their order."""
 STATIC = "-static-libstdc++ -static-libgcc"
 FOLDERS = ("/lib", "/usr/lib", "/lib64", "/usr/lib64")
 
 
 def find_library(name: str) -> Path | None:
-    """The file of a library, as the host's loader would find it: LD_LIBRARY_PATH, then the usual folders."""
+    """Return the file of a library as the host's loader finds it: LD_LIBRARY_PATH, then the usual folders."""
     triplet = sysconfig.get_config_var("MULTIARCH") or ""
     given = [each for each in os.environ.get("LD_LIBRARY_PATH", "").split(":") if each]
     usual = [f"{folder}/{triplet}" for folder in FOLDERS[:2] if triplet]
@@ -52,10 +52,10 @@ def find_library(name: str) -> Path | None:
 
 @cache
 def host_library(name: str) -> SharedObject:
-    """A library of the host, read once.
+    """Return a library of the host, read once.
 
     Raises:
-        ElfError: it is not there, or for another computer.
+        ElfError: it does not exist, or is for another computer.
     """
     file = find_library(name)
     if file is None:
@@ -66,10 +66,10 @@ def host_library(name: str) -> SharedObject:
 
 
 def wanted_names(source: SharedObject) -> list[str]:
-    """Names that an object needs of others than libraries of the host.
+    """Return the names that an object needs and that libraries of the host do not define.
 
     Raises:
-        ElfError: one of those libraries is not there.
+        ElfError: one of those libraries does not exist.
     """
     names = source.wanted()
     if any(each.is_defined and each.name == IN_IT for each in source.symbols):
@@ -85,10 +85,10 @@ class Exports:
     """Names that all code can see.
 
     Args:
-        shared: what is loaded and seen by all.
+        shared: returns the loaded images that all code sees.
         calls: the functions of the API.
-        declared: what there is of the API.
-        map_memory: gives memory for so many bytes.
+        declared: the declarations of the API.
+        map_memory: returns memory of a size.
     """
 
     def __init__(
@@ -106,13 +106,13 @@ class Exports:
         self._variables: dict[str, int] = {}
 
     def declared_symbol(self, name: str) -> int | None:
-        """A function or variable of the API or of libc; None if it is none."""
+        """Return a function or variable of the API or of libc; None if there is none of this name."""
         if name in self.declared.data:
             return self._variable(name)
         return self.calls.address(name) if name in self.declared else None
 
     def symbol(self, name: str, more: tuple[Image, ...] = ()) -> int | None:
-        """The address of a name, in libraries first; None if nobody has it."""
+        """Return the address of a name, in libraries first; None if it is undefined."""
         if name in GUARDS:
             return self.declared_symbol(name)
         for image in (*self.shared(), *more):
@@ -133,10 +133,10 @@ class _Run(Protocol):
 
 
 class LinkedWith:
-    """What one object is linked with; see `cfepy.extra.c.image.Linker`.
+    """The links of one object; see `cfepy.extra.c.image.Linker`.
 
     Args:
-        exports: what all see.
+        exports: names that all code sees.
         thread_locals: of the processor.
         own: libraries of the host that belong to it.
         run: calls a function of C.
@@ -149,7 +149,7 @@ class LinkedWith:
         self.run = run
 
     def resolve(self, name: str) -> int:
-        """See `Linker`; a function that nobody has is a fault of whoever calls it."""
+        """Return the address; see `Linker`. A call of an undefined function is a fault of the caller."""
         found = self._exports.symbol(name, self._own)
         return self._exports.calls.address(name) if found is None else found
 
@@ -157,7 +157,7 @@ class LinkedWith:
         return self._exports.symbol(name, self._own) or 0
 
     def resolve_thread_local(self, name: str) -> tuple[int, int]:
-        """See `Linker`.
+        """Return module and offset; see `Linker`.
 
         Raises:
             ElfError: no library has the variable.

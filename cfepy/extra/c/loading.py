@@ -1,4 +1,4 @@
-"""Compiled code as ES and OSAL load it: applications, libraries and modules out of shared objects."""
+"""Compiled code for ES and OSAL: applications, libraries and modules from shared objects."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cfepy.writing.console import Console
 
 NO_SYMBOL = "NULL"
 NODE_MARK = "roscfe_node"
-"""The symbol that marks a ROS node: what the convertor wrote around it."""
+"""The symbol that marks a ROS node; the convertor's wrapper defines it."""
 
 
 class CompiledLoader:
@@ -23,7 +23,7 @@ class CompiledLoader:
 
     Args:
         runtime: the C side of the processor.
-        console: for what cannot be loaded, and for what nobody has.
+        console: for messages about load errors and undefined symbols.
         on_node: called before an application runs that is a ROS node.
     """
 
@@ -34,7 +34,7 @@ class CompiledLoader:
         self._read: dict[bytes, SharedObject] = {}
 
     def code(self, file: str, data: bytes) -> CompiledCode:
-        """The code in a shared object, not loaded yet.
+        """Return the code in a shared object, not loaded yet.
 
         Args:
             file: its virtual path.
@@ -43,7 +43,7 @@ class CompiledLoader:
         return CompiledCode(self, file, data)
 
     def read(self, file: str, data: bytes) -> SharedObject:
-        """A shared object; what is wrong with it goes to the console.
+        """Read a shared object. Errors also go to the console.
 
         Raises:
             OsalError: it cannot be loaded.
@@ -56,7 +56,7 @@ class CompiledLoader:
         return self._read[data]
 
     def load(self, file: str, data: bytes) -> Image:
-        """Load a shared object; errors as `read`."""
+        """Load a shared object. It raises the errors of `read`."""
         source = self.read(file, data)
         try:
             missing = self.runtime.missing(source)
@@ -74,7 +74,7 @@ class CompiledLoader:
             raise self._failed(CFault(f"{file}: {error}")) from error
 
     def symbol(self, image: Image, file: str, symbol: str) -> int:
-        """The address of an entry point.
+        """Return the address of an entry point.
 
         Raises:
             SymbolError: there is none of that name.
@@ -94,7 +94,7 @@ class CompiledCode:
     """Compiled code; see `cfepy.mission.loader.Code`.
 
     Args:
-        loader: what loads it.
+        loader: loads it.
         file: its virtual path.
         data: its bytes.
     """
@@ -114,7 +114,7 @@ class CompiledCode:
         return lambda: runtime.run_main(function)
 
     def library(self, symbol: str) -> tuple[object, Callable[[int], object]]:
-        """The init function gets the LibId."""
+        """Load a library. Its init function gets the LibId."""
         runtime = self._loader.runtime
         image = self._loader.load(self._file, self._data)
         function = 0 if symbol == NO_SYMBOL else self._loader.symbol(image, self._file, symbol)

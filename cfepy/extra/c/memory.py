@@ -1,4 +1,4 @@
-"""What Python code does with memory of C: reading and writing structures, texts and numbers at addresses."""
+"""Access to memory of C from Python: structures, texts and numbers at addresses."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _U16, _U32, _U64, _I64 = Struct("<H"), Struct("<I"), Struct("<Q"), Struct("<q")
 
 
 class CMemory:
-    """The memory of C code. A bad address is a `CFault` of whoever gave it.
+    """The memory of C code. A bad address is a `CFault` of the code that passed it.
 
     Attributes:
         peek: (address, size) -> bytes.
         poke: (address, bytes).
         text: (address) -> the text up to its NUL.
         view: (address, size) -> the bytes themselves, as a memoryview.
-        address_of: where the bytes of a buffer are.
+        address_of: (buffer) -> the address of its bytes.
     """
 
     __slots__ = ("address_of", "peek", "poke", "text", "view")
@@ -32,19 +32,19 @@ class CMemory:
         self.view, self.address_of = made.view, made.address_of
 
     def u8(self, address: int) -> int:
-        """The byte at an address."""
+        """Return the byte at an address."""
         return int(self.peek(address, 1)[0])
 
     def u32(self, address: int) -> int:
-        """The uint32 at an address."""
+        """Return the uint32 at an address."""
         return int(_U32.unpack(self.peek(address, 4))[0])
 
     def u64(self, address: int) -> int:
-        """The uint64, size_t or pointer at an address."""
+        """Return the uint64, size_t or pointer at an address."""
         return int(_U64.unpack(self.peek(address, 8))[0])
 
     def i64(self, address: int) -> int:
-        """The int64 at an address, such as an OS_time_t."""
+        """Return the int64 at an address, such as an OS_time_t."""
         return int(_I64.unpack(self.peek(address, 8))[0])
 
     def put_u16(self, address: int, value: int) -> None:
@@ -60,11 +60,11 @@ class CMemory:
         self.poke(address, _U64.pack(value & 0xFFFFFFFFFFFFFFFF))
 
     def unpack(self, layout: Struct, address: int) -> tuple[object, ...]:
-        """The fields of a structure."""
+        """Return the fields of a structure."""
         return layout.unpack(self.peek(address, layout.size))
 
     def put_text(self, address: int, text: str, size: int) -> bool:
-        """Write a text into an array of `size` characters, cut so that a NUL follows; whether it was whole.
+        """Write a text into an array of `size` characters, cut so that a NUL follows. Returns False if it was cut.
 
         The array is filled up with NULs.
         """
@@ -74,7 +74,7 @@ class CMemory:
 
 
 def chars(text: str, size: int) -> bytes:
-    """A text as an array of `size` characters, cut so that a NUL follows, filled up with NULs."""
+    """Return a text as an array of `size` characters, cut so that a NUL follows, filled up with NULs."""
     return to_bytes(text)[: size - 1].ljust(size, b"\0")
 
 
@@ -83,10 +83,10 @@ _ALIGNMENT = 16
 
 
 class Constants:
-    """Bytes in the arena that stay what they are; equal ones are there once.
+    """Constant bytes in the arena; equal ones are stored once.
 
     Args:
-        arena: where they are.
+        arena: memory for them.
     """
 
     def __init__(self, arena: Arena) -> None:
@@ -96,16 +96,16 @@ class Constants:
         self._next = self._end = 0
 
     def text(self, text: str) -> int:
-        """The address of a text, with its NUL."""
+        """Return the address of a text, with its NUL."""
         return self.data(to_bytes(text) + b"\0")
 
     def texts(self, texts: Iterable[str]) -> int:
-        """The address of an array of pointers to texts, with a NULL at its end, as argv is."""
+        """Return the address of an array of pointers to texts, with a NULL at its end, as argv is."""
         pointers = [self.text(text) for text in texts]
         return self.data(struct.pack(f"<{len(pointers) + 1}Q", *pointers, 0))
 
     def data(self, data: bytes) -> int:
-        """The address of some bytes."""
+        """Return the address of some bytes."""
         address = self._known.get(data)
         if address is None:
             address = self._known[data] = self._take(len(data))

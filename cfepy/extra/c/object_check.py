@@ -26,11 +26,11 @@ SHOWN = 8
 def check_compiled(
     script: Path, entries: Sequence[StartupEntry], entry: StartupEntry, file: Path
 ) -> Iterator[MissionProblem]:
-    """What is wrong with a compiled application or library.
+    """Yield the problems of a compiled application or library.
 
     Args:
         script: the startup script.
-        entries: what it starts.
+        entries: its entries.
         entry: the line that names the file.
         file: the shared object.
     """
@@ -69,7 +69,7 @@ def _check_needs(
 
 
 def _exported(folder: Path, entry: StartupEntry) -> set[str]:
-    """What a library has."""
+    """Return the names that a library defines."""
     file = find_compiled(entry.path, folder) if entry.kind == CFE_LIB else None
     if file is None:
         return set()
@@ -81,14 +81,14 @@ def _exported(folder: Path, entry: StartupEntry) -> set[str]:
 
 
 def check_profiles(script: Path, entries: list[StartupEntry], said: MissionSections) -> Iterator[MissionProblem]:
-    """Shared objects that were built for the other profile than the mission's, and those of which that is not known.
+    """Yield problems for shared objects with another profile than the mission's, or an unknown profile.
 
     An object of unknown profile gets no warning when the mission file names the profile.
 
     Args:
         script: the startup script.
-        entries: what it starts.
-        said: what the mission file says.
+        entries: its entries.
+        said: the sections of the mission file.
     """
     named = [find_compiled(each.path, script.parent) for each in entries if each.symbol != NODE_SYMBOL]
     files = [file for file in dict.fromkeys(named) if file is not None]
@@ -100,7 +100,7 @@ def check_profiles(script: Path, entries: list[StartupEntry], said: MissionSecti
         try:
             profile = abi_profile(read_shared_object(read_limited(file, OBJECT_BYTES), file.name))
         except ElfError:
-            continue  # told with the line that names the file
+            continue  # reported with the line that names the file
         if profile.contradicts(omits):
             text = f"was built {profile.value}, but the mission requires the opposite; build it with the option"
             text += f" OMIT_DEPRECATED={_word(omits)}, or add {_line(not omits)} to the mission file"
@@ -127,7 +127,7 @@ def _line(omits: bool) -> str:
 
 
 def _says_profile(said: MissionSections) -> bool:
-    """Whether the mission file itself says the profile."""
+    """Return True if the mission file itself sets the profile."""
     section = said.places.get("compiled")
     return section is not None and PROFILE in Mistakes(keep=True).mapping(section)
 

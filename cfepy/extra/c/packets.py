@@ -1,9 +1,9 @@
-"""Messages in memory of C: zero-copy buffers, and the one image that a packet has for all applications that get it.
+"""Messages in memory of C: zero-copy buffers, and one image of a packet for all applications that receive it.
 
 A packet on the Software Bus is immutable bytes of Python. When an application receives it, it gets an image of these
-bytes; another one that receives the same packet gets the same image, as in C, where both point to one buffer. The image
-is given back when the last pipe that has it asks for its next message and no pipe still holds the packet. A buffer
-that an application filled in place and sent becomes the image of that packet. Receiving is the engine's
+bytes. Another application that receives the same packet gets the same image, as in C, where both point to one buffer.
+The image is given back when the last pipe that has it asks for its next message and no pipe still holds the packet. A
+buffer that an application filled in place and sent becomes the image of that packet. The engine receives messages
 (`engine/images.c`).
 """
 
@@ -26,7 +26,7 @@ class PacketImages:
         heap: the engine's heap for them.
         bus: the Software Bus as applications reach it.
         core: the Software Bus itself.
-        guard: a buffer that is used after it was sent or released is a fault, not a status.
+        guard: a use of a buffer after it was sent or released is a fault, not a status.
 
     Attributes:
         images: the engine's part.
@@ -44,7 +44,7 @@ class PacketImages:
         self._gone: dict[int, str] | None = {} if guard else None
 
     def _waits(self, packet: bytes) -> bool:
-        """Whether a packet that had several destinations still waits in a pipe."""
+        """Return True if a packet with several destinations still waits in a pipe."""
         route = self._core.routes.get(packet[0] << 8 | packet[1])
         destinations = () if route is None else route.destinations
         return any(item[0] is packet for each in destinations for item in each.pipe.items)
@@ -52,7 +52,7 @@ class PacketImages:
     # -- zero copy ---------------------------------------------------------------------------------------------------
 
     def allocate(self, size: int) -> int:
-        """A buffer to fill in place, of zeros; 0 when the bus gives none (CFE_SB_AllocateMessageBuffer)."""
+        """Return a buffer of zeros to fill in place; 0 if the bus gives none (CFE_SB_AllocateMessageBuffer)."""
         try:
             buffer = self._bus.allocate_message_buffer(size)
         except CfeError:
@@ -71,7 +71,7 @@ class PacketImages:
         self._forget(address)
 
     def transmit(self, address: int, is_origination: bool) -> None:
-        """Send a buffer (CFE_SB_TransmitBuffer): it becomes the packet's image, or is gone if nobody wants that."""
+        """Send a buffer (CFE_SB_TransmitBuffer). It becomes the packet's image, or is freed without a subscriber."""
         buffer = self._buffer(address)
         self._check(address, "CFE_SB_TransmitBuffer")
         buffer[:] = self._memory.peek(address, len(buffer))
@@ -89,7 +89,7 @@ class PacketImages:
             self._forget(address, "sent")  # it had no route
 
     def _on_packet(self, packet: bytes) -> None:
-        """A packet is on its way, and no pipe has it yet."""
+        """Use the buffer as the image of a packet that is being sent and is in no pipe yet."""
         if not self._sending:
             return
         task = self._core.kernel.current
@@ -123,11 +123,11 @@ class PacketImages:
     # -- ends --------------------------------------------------------------------------------------------------------
 
     def forget_pipe(self, pipe_id: int) -> None:
-        """A pipe was deleted: what it had is given back."""
+        """Give back the images of a deleted pipe."""
         self.images.forget_pipe(pipe_id)
 
     def clean_up(self) -> None:
-        """An application has ended, and with it pipes and buffers: give back what they had."""
+        """Give back the images and buffers of an ended application."""
         for pipe_id in self.images.pipes():
             if self._core.find_pipe(pipe_id) is None:
                 self.images.forget_pipe(pipe_id)

@@ -1,10 +1,10 @@
-"""Data races between tasks, found while schedules are explored, in code that was compiled with -fsanitize=thread.
+"""Data races between tasks in code that was compiled with -fsanitize=thread, found while schedules are explored.
 
 Two accesses of different tasks to the same memory, one of them a write, race when nothing orders them: no semaphore,
-lock, message, table, or start of a task between the two. The engine compares (`engine/races.c`); here is what orders.
-Where it is not known who waited for whom, all that went before counts: what is told is a race, and some may be missed.
-
-An access to memory that several tasks may use is a scheduling point as well.
+lock, message, table, or start of a task between the two. The engine compares accesses (`engine/races.c`); this module
+records the order. If it is not known which task waited for which, all earlier operations count as ordered. So every
+reported pair is a race, and some races may be missed. An access to memory that several tasks may use is also a
+scheduling point.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from cfepy.rtos import Task
 from cfepy.schedules import ExploringKernel, Race, RaceSide
 
 Key = Callable[[tuple[Any, ...]], Hashable]
-"""What a call orders by, from its arguments."""
+"""Returns the key by which a call orders tasks, from its arguments."""
 Told = tuple[int, int, bool, list[int]]
-"""An access: its address in the code, number of the task, whether it writes, where its calls return to."""
+"""An access: its address in the code, number of the task, whether it writes, return addresses of its calls."""
 
 
 def _first(arguments: tuple[Any, ...]) -> Hashable:
@@ -51,7 +51,7 @@ _LOCKS = {
     "OS_QueuePut": "OS_QueueGet",
     "pthread_mutex_unlock": "pthread_mutex_lock",
 }
-"""Calls that let go of what their first parameter names, and those that take it."""
+"""Calls that release the object of their first parameter, and the calls that acquire it."""
 _STARTING = (
     *("CFE_ES_CreateChildTask", "OS_TaskCreate", "OS_TaskInstallDeleteHandler", "OS_TimeBaseCreate", "OS_TimeBaseSet"),
     *("OS_TimerCreate", "OS_TimerAdd", "OS_TimerSet", "CFE_TIME_RegisterSynchCallback", "CFE_TBL_Register"),
@@ -70,7 +70,7 @@ _COPYING = (
     *("__memcpy_chk", "__memmove_chk", "__memset_chk", "__strcpy_chk", "__strncpy_chk", "__strcat_chk"),
     *("__strncat_chk", "__snprintf_chk", "__sprintf_chk", "__vsnprintf_chk"),
 )
-"""Functions of libc whose accesses count when code that tells of its own is there."""
+"""Functions of libc whose accesses count if there is code with -fsanitize=thread."""
 _STARTED, _ENDED, _TABLE, _STARTUP = "started", "ended", "tables", "startup"
 
 LETS_GO: dict[str, Key] = {
@@ -84,7 +84,7 @@ LETS_GO: dict[str, Key] = {
     "CFE_ES_WaitForStartupSync": _always(_STARTUP),
     "CFE_ES_WaitForSystemState": _always(_STARTUP),
 }
-"""What a call hands on: whoever takes it later knows what the caller did before."""
+"""Releases: a task that acquires the key later happens after the caller's earlier operations."""
 TAKES: dict[str, Key] = {
     **dict.fromkeys(_LOCKS.values(), _first),
     "OS_CountSemTimedWait": _first,
@@ -94,11 +94,11 @@ TAKES: dict[str, Key] = {
     "CFE_ES_WaitForStartupSync": _always(_STARTUP),
     "CFE_ES_WaitForSystemState": _always(_STARTUP),
 }
-"""What a call that went well has taken."""
+"""Acquisitions of a successful call."""
 
 
 def _in_python(name: str) -> str:
-    """What a function of OSAL or of SB is called in Python: `mut_sem_give`."""
+    """Return the Python name of a function of OSAL or of SB: `mut_sem_give`."""
     return _CAPITAL.sub("_", name.removeprefix("OS_").removeprefix("CFE_SB_")).lower()
 
 
@@ -110,16 +110,16 @@ _TAKES_IN_PYTHON = {_in_python(name): key for name, key in TAKES.items() if key 
 
 
 class CompiledRaceWatch:
-    """Knows what orders the tasks of a processor, and takes the races that the engine finds.
+    """Records the order of the tasks of a processor, and takes the races that the engine finds.
 
     Args:
         kernel: the processor.
-        table: the engine's, which gets an eye on accesses.
-        declared: the API, of whose functions some order tasks.
+        table: the engine's table, which then reports accesses.
+        declared: the API; some of its functions order tasks.
         memory: of C.
-        place_of: the place of an address of code, in words.
-        call_place: the same for a call; empty for one that is in no application's code.
-        describe: what is at an address of data, in words.
+        place_of: returns the place of an address of code, in words.
+        call_place: the same for a call; empty for a call outside of applications.
+        describe: returns a description of an address of data, in words.
         on_race: gets each race once.
     """
 
@@ -153,19 +153,19 @@ class CompiledRaceWatch:
         kernel.watch(self)
 
     def close(self) -> None:
-        """The processor has come to its end."""
+        """Stop at the end of the processor."""
         self._kernel.unwatch(self)
 
-    # -- what tasks in Python do between those of C: see `cfepy.rtos.CallObserver` -------------------------------------
+    # -- calls of Python tasks: see `cfepy.rtos.CallObserver` ----------------------------------------------------------
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
-        """A call of a service, of C or of Python, hands on the same."""
+        """Record that a service call, from C or Python, releases its object."""
         key = _LETS_GO_IN_PYTHON.get(call)
         if key is not None and args:
             self._let_go(key(args))
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
-        """It takes the same."""
+        """Record that a service call has acquired its object."""
         key = _TAKES_IN_PYTHON.get(call)
         if call == "receive_buffer" and result is not None:
             self._take(_message((result,)))
@@ -173,12 +173,12 @@ class CompiledRaceWatch:
             self._take(key(args))
 
     def failed(self, subject: Any, call: str) -> None:
-        """It takes nothing."""
+        """Do nothing: a failed call acquires nothing."""
 
-    # -- what orders -------------------------------------------------------------------------------------------------
+    # -- order ---------------------------------------------------------------------------------------------------------
 
     def begin(self, code: Hashable) -> int:
-        """The current task calls C, which is in this object: its number. It comes after whatever has had it started."""
+        """Record that the current task calls C in an object, after the task's start. Returns the task's number."""
         self._take(_STARTED)
         number = self._number()
         if number not in self._codes:
@@ -187,14 +187,14 @@ class CompiledRaceWatch:
         return number
 
     def leave(self, task: Task) -> None:
-        """A task has returned from C for good."""
+        """Record that a task has returned from C for good."""
         number = self._numbers.pop(task, None)
         if number is not None:
             self._races.let_go(number, self._thing(_ENDED))
             self._races.leave(number, self._codes.pop(number))
 
     def has_prepared(self) -> None:
-        """An object was loaded: tasks that start later find its memory so."""
+        """Record that an object was loaded; its memory is ready for tasks that start later."""
         self._let_go(_STARTED)
 
     def _number(self) -> int:
@@ -218,7 +218,7 @@ class CompiledRaceWatch:
         self._races.take(self._number(), self._thing(key))
 
     def _watch(self, declared: Declarations, name: str, lets_go: Key | None, takes: Key | None) -> None:
-        """Put a function of the API in the place of another one, which it calls."""
+        """Replace a function of the API by one that records the order and calls it."""
         call = declared.functions[name].function
         assert call is not None
 
@@ -233,7 +233,7 @@ class CompiledRaceWatch:
         declared.functions[name] = declared.functions[name]._replace(function=ordered)
 
     def _watch_messages(self, declared: Declarations) -> None:
-        """Messages order by their MsgId; a buffer that is sent has it in its first bytes."""
+        """Record the order by messages, by their MsgId. A sent buffer has it in its first bytes."""
         send = declared.functions["CFE_SB_TransmitBuffer"]
         receive = declared.functions["CFE_SB_ReceiveBuffer"]
         assert send.function is not None
@@ -257,7 +257,7 @@ class CompiledRaceWatch:
     # -- accesses ----------------------------------------------------------------------------------------------------
 
     def _watch_accesses(self, declared: Declarations) -> None:
-        """The engine asks Python first where others may run: before an access to what several tasks use."""
+        """Add scheduling points: the engine calls Python before an access to memory that several tasks use."""
         declared.add("__cxa_guard_release", "p", self._order_atomics)
         for name in [each for each in declared.functions if each.startswith("__tsan_")]:
             if name.startswith("__tsan_atomic"):
@@ -273,7 +273,7 @@ class CompiledRaceWatch:
         self._let_go(("atomic", address))
 
     def _side(self, pc: int, number: int, is_write: bool, returns: list[int]) -> RaceSide:
-        """One side, from what the engine tells of it."""
+        """Return one side of a race from the engine's data."""
         calls = [self._call_place(each - 1) for each in returns[::-1]]
         return RaceSide(self._place_of(pc), is_write, self._names[number], tuple(each for each in calls if each))
 

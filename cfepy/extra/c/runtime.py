@@ -1,4 +1,4 @@
-"""`CRuntime`: all C code of one processor: its images, its memory, the functions that it calls, and how it is run."""
+"""`CRuntime`: all C code of one processor: its images, its memory, the functions that it calls, and its execution."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ HEAP = 1 << 30
 """Bytes of address space for malloc, and as many for messages."""
 CALLBACK_STACK = 65536
 SLACK = 64
-"""Bytes behind a message buffer that may be written by mistake: NASA's pool has blocks of a few sizes."""
+"""Bytes behind a message buffer that code may write by mistake, because NASA's pool has few block sizes."""
 
 
 class CRuntime:
@@ -43,24 +43,25 @@ class CRuntime:
         cfe: the services.
         handle: the services as applications reach them, with their scheduling points.
         kernel: the processor.
-        polling_ns: what a call costs with which code may wait by asking again and again.
+        polling_ns: virtual time of a call with which code may poll.
         console: for printf.
-        stall_s: after how many seconds without progress the stall watch ends a run; 0 for never.
+        stall_s: returns the seconds without progress after which the stall watch ends a run; 0 for never.
         omit_deprecated: whether the code was built with OMIT_DEPRECATED, which makes handles of tables ids.
-        guard: blocks of memory end where nobody may write, freed ones are gone, and fresh ones and stacks are not zero.
+        guard: blocks of memory end at inaccessible memory, freed blocks are inaccessible, and new blocks and stacks are
+            not zero.
         on_race: gets the data races that are found while schedules are explored.
-        on_overwrite: gets the application and a text for what was written past a block, where no call is at fault.
-        on_stack: gets application and task, how many bytes of its stack the task has used, and how many it has.
-        nodes: names of ROS nodes by the names of their applications: what they print shows them.
+        on_overwrite: gets the application and a text for a write past a block, if no call is at fault.
+        on_stack: gets application and task, the bytes of its stack that the task has used, and the stack's size.
+        nodes: names of ROS nodes by the names of their applications: their printed lines begin with these names.
         publication_watch: takes the messages of ROS nodes that reach no subscriber; None if there are no such nodes.
 
     Attributes:
         arena, memory, constants, packets: the parts of the memory.
-        guard, tables: what looks after blocks, and after images of tables; None without the guard.
-        applications, libraries: what is loaded, by the name of the application or the path of the library.
-        modules: what OS_ModuleLoad loaded.
+        guard, tables: check blocks and images of tables; None without the guard.
+        applications, libraries: loaded images, by the name of the application or the path of the library.
+        modules: images that OS_ModuleLoad loaded.
         at_app_end: called when an application has ended.
-        at_close: called at the end of the processor, while its memory is still there.
+        at_close: called at the end of the processor, while its memory still exists.
         on_unload: functions that get each image before it is unloaded.
     """
 
@@ -147,7 +148,7 @@ class CRuntime:
         self._exports = Exports(self.shared, self._calls, self.declared, self.arena.map)
 
     def _ctype_tables(self) -> tuple[int, ...]:
-        """Copies of the tables of <ctype.h>: cells that point to their element 0."""
+        """Copy the tables of <ctype.h>. Returns cells that point to their element 0."""
         cells = []
         for raw, width in zip(engine().ctype(), (2, 4, 4), strict=True):
             at = self.arena.map(len(raw) + 8)
@@ -159,10 +160,10 @@ class CRuntime:
     # -- code --------------------------------------------------------------------------------------------------------
 
     def load(self, source: SharedObject) -> Image:
-        """Load a shared object anew and call what it wants to be called at load.
+        """Load a new copy of a shared object and call its load functions.
 
         Raises:
-            CFault: that failed; the object is gone again.
+            CFault: a load function failed; the object is unloaded again.
         """
         own: tuple[Image, ...] = ()
         try:
@@ -190,14 +191,14 @@ class CRuntime:
         return image
 
     def unload(self, app_name: str) -> None:
-        """An application has ended: take its code out of memory, and what it had of malloc and of messages."""
+        """Unload the code of an ended application, and free its blocks of malloc and of messages."""
         image = self.applications.pop(app_name, None)
         if image is not None:
             self.cfe.tbl.leave_memory(lambda data: self.memory.address_of(data) in image)
             with self.streams.ending(app_name):
                 self.unload_image(image)
         for each, module in list(self.modules.items()):
-            if not self._is_known(module.id):  # it was given back with what else the application had
+            if not self._is_known(module.id):  # it was freed with the other objects of the application
                 self.unload_module(each)
         apps = self.cfe.es.apps
         for owner in [each for each in self._owners if apps.find(each) is None]:
@@ -210,17 +211,17 @@ class CRuntime:
         self._owners = {owner: name for owner, name in self._owners.items() if apps.find(owner) is not None}
 
     def _name_of(self, owner: int) -> str:
-        """The application with an AppId that has called C code."""
+        """Return the name of the application with an AppId that has called C code."""
         return self._owners.get(owner, "")
 
     @property
     def allocations(self) -> int:
-        """Blocks that all code has taken from malloc so far, operator new and what libstdc++ takes among them."""
+        """Blocks that all code has taken from malloc so far, including operator new and libstdc++."""
         takes: int = self._heap.takes
         return takes
 
     def unload_image(self, image: Image) -> None:
-        """Take code out of memory, after what it wants to be called at its end."""
+        """Call the end functions of an image, and unload it."""
         for each in (image, *self._own.pop(image, ())[::-1]):
             self._finish(each)
             self._drop(each)
@@ -233,31 +234,31 @@ class CRuntime:
             each.unload()
 
     def core_memory(self, size: int) -> memoryview:
-        """Memory for a pool of the core's, such as that of tables, to whose bytes applications get addresses."""
+        """Return memory for a pool of the core, such as the pool of tables, whose addresses applications get."""
         memory: memoryview = self.memory.view(self.arena.map(size, shares=True), size)
         return memory
 
     def _finish(self, image: Image) -> None:
-        """Call what an image wants at its end; a fault there ends only that."""
+        """Call the end functions of an image. A fault there ends only these calls."""
         try:
             self.ends.finish(image)
         except CFault as fault:
             self.console.write(f"OS_ModuleUnload: {image.source.name}: {fault}")
 
     def images(self) -> list[Image]:
-        """What is loaded, in this order."""
+        """Return the loaded images, in the order of loading."""
         return list(self._images)
 
     def image_at(self, address: int) -> Image | None:
-        """The image that an address is in."""
+        """Return the image that contains an address."""
         return next((image for image in self._images if address in image), None)
 
     def shared(self) -> list[Image]:
-        """The images whose symbols all code sees."""
+        """Return the images whose symbols all code sees."""
         return [*self.libraries.values(), *(image for image, module in self.modules.items() if module.is_global)]
 
     def unload_module(self, image: Image) -> None:
-        """Take what OS_ModuleLoad loaded out of memory."""
+        """Unload an image that OS_ModuleLoad loaded."""
         self.modules.pop(image, None)
         self.unload_image(image)
 
@@ -269,7 +270,10 @@ class CRuntime:
         return True
 
     def symbol(self, name: str) -> int | None:
-        """Where a function or variable is: of the API, a library, a module or an application, in this order."""
+        """Return the address of a function or variable.
+
+        It is searched in the API, libraries, modules and applications, in this order.
+        """
         found = self._exports.declared_symbol(name)
         if found is not None:
             return found
@@ -277,10 +281,10 @@ class CRuntime:
         return next((image.symbols[name] for image in images if name in image.symbols), None)
 
     def missing(self, source: SharedObject) -> list[str]:
-        """Names that an object needs and nobody has.
+        """Return the undefined names that an object needs.
 
         Raises:
-            ElfError: a library of the host is not there.
+            ElfError: a library of the host does not exist.
         """
         variables = {name for image in self.shared() for name in image.thread_locals}
         return [name for name in wanted_names(source) if self._exports.symbol(name) is None and name not in variables]
@@ -288,13 +292,16 @@ class CRuntime:
     # -- running -----------------------------------------------------------------------------------------------------
 
     def run(self, function: int, *args: int, stack: int = 0, size: int = 0) -> int:
-        """Call a C function in the current task, on a stack of its own; what it returns, as a uint64.
+        """Call a C function in the current task, on its own stack.
 
         Args:
             function: its address.
             args: at most six numbers or pointers.
-            stack: the lowest address of a stack that the application brings; 0 for one of the arena.
-            size: its bytes; 0 for a callback, whose stack is no task's.
+            stack: the lowest address of a stack that the application provides; 0 for one of the arena.
+            size: its bytes; 0 for a callback, whose stack belongs to no task.
+
+        Returns:
+            Its return value, as a uint64.
 
         Raises:
             CFault: the code failed.
@@ -336,11 +343,11 @@ class CRuntime:
                 self._stacks.give(given, room)
 
     def raise_through(self, error: CfeError) -> NoReturn:
-        """Raise an error in a function of the API that ends the C code, and is no status for it."""
+        """Raise an error from a function of the API that ends the C code and does not become a status."""
         raise _Passing(error)
 
     def run_main(self, function: int) -> None:
-        """Run the main function of an application, on a stack of the size that its startup line says."""
+        """Run the main function of an application, on a stack of the size in its startup line."""
         owner = self.kernel.current.owner
         params = getattr(owner, "params", None)
         try:
@@ -349,16 +356,17 @@ class CRuntime:
             self.streams.finish(getattr(owner, "name", ""))
 
     def status(self, function: int, *args: int) -> int:
-        """As `run`, for a function that returns an int32."""
+        """Call a function that returns an int32, as `run` does."""
         result = self.run(function, *args) & 0xFFFFFFFF
         return result - (result >> 31 << 32)
 
     def _watch(self, computed_s: float, called_from: int) -> None:
-        """Code has computed for a while without a call: Python does here what waits, such as Ctrl-C, or other threads.
+        """Let Python handle waiting work, such as Ctrl-C or other threads, while code computes without a call.
 
         Args:
-            computed_s: for how long.
-            called_from: where the last call returned to, which is the same in each run; where the code is now is not.
+            computed_s: time of this computation.
+            called_from: return address of the last call, which is the same in each run; the current address of the code
+                is not.
 
         Raises:
             CFault: it has computed for too long; the virtual clock stands still, so it would never end.
@@ -374,23 +382,23 @@ class CRuntime:
         return None if image is None else image.place_at(address)
 
     def _about(self, address: int) -> str:
-        """The block that an address is in, or next to, in words; empty without the guard."""
+        """Return the block that contains an address, or is next to it, in words; empty without the guard."""
         return "" if self.guard is None else self.guard.about(address)
 
     def _describe(self, address: int) -> str:
-        """A variable of an object, or just the address."""
+        """Return the name of a variable, or just the address."""
         image = self.image_at(address)
         return (image.variable_at(address) if image is not None else "") or f"memory at 0x{address:x}"
 
     def place_of(self, address: int) -> str:
-        """Where an address of code is, in words."""
+        """Return the place of an address of code, in words."""
         place = self._place(address)
         if place is not None:
             return str(place)
         return self._calls.name_at(address) or f"0x{address:x}"
 
     def close(self) -> None:
-        """The processor is at its end: give all memory back."""
+        """Free all memory at the end of the processor."""
         if self._races is not None:
             self._races.close()
         for function in self.at_close:
@@ -400,7 +408,7 @@ class CRuntime:
                 self._finish(image)
         if self.guard is not None:
             self.guard.check_all()
-        self.cfe.tbl.leave_memory(lambda data: True)  # what tells of the run may look at tables later
+        self.cfe.tbl.leave_memory(lambda data: True)  # reports may read tables later
         self.applications.clear()
         self.libraries.clear()
         self.modules.clear()
@@ -408,7 +416,7 @@ class CRuntime:
 
 
 class _Passing(Exception):
-    """Carries an error through C code, which would get it as a status otherwise."""
+    """Carries an error through C code, which would otherwise get it as a status."""
 
     def __init__(self, error: CfeError) -> None:
         super().__init__(error)

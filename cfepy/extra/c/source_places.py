@@ -1,7 +1,7 @@
-"""Where in its source an address of a shared object is: function, file and line, from its symbols and debug data.
+"""The source place of an address of a shared object: function, file and line, from its symbols and debug data.
 
-Tracebacks, the stall watch, debuggers and timelines look at frames of Python. So what C code does is called, or raised,
-from frames that look like those places.
+Tracebacks, the stall watch, debuggers and timelines look at frames of Python. So calls and exceptions of C code go
+through frames that look like these places.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ class CodePlace(NamedTuple):
     object: str = ""
 
     def __str__(self) -> str:
-        """`CASE_Main (case.c:12)`, or `CASE_Main+0x10` without debug data."""
+        """Return `CASE_Main (case.c:12)`, or `CASE_Main+0x10` without debug data."""
         return f"{self.function} ({self.name}:{self.line})" if self.file else f"{self.function}+0x{self.offset:x}"
 
     def without_line(self) -> CodePlace:
-        """Itself as a line of a traceback that has no line: `File "case.so", line 0, in CASE_Main+0x10`."""
+        """Return the place for a traceback without a line number: `File "case.so", line 0, in CASE_Main+0x10`."""
         return CodePlace(f"{self.function}+0x{self.offset:x}", 0, self.object)
 
     @property
@@ -50,7 +50,7 @@ class _Row(NamedTuple):
 
 
 class Places:
-    """The places of one shared object; `places_of` gives them.
+    """The places of one shared object; use `places_of`.
 
     Args:
         data: its file.
@@ -62,14 +62,14 @@ class Places:
         self._name = name
 
     def at(self, address: int) -> CodePlace:
-        """The place of an address, counted from the object's base."""
+        """Return the place of an address, counted from the object's base."""
         number = bisect_right(self._functions, (address, "\U0010ffff"))
         start, function = self._functions[number - 1] if number else (0, self._name)
         row = self._row(address)
         return CodePlace(function, address - start, *(row[1:] if row else ("", 0)), self._name)
 
     def variable_at(self, address: int) -> str:
-        """The variable that an address belongs to, counted from the object's base; empty if that is not known."""
+        """Return the variable of an address, counted from the object's base; empty if it is not known."""
         number = bisect_right(self._variables, (address, sys.maxsize, ""))
         start, size, name = self._variables[number - 1] if number else (0, 0, "")
         return name if start <= address < start + size else ""
@@ -85,7 +85,7 @@ class Places:
 
     @CachedProperty
     def _functions(self) -> list[tuple[int, str]]:
-        """Functions by address, those that are not exported too."""
+        """Functions by address, including those that are not exported."""
         return [(start, name) for start, _, name in self._symbols("STT_FUNC")]
 
     @CachedProperty
@@ -108,7 +108,7 @@ class Places:
 
     @CachedProperty
     def _rows(self) -> list[_Row]:
-        """The line table of all compilation units; a row of line 0 ends a stretch."""
+        """The line table of all compilation units; a row of line 0 ends a range."""
         if not self._elf.has_dwarf_info():
             return []
         rows = []
@@ -129,7 +129,7 @@ class Places:
 
 @lru_cache(32)
 def places_of(data: bytes, name: str) -> Places:
-    """The places of a shared object, read once for all its copies: each run of an exploration loads it anew.
+    """Return the places of a shared object, read once for all its copies, because each explored run loads it anew.
 
     Args:
         data: its file.
@@ -139,7 +139,7 @@ def places_of(data: bytes, name: str) -> Places:
 
 
 def _files_of(program: Any, unit: Any) -> dict[int, str]:
-    """The files of a line program, by the number that it gives them: from 0 since DWARF 5, from 1 before."""
+    """Return the files of a line program, by its numbers for them: from 0 since DWARF 5, from 1 before."""
     header = program.header
     folders = [_text(each) for each in header["include_directory"]]
     first = 0 if header["version"] >= 5 else 1
@@ -160,7 +160,7 @@ def _text(raw: bytes | str) -> str:
 
 
 Watch = Callable[[float, int], object]
-"""Called with the seconds for which C code has computed without a call, and the address to which that returned."""
+"""Called with the seconds of computation without a call, and the return address of the last call."""
 
 
 Call = Callable[..., object]
@@ -168,14 +168,14 @@ Call = Callable[..., object]
 
 
 class PreemptedFrames(dict[int, Watch]):
-    """What the engine calls when C code has computed for a while without a call, by the address where it was.
+    """Functions that the engine calls while C code computes without a call, by the current address of the code.
 
-    Each is a function that is seen as the place of that address: Python code that looks at the thread, such as the
-    stall watch, finds it there.
+    Each function looks like the place of that address. So Python code that looks at the thread, such as the stall
+    watch, finds the place.
 
     Args:
-        place_of: the place of an address, if it is known.
-        watch: what each of them calls.
+        place_of: returns the place of an address, if it is known.
+        watch: each function calls it.
     """
 
     def __init__(self, place_of: Callable[[int], CodePlace | None], watch: Watch) -> None:
@@ -198,11 +198,11 @@ def _call(function: Call, *args: object) -> object:
 
 
 class CallFrames(dict[int, Call]):
-    """What the engine calls a function of the API through, by the address of the call, for tools that look at frames.
+    """Functions through which the engine calls the API, by the address of the call, for tools that look at frames.
 
     Args:
-        place_of: the place of an address, if it is known.
-        heard: gets the place and the arguments of each call whose place is known; None for nobody.
+        place_of: returns the place of an address, if it is known.
+        heard: gets the place and the arguments of each call whose place is known; None for no observer.
     """
 
     def __init__(self, place_of: Callable[[int], CodePlace | None], heard: CallHeard | None = None) -> None:
@@ -221,11 +221,10 @@ class CallFrames(dict[int, Call]):
 
 
 def raise_at(calls: Sequence[CodePlace], error: BaseException) -> NoReturn:
-    """Raise an error from frames that are seen as places of C, without what came before it.
+    """Raise an error from frames that look like places of C, without its earlier traceback.
 
     Args:
-        calls: the places, the outermost first; where there is no debug data, functions of the object are seen all the
-            same.
+        calls: the places, the outermost first; without debug data the frames show functions of the object.
         error: the error.
 
     Raises:
@@ -239,7 +238,7 @@ def raise_at(calls: Sequence[CodePlace], error: BaseException) -> NoReturn:
 
 
 def _seen_as(place: CodePlace | None, code: CodeType, names: dict[str, object]) -> FunctionType | None:
-    """A function of this code that is seen as a place; None for a place that is not known."""
+    """Return a function of this code that looks like a place; None for a place that is not known."""
     return None if place is None or not place.file else _function(place, code, names)
 
 
@@ -253,7 +252,7 @@ def _renamed(code: CodeType, function: str, file: str, line: int) -> CodeType:
 
 
 def _code(source: str) -> CodeType:
-    """The code of a function, all of it on its first line, and as wide as that: tracebacks mark no part of the line."""
+    """Return the code of a function, all on its first line with its full width, so that tracebacks mark no part."""
     tree = ast.parse(source)
     for node in ast.walk(tree):
         if isinstance(node, ast.expr | ast.stmt | ast.arg):

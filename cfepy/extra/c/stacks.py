@@ -1,4 +1,4 @@
-"""Stacks for C code, each with a page below that nobody may touch."""
+"""Stacks for C code, each with an inaccessible page below."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from cfepy.extra.c.arena import PAGE, Arena, pages
 from cfepy.extra.c.engine import engine
 
 LEAST = 16384
-"""PTHREAD_STACK_MIN: what OSAL on Linux gives a task at least."""
+"""PTHREAD_STACK_MIN: the smallest stack that OSAL on Linux gives a task."""
 
 
 class Stacks:
-    """Stacks of an arena. One that was given back is zeros again: what a task finds on its stack is the same each time.
+    """Stacks of an arena. A returned stack is zeroed, so that a task finds the same contents each time.
 
     Args:
-        arena: where they are.
+        arena: memory for them.
         poison: a byte that they are filled with before use; none for zeros.
     """
 
@@ -23,7 +23,7 @@ class Stacks:
         self._free: dict[int, list[int]] = {}
 
     def take(self, size: int) -> tuple[int, int]:
-        """A stack of at least `size` bytes: lowest address, bytes."""
+        """Return a stack of at least `size` bytes: lowest address, bytes."""
         room = pages(max(size, LEAST))
         free = self._free.setdefault(room, [])
         if free:
@@ -37,7 +37,7 @@ class Stacks:
         return stack, room
 
     def used(self, stack: int, size: int) -> int:
-        """How many bytes of a stack were written to, from its top down, as a painted stack shows on a board.
+        """Return how many bytes of a stack were written, from its top down, as a painted stack shows on a board.
 
         Args:
             stack: its lowest address.
@@ -46,6 +46,6 @@ class Stacks:
         return len(engine().peek(stack, size).lstrip(self._poison or b"\0"))
 
     def give(self, stack: int, size: int) -> None:
-        """Give one back."""
+        """Give a stack back."""
         engine().clear(stack, size)
         self._free[size].append(stack)

@@ -1,9 +1,9 @@
-"""The calls that C code is in: from the registers where it stopped through the frames of its stack, outwards.
+"""The call stack of C code: from the registers where it stopped through the frames of its stack, outwards.
 
-Compilers write for each address of code where the frame of its function is, and where the registers of its caller are
-kept: into .eh_frame, for exceptions and debuggers, also without debug data, with a table to search by address,
-.eh_frame_hdr (DWARF 5, section 6.4, and the Linux Standard Base, chapter 10). pyelftools would read all of it, which
-takes seconds for a library such as libstdc++; here a function's is read when it is asked for.
+For each address of code, compilers write the place of the function's frame and of the caller's registers into
+.eh_frame. It exists also without debug data, for exceptions and debuggers. The table .eh_frame_hdr allows a search by
+address (DWARF 5, section 6.4, and the Linux Standard Base, chapter 10). pyelftools would read all of it, which takes
+seconds for a library such as libstdc++. Here a function's part is read when it is needed.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cfepy.extra.c.memory import CMemory
 from cfepy.interpreter.cached import CachedProperty
 
 INNERMOST, OUTERMOST = 24, 8
-"""Calls that are told of a stack that has more."""
+"""Calls in the report of a deeper stack."""
 _DEEPEST = 1 << 14
 _ADDRESS = (1 << 48) - 1
 """The rest of a return address may be a signature (aarch64, -mbranch-protection)."""
@@ -29,10 +29,10 @@ Value = Callable[[int], int]
 
 
 class Rule(NamedTuple):
-    """Where a register of the caller is.
+    """The place of a register of the caller.
 
-    `kind` is "at" for memory at the frame's address and `offset` bytes, "is" for this address itself, "register" for
-    the register of number `offset`. Where there is an `expression`, it gives the address instead. "gone" is not known.
+    `kind` is "at" for memory at the frame's address plus `offset` bytes, "is" for this address itself, "register" for
+    the register of number `offset`. An `expression`, if there is one, gives the address instead. "gone" is not known.
     """
 
     kind: str
@@ -50,7 +50,7 @@ class FrameRow(NamedTuple):
 
 
 class BadFrameInfo(Exception):
-    """Something that compilers do not write, or a register that is not known."""
+    """Frame information that compilers do not write, or a register that is not known."""
 
 
 class FrameInfo:
@@ -65,7 +65,7 @@ class FrameInfo:
         self._known: dict[int, FrameRow | None] = {}
 
     def row(self, address: int) -> FrameRow | None:
-        """The rules at an address; None where nothing is known."""
+        """Return the rules at an address; None if there are none."""
         if address not in self._known:
             try:
                 self._known[address] = self._read(address)
@@ -81,7 +81,7 @@ class FrameInfo:
 
     @CachedProperty
     def _functions(self) -> tuple[list[int], list[int]]:
-        """Addresses of functions, and of what is written of each."""
+        """Addresses of functions, and of their entries."""
         start = self._source.unwinding
         reader = self._reader(start)
         version, frames, counted, table = reader.take("<4B")
@@ -115,14 +115,14 @@ class FrameInfo:
         return rules.row()
 
 
-# -- what is in the file -----------------------------------------------------------------------------------------------
+# -- contents of the file ----------------------------------------------------------------------------------------------
 
 _U32, _I32, _FROM_HERE, _FROM_TABLE = 0x03, 0x0B, 0x10, 0x30
 _FORMS = {0x00: "<Q", 0x02: "<H", 0x03: "<I", 0x04: "<Q", 0x0A: "<h", 0x0B: "<i", 0x0C: "<q"}
 
 
 class _Reader:
-    """Reads a file on from an address; `back` is from there to the place in the file."""
+    """Reads a file from an address on; `back` is the offset from the address to the place in the file."""
 
     def __init__(self, data: bytes, address: int = 0, back: int = 0) -> None:
         self._data = data
@@ -147,7 +147,7 @@ class _Reader:
         self.address += size
 
     def unsigned(self) -> int:
-        """A number of any size, seven bits a byte (LEB128)."""
+        """Return a number of any size, seven bits a byte (LEB128)."""
         value = shift = 0
         while True:
             byte = self.byte()
@@ -178,7 +178,7 @@ class _Reader:
         return value + (here if encoding & _FROM_HERE else 0)
 
     def entry(self) -> int:
-        """The beginning of an entry: where it ends."""
+        """Begin an entry. Returns the address of its end."""
         [size] = self.take("<I")
         if size in (0, 0xFFFFFFFF):
             raise BadFrameInfo(f"invalid entry size: {size} bytes")
@@ -190,7 +190,7 @@ class _Reader:
 
 
 class _Common:
-    """What entries of several functions have in common (CIE)."""
+    """The part that entries of several functions share (CIE)."""
 
     def __init__(self, reader: _Reader) -> None:
         end = reader.entry()
@@ -216,11 +216,11 @@ class _Common:
 
 
 class _Rules:
-    """The rules as the instructions change them from one address to the next.
+    """The rules, as the instructions change them from one address to the next.
 
     Args:
-        code_step: bytes of code that addresses count in.
-        data_step: bytes of the stack that offsets count in.
+        code_step: unit of addresses, in bytes of code.
+        data_step: unit of offsets, in bytes of the stack.
     """
 
     def __init__(self, code_step: int, data_step: int) -> None:
@@ -232,15 +232,15 @@ class _Rules:
         self._kept: list[tuple[tuple[int, int, bytes], dict[int, Rule]]] = []
 
     def keep_first(self) -> None:
-        """What instructions give back to a register is what it has now."""
+        """Save the current rules, to which instructions can restore a register."""
         self._first = dict(self._rules)
 
     def row(self) -> FrameRow:
-        """The rules as they are."""
+        """Return the current rules."""
         return FrameRow(*self._frame, self._rules)
 
     def run(self, instructions: bytes, at: int = 0, until: int = 0) -> None:
-        """Execute those that hold at the address `until`, from that of the function on."""
+        """Execute the instructions for the addresses from `at`, the function's address, to `until`."""
         reader = _Reader(instructions)
         while not reader.is_done and at <= until:
             code = reader.byte()
@@ -258,9 +258,9 @@ class _Rules:
                 self._kept.append((self._frame, dict(self._rules)))
             elif code == 0x0B:
                 self._frame, self._rules = self._kept.pop()
-            elif code == 0x2E:  # bytes of arguments, which only exceptions need
+            elif code == 0x2E:  # bytes of arguments, used only by exceptions
                 reader.unsigned()
-            elif code not in (0x00, 0x2D):  # nothing; the return address is signed from here on, or no longer
+            elif code not in (0x00, 0x2D):  # no operation; a change of the return address's signing
                 self._change_rule(code, reader)
 
     def _restore(self, register: int) -> None:
@@ -309,13 +309,13 @@ _ADVANCES = {0x02: "<B", 0x03: "<H", 0x04: "<I"}
 
 
 def value_of(expression: bytes, registers: Mapping[int, int], read: Value, *first: int) -> int:
-    """What an expression comes to; of its operations, those that compilers use here, for frames aligned on their own.
+    """Evaluate an expression. Only the operations that compilers use here are supported, for self-aligned frames.
 
     Args:
         expression: the operations (DWARF 5, section 2.5).
         registers: by number.
         read: reads memory.
-        first: what is on its stack before.
+        first: initial values on its stack.
 
     Raises:
         BadFrameInfo: it has another operation, or needs a register that is not known.
@@ -359,10 +359,10 @@ _BINARY: dict[int, Callable[[int, int], int]] = {
 
 
 class FramedCode(Protocol):
-    """What an image tells of itself."""
+    """The interface of an image for unwinding."""
 
     def frame_row(self, address: int) -> FrameRow | None:
-        """How the frame at an address of code is found; None if that is not known."""
+        """Return the rules for the frame at an address of code; None if they are not known."""
 
 
 class _Machine(NamedTuple):
@@ -378,10 +378,10 @@ _MACHINES = {"x86_64": _Machine(7, 16, 16, True), "aarch64": _Machine(31, 30, 32
 
 
 class Unwinder:
-    """Finds the calls that code of one processor is in.
+    """Finds the call stack of a processor's code.
 
     Args:
-        image_at: the image that an address is in.
+        image_at: returns the image that contains an address.
         memory: of C.
     """
 
@@ -391,13 +391,13 @@ class Unwinder:
         self._machine = _MACHINES[platform.machine()]
 
     def calls(self, registers: bytes, is_call: bool) -> list[int]:
-        """Addresses of code, the outermost first: in each function, that of its call, and last where the code stopped.
+        """Return addresses of code, the outermost first: the call in each function, and at last the place of the stop.
 
-        Where the stack makes no sense, as one that was written over, the list begins behind that.
+        If the stack is invalid, for example overwritten, the list begins after that point.
 
         Args:
-            registers: uint64s by their numbers of DWARF, with the program counter, as the engine tells them.
-            is_call: the code stopped in a call: the program counter is where that returns to.
+            registers: uint64s by their numbers of DWARF, with the program counter, from the engine.
+            is_call: the code stopped in a call, so the program counter is its return address.
         """
         known = dict(enumerate(struct.unpack(f"<{len(registers) // 8}Q", registers)))
         found = list(self._frames(known, is_call))[::-1]
@@ -406,7 +406,7 @@ class Unwinder:
     def _frames(self, registers: dict[int, int], is_call: bool) -> Iterator[int]:
         machine = self._machine
         try:
-            if self._image_at(registers[machine.pc]) is None:  # what is no function was called: it has no frame
+            if self._image_at(registers[machine.pc]) is None:  # a called address that is not a function: no frame
                 self._return(registers)
                 is_call = True
             for _ in range(_DEEPEST):
@@ -423,7 +423,7 @@ class Unwinder:
                 if registers[machine.stack_pointer] <= below - (not is_call):  # in the first, there may be no frame yet
                     return
                 is_call = True
-        except (CFault, BadFrameInfo, KeyError):  # memory that is not there, registers that are not known
+        except (CFault, BadFrameInfo, KeyError):  # missing memory, unknown registers
             return
 
     def _return(self, registers: dict[int, int]) -> None:
@@ -435,7 +435,7 @@ class Unwinder:
             registers[machine.pc] = registers[machine.return_address] & _ADDRESS
 
     def _caller(self, row: FrameRow, registers: dict[int, int]) -> dict[int, int]:
-        """The registers of the caller, as far as they are known."""
+        """Return the registers of the caller, as far as they are known."""
         machine = self._machine
         if row.expression:
             frame = value_of(row.expression, registers, self._memory.u64)

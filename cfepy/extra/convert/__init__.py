@@ -1,9 +1,10 @@
 """ROS nodes in C++ as cFE applications: the convertor, `cfepy convert`.
 
-A node's source is compiled as it is, against the interface library in roscfe. What belongs here reads C++ packages
-(`packages`), makes what is generated around a node, such as the headers of its messages (`message_headers`), its entry
-point and its parameters, and calls the compiler. Running what was built does not belong here: to a mission a shared
-object is a compiled application like any other. The central file is `cfepy/extra/convert/conversion.py`.
+A node's source is compiled as it is, against the interface library in roscfe. Code that reads C++ packages
+(`packages`), generates the other parts of a node, and calls the compiler belongs here. Generated parts are the headers
+of its messages (`message_headers`), its entry point and its parameters. Running the built node does not belong here: to
+a mission a shared object is a compiled application like any other. The central file is
+`cfepy/extra/convert/conversion.py`.
 """
 
 from __future__ import annotations

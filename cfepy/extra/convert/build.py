@@ -1,8 +1,8 @@
-"""Building a ROS node in C++: from its sources to a shared object that a mission flies.
+"""The build of a ROS node in C++: from its sources to a shared object that a mission flies.
 
-Sources are compiled as they are against the interface library and the headers of their messages. What was compiled is
-kept in the user's cache folder, by the content of all that went into it, so a launch that was built once starts at
-once. The library is compiled once for each profile.
+Sources are compiled as they are against the interface library and the headers of their messages. Compiled files are
+kept in the user's cache folder, by the content of all their inputs, so a launch that was built once starts at once. The
+library is compiled once for each profile.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from cfepy.status import UsageError
 from rospy_shim.types.msgs import Library
 
 LANGUAGE = ("-std=c++17", "-fPIC", "-fvisibility=hidden", "-fno-gnu-unique", "-Wall")
-"""What every source needs: nodes side by side share no variables, and leave none behind when they end."""
+"""Flags of every source, so that nodes share no variables, and leave none behind when they end."""
 PLAIN = ("-O1", "-g", "-fno-stack-protector", "-U_FORTIFY_SOURCE", "-D_LINUX_OS_", "-D_POSIX_OS_")
 WITHOUT_TYPES = ("-fno-rtti",)
 WITHOUT_EXCEPTIONS = ("-fno-exceptions", *WITHOUT_TYPES)
@@ -48,28 +48,28 @@ STRICT_WARNINGS = ("-Wextra", "-Werror")
 RANDOM = ("rand", "srand", "random", "srandom")
 CLOCKS = ("time", "gettimeofday", "clock_gettime")
 WRAPPED = ("exit", "abort", "sleep", "usleep", "nanosleep", "signal", "sigaction", *RANDOM, *CLOCKS)
-"""Functions of libc in whose place the library's are called: they would be about the whole computer."""
+"""libc functions that the library replaces, because they would affect the whole computer."""
 ALLOCATING = (
     *("malloc", "calloc", "realloc", "reallocarray", "free", "strdup", "strndup"),
     *("aligned_alloc", "posix_memalign", "memalign"),
 )
-"""Functions of libc in whose place those of the arena are called, in profiles that have one."""
+"""libc functions that the arena replaces, in profiles that have one."""
 LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic")
 BOOST_REFUSED = ("config.hpp", "version.hpp")
-"""Headers of the small Boost that stop a header of the real one which was found by chance."""
+"""Headers of the small Boost that refuse headers of the real Boost that were found by chance."""
 BOOST_IN_PART = ("boost/thread.hpp", "boost/thread/thread.hpp", "boost/foreach.hpp", "boost/circular_buffer.hpp")
-"""Headers of which the small Boost has the part that fits one task: a node for the host gets those of the computer."""
+"""Headers that the small Boost has only for one task. A node for the host gets the computer's."""
 WITH_ARENA = ("-Wl,--wrap=" + ",--wrap=".join(ALLOCATING),)
 OWN_CPP_LIBRARY = ("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL")
 SYSTEM_ROS = ("/opt/ros/", "/usr/include/ros/", "/usr/local/include/ros/")
 HEAP_SOURCE = "heap.cpp"
-"""The source of the interface library in which the arena is."""
+"""The source of the interface library that contains the arena."""
 MOST_AT_ONCE = 2
 """Compilers that run at the same time."""
 
 
 def library_folder() -> Path:
-    """Where the interface library is: its headers and sources.
+    """Return the folder of the interface library, with its headers and sources.
 
     Raises:
         UsageError: this installation has none.
@@ -78,21 +78,21 @@ def library_folder() -> Path:
 
 
 def library_includes(real_boost: bool = False) -> list[Path]:
-    """Folders of the library's headers.
+    """Return the folders of the library's headers.
 
     Args:
-        real_boost: whether the computer's Boost is taken in place of the small one.
+        real_boost: whether to use the computer's Boost instead of the small one.
     """
     folder = library_folder()
     return [folder / "include", *([] if real_boost else [folder / "boost"])]
 
 
 def needs_real_boost(sources: SourceSet, profile: Profile) -> bool:
-    """Whether sources include a header of Boost that the small one lacks, refuses, or has not the whole of.
+    """Return True if sources include a header of Boost that the small one lacks, refuses, or has only in part.
 
     Args:
         sources: collected with the small one among the folders.
-        profile: that is built for.
+        profile: profile of the build.
     """
     folder = library_folder() / "boost"
     refused = {folder / "boost" / name for name in BOOST_REFUSED}
@@ -101,7 +101,7 @@ def needs_real_boost(sources: SourceSet, profile: Profile) -> bool:
 
 
 def library_sources(used: Iterable[Path], real_boost: bool = False) -> list[Path]:
-    """The library's sources that a node needs, sorted: the core, and the parts whose headers are used.
+    """Return the library's sources that a node needs, sorted: the core, and the parts whose headers are used.
 
     Args:
         used: all headers that the node includes; those of the library count.
@@ -123,17 +123,17 @@ def library_sources(used: Iterable[Path], real_boost: bool = False) -> list[Path
 
 
 def provided_packages() -> set[str]:
-    """Packages whose headers the library has, such as roscpp: their own sources are not compiled."""
+    """Return the packages whose headers the library has, such as roscpp. Their own sources are not compiled."""
     known = {"roscpp", "rostime", "rosconsole", "roscpp_serialization", "roscpp_traits", "xmlrpcpp", "cpp_common"}
     return known | {each.name for each in (library_folder() / "include").iterdir() if each.is_dir()}
 
 
 @dataclass(frozen=True, slots=True)
 class BuildOptions:
-    """What a node is built for.
+    """The options of a node's build.
 
     Attributes:
-        profile: what it may do.
+        profile: the permitted features of the node.
         capacities: of its messages, in the strict profile.
         arena_bytes: size of its heap, in the profiles pool and strict.
     """
@@ -143,21 +143,21 @@ class BuildOptions:
     arena_bytes: int = ARENA_BYTES
 
     def flags_of(self, source: Path) -> list[str]:
-        """Flags of one source of the interface library alone."""
+        """Return the flags that only one source of the interface library gets."""
         is_heap = source.name == HEAP_SOURCE and self.profile is not Profile.HOST
         return [f"-DROSCFE_ARENA_BYTES={self.arena_bytes}"] if is_heap else []
 
 
 @dataclass(slots=True)
 class BuiltNode:
-    """A node that was built.
+    """A built node.
 
     Attributes:
         library: the shared object.
         entry: its entry point.
-        sources: what it was made of.
+        sources: its source files and headers.
         types: message types whose headers it includes.
-        warnings: what the compiler warned of.
+        warnings: warnings of the compiler.
     """
 
     library: Path
@@ -172,12 +172,12 @@ def build_node(program: Program, entry: NodeEntry, library: Library, options: Bu
 
     Args:
         program: its sources.
-        entry: what is generated around it.
+        entry: the generated entry point.
         library: of message types.
-        options: what it is built for; None for the profile host.
+        options: the build options; None for the profile host.
 
     Returns:
-        What was built, or lay in the cache.
+        The node, built now or found in the cache.
 
     Raises:
         UsageError: there is no compiler, or the result would not be fit to fly.
@@ -204,7 +204,7 @@ class NodeBuild:
         self.types = sorted({*message_types(sources.missing, library), *needed})
 
     def built(self) -> BuiltNode:
-        """Compile what is not in the cache, and link it."""
+        """Compile the sources that are not in the cache, and link the node."""
         with tempfile.TemporaryDirectory(prefix="cfepy-node-") as scratch:
             return self._built(Path(scratch))
 
@@ -240,7 +240,7 @@ class NodeBuild:
         return BuiltNode(made, entry.symbol, self.sources, self.types, list(filter(None, told)))
 
     def _support(self, source: Path, flags: Sequence[str], includes: Sequence[Path]) -> CompileUnit:
-        """A source of a library that is compiled with the program: it stays as it is when the program changes."""
+        """Return a library source that is compiled with the program. It does not change when the program changes."""
         known = collect([source], includes).contents
         defined = [f"-D{each}" for each in self._program.definitions if each.startswith("GTEST_")]
         return CompileUnit(source, [*flags, *defined], includes, _digest(*known.values()), needs_cfe=True)
@@ -250,28 +250,28 @@ class NodeBuild:
 
 
 def profile_flags(profile: Profile) -> list[str]:
-    """The flags of a profile."""
+    """Return the flags of a profile."""
     exceptions = () if profile is Profile.HOST else WITHOUT_EXCEPTIONS
     return [f"-DROSCFE_PROFILE_{profile.name}", *exceptions]
 
 
 def core_flags(profile: Profile) -> Sequence[str]:
-    """The flags of a profile for the library's own sources: what they throw, nodes of the host profile catch."""
+    """Return a profile's flags for the library's own sources, which keep exceptions for nodes of the host profile."""
     return WITHOUT_TYPES if profile is Profile.HOST else WITHOUT_EXCEPTIONS
 
 
 def link_flags(profile: Profile) -> list[str]:
-    """The linker's flags of a profile: where nodes have an arena, the C++ library's own code takes from it, too."""
+    """Return the linker's flags of a profile. If nodes have an arena, the C++ library's code also allocates there."""
     return [*LINK, *(() if profile is Profile.HOST else (*WITH_ARENA, *OWN_CPP_LIBRARY))]
 
 
 def messages_folder(types: Sequence[str], library: Library, options: BuildOptions) -> Path:
-    """A folder with the headers of message types and of all that they need, in the cache.
+    """Return a folder in the cache with the headers of message types and of all nested types.
 
     Args:
         types: full names.
-        library: where they are.
-        options: what messages are made of.
+        library: their definitions.
+        options: the build options, for the form of messages.
     """
     folder = _folder()
     with _scratch() as scratch:
@@ -286,10 +286,10 @@ def messages_folder(types: Sequence[str], library: Library, options: BuildOption
 
 
 def configurations_folder(headers: Mapping[str, str]) -> Path:
-    """A folder with the headers of configurations, in the cache.
+    """Return a folder in the cache with the headers of configurations.
 
     Args:
-        headers: texts, by what is included.
+        headers: texts, by the name in the #include.
     """
     folder = _folder()
     key = _digest(*(f"{name}\0{text}" for name, text in sorted(headers.items())))
@@ -305,12 +305,12 @@ def configurations_folder(headers: Mapping[str, str]) -> Path:
 
 
 def core_key(options: BuildOptions, real_boost: bool, library: Library, used: Iterable[Path]) -> str:
-    """What the interface library of a profile is known by."""
+    """Return the cache key of a profile's interface library."""
     return _core(options, real_boost, library, used)[0]
 
 
 def built_core(options: BuildOptions, real_boost: bool, library: Library, used: Iterable[Path]) -> Path:
-    """The interface library of a profile as an archive, compiled if it is not in the cache.
+    """Return the interface library of a profile as an archive, compiled if it is not in the cache.
 
     Raises:
         CompilerError: the compiler refused it.
@@ -355,13 +355,13 @@ def _core(
 
 @dataclass(slots=True)
 class CompileUnit:
-    """A source to be compiled.
+    """A source to compile.
 
     Attributes:
         source: the file.
         flags: of the compiler.
         includes: folders of headers.
-        known: a digest of all that is read.
+        known: a digest of all files that are read.
         needs_cfe: whether it includes cFE's headers.
     """
 
@@ -373,27 +373,27 @@ class CompileUnit:
 
     @property
     def key(self) -> str:
-        """What it is known by, whichever release of the compiler compiles it."""
+        """Its cache key, without the release of the compiler."""
         plain = [each for each in self.flags if not each.startswith("/")]
         return _digest(self.known, *plain, *cpp_compiler(), headers_folder().name if self.needs_cfe else "")
 
     @property
     def object(self) -> Path:
-        """Where its object file is, in the cache."""
+        """The path of its object file in the cache."""
         return _folder() / f"{self.source.stem}-{_digest(self.key, identity())}.o"
 
     def command(self, made: Path) -> list[str]:
-        """The compiler's command."""
+        """Return the compiler's command."""
         folders = [f"-I{each}" for each in self.includes]
         cfe = ["-isystem", str(headers_folder())] if self.needs_cfe else []
         maps = [f"-ffile-prefix-map={self.source.parent}=."]
         watch = ["-MMD", "-MF", str(made.with_suffix(".d"))]
-        watch[0] = "-MD"  # those that the compiler takes from the system, too
+        watch[0] = "-MD"  # also the system's headers
         return [*cpp_compiler(), *self.flags, *folders, *cfe, *maps, *watch, "-c", str(self.source), "-o", str(made)]
 
 
 def compile_units(units: Iterable[CompileUnit]) -> list[str]:
-    """Compile the sources whose object files are not in the cache, a few at once; what the compiler warned of.
+    """Compile the sources whose object files are not in the cache, a few at once. Returns the compiler's warnings.
 
     Raises:
         CompilerError: it refused one.
@@ -414,11 +414,11 @@ def compile_units(units: Iterable[CompileUnit]) -> list[str]:
 
 
 class _Compiler:
-    """A compiler that runs for one source.
+    """A running compiler for one source.
 
     Args:
         unit: the source.
-        folder: for what it writes.
+        folder: folder for its output.
     """
 
     def __init__(self, unit: CompileUnit, folder: Path) -> None:
@@ -430,7 +430,7 @@ class _Compiler:
             self._process = start_bounded(unit.command(self._made), log.fileno())
 
     def finished(self) -> str:
-        """Wait for it, and keep the object file; what it warned of."""
+        """Wait for it, and keep the object file. Returns its warnings."""
         status = end_bounded(self._process)
         said = self._log.read_text(encoding="utf-8", errors="replace").rstrip()
         if status:
@@ -444,9 +444,9 @@ class _Compiler:
         return said
 
     def end(self) -> None:
-        """End it, if it is not at its end: another one has failed, and nobody waits for it."""
+        """End it if it still runs: another compiler has failed, and its result is not needed."""
         if self._process.poll() is None:
-            self._process.terminate()  # GCC's driver ends what it has started
+            self._process.terminate()  # GCC's driver ends its child processes
             self._process.wait()
 
 
@@ -469,7 +469,9 @@ def _link(parts: Sequence[Path], made: Path, flags: Iterable[str]) -> None:
 
 
 def unique_symbols(file: Path) -> list[str]:
-    """Symbols of a shared object of which a process has one only, however many objects have them (STB_GNU_UNIQUE).
+    """Return symbols of a shared object that a process has only once, even if several objects have them.
+
+    These are symbols with the binding STB_GNU_UNIQUE.
 
     Args:
         file: the shared object.
@@ -480,12 +482,12 @@ def unique_symbols(file: Path) -> list[str]:
 
 @cache
 def identity() -> str:
-    """What the compiler says of itself."""
+    """Return the version and target of the compiler."""
     return _call([*cpp_compiler(), "-dumpfullversion", "-dumpmachine"])
 
 
 def _label(source: Path, program: Program) -> str:
-    """The path of a source in its package, which is the same on each computer."""
+    """Return the path of a source in its package, which is the same on each computer."""
     folder = program.package.folder
     return str(source.relative_to(folder)) if source.is_relative_to(folder) else source.name
 
@@ -507,7 +509,7 @@ def _folder() -> Path:
 
 @contextmanager
 def _scratch() -> Iterator[Path]:
-    """A folder in the cache for what is not finished yet; what cannot be written there is the user's to mend."""
+    """Provide a folder in the cache for unfinished files. Write errors there are reported to the user."""
     folder = _folder()
     with writing_cache(folder), tempfile.TemporaryDirectory(dir=folder) as scratch:
         yield Path(scratch)

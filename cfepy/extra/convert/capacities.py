@@ -1,4 +1,4 @@
-"""How long texts and arrays of messages can be in the strict profile, where nothing allocates."""
+"""Capacities of texts and arrays of messages in the strict profile, in which nothing allocates."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _SHOWN = 8
 
 @dataclass(frozen=True, slots=True)
 class Capacities:
-    """How long texts and arrays can be.
+    """Capacities of texts and arrays.
 
     Attributes:
-        fields: items by "package/Type.field"; characters of a text. Those of the texts in an array: "...field[]".
-        text: characters of a text that is not among them.
-        array: items of an array of numbers or texts that is not among them. An array of messages has no default.
+        fields: items by "package/Type.field"; characters of a text. The key "...field[]" is for the texts in an array.
+        text: characters of other texts.
+        array: items of other arrays of numbers or texts. An array of messages has no default.
     """
 
     fields: Mapping[str, int] = field(default_factory=dict)
@@ -32,18 +32,18 @@ class Capacities:
     array: int = ARRAY
 
     def of_text(self, place: str) -> int:
-        """Characters of a text."""
+        """Return the characters of a text."""
         return self._checked(place, self.fields.get(place, self.text))
 
     def of_array(self, place: str, item: str) -> int:
-        """Items of an array.
+        """Return the items of an array.
 
         Args:
             place: the field, as in `fields`.
             item: their type.
 
         Raises:
-            UsageError: an array of messages without a capacity, or one that is no number of items.
+            UsageError: an array of messages without a capacity, or an invalid capacity.
         """
         if place not in self.fields and item not in BUILTINS:
             kind, _, name = place.partition(".")
@@ -61,14 +61,14 @@ class Capacities:
 
 
 def capacities_of(config: CppNodesConfig, library: Library) -> Capacities:
-    """The capacities that a mission file gives, held against the definitions of their types.
+    """Return the capacities of a mission file, checked against the definitions of their types.
 
     Args:
         config: its section `cpp_nodes:`.
-        library: where the definitions are.
+        library: the definitions.
 
     Raises:
-        CppNodesError: a type or field that is not there, or one whose length is fixed.
+        CppNodesError: a type or field does not exist, or has a fixed length.
     """
     for error in wrong_capacities(config, library):
         raise error
@@ -76,7 +76,7 @@ def capacities_of(config: CppNodesConfig, library: Library) -> Capacities:
 
 
 def wrong_capacities(config: CppNodesConfig, library: Library) -> list[CppNodesError]:
-    """All that is wrong with the capacities that a mission file gives; see `capacities_of`."""
+    """Return all errors in the capacities of a mission file; see `capacities_of`."""
     found = []
     for place, number in config.capacities.items():
         kind, _, name = place.partition(".")
@@ -93,7 +93,7 @@ def _error(mark: Marked | None, place: str, text: str) -> CppNodesError:
 
 
 def _wrong(kind: str, name: str, number: int, library: Library) -> str | None:
-    """What is wrong with the capacity of a field; None when nothing is."""
+    """Return the error of a field's capacity; None if there is none."""
     package = kind.partition("/")[0]
     if library.has(kind, "srv") and not library.has(kind):
         return f"is the service {kind}; name one of its messages, {kind}Request or {kind}Response"
@@ -127,13 +127,13 @@ def _wrong_field(spec: Spec, name: str, number: int) -> str | None:
 
 
 def _places(each: Field) -> list[str]:
-    """The capacities that a field has: of a text or an array, and of the texts in an array."""
+    """Return the keys of a field's capacities: of a text or an array, and of the texts in an array."""
     places = [each.name] if (each.is_array and each.length is None) or each.type == "string" else []
     return [*places, f"{each.name}[]"] if each.is_array and each.base == "string" else places
 
 
 def check_cpp_nodes(said: MissionSections) -> Iterator[MissionProblem]:
-    """Capacities of types and fields that are not there, seen from the packages of the mission's launch files."""
+    """Yield errors for capacities of missing types and fields, searched from the packages of the launch files."""
     if not said.cpp_nodes.capacities:
         return
     section = said.places["cpp_nodes"]

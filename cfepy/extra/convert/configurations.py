@@ -1,6 +1,6 @@
-"""C++ headers of configurations, `#include <my_package/MyConfig.h>`, made of the package's cfg/My.cfg.
+"""C++ headers of configurations, `#include <my_package/MyConfig.h>`, made from the package's cfg/My.cfg.
 
-As in a catkin build the script is run, by a Python of its own, with cfepy's `dynamic_reconfigure`.
+As in a catkin build the script is run, by a separate Python, with cfepy's `dynamic_reconfigure`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from rospy_shim.library_parts import FOLDER
 
 SUFFIX = "Config.h"
 CONFIGURATION_TYPES = ("dynamic_reconfigure/Config", "dynamic_reconfigure/ConfigDescription")
-"""Message types of what every configuration includes."""
+"""Message types that every configuration includes."""
 _TIMEOUT_S = 60
 _C_TYPES = {"int": "int", "double": "double", "bool": "bool", "str": "std::string"}
 _PARAMETER_TYPES = {**_C_TYPES, "str": "const char *"}
@@ -46,10 +46,10 @@ json.dump({"group": generator.group.to_dict(), "constants": generator.constants}
 
 
 def configuration_headers(headers: Iterable[str], program: Program) -> dict[str, str]:
-    """The texts of the headers of configurations of a node's own package that are among those included.
+    """Return the texts of the included headers for configurations of a node's own package.
 
     Args:
-        headers: as they are included, such as "my_package/MyConfig.h".
+        headers: names as included, such as "my_package/MyConfig.h".
         program: the node's.
 
     Returns:
@@ -67,7 +67,7 @@ def configuration_headers(headers: Iterable[str], program: Program) -> dict[str,
 
 
 def configuration_script(header: str, program: Program) -> Path | None:
-    """The script that a header of a configuration is made of; None when it is another header, or has no script."""
+    """Return the script for a configuration's header; None for another header, or one without a script."""
     package, slash, name = header.partition("/")
     stem = name.removesuffix(SUFFIX)
     if package != program.package.name or not slash or not name.endswith(SUFFIX) or not stem.isidentifier():
@@ -77,7 +77,7 @@ def configuration_script(header: str, program: Program) -> Path | None:
 
 
 def _description(script: Path, name: str) -> dict[str, Any]:
-    """What a script describes: its outermost group and its constants."""
+    """Run a script. Returns its description: its outermost group and its constants."""
     command = [*python_command(), "-c", _RUN, str(FOLDER / "dynamic_reconfigure"), str(script), name]
     environ = {**os.environ, "PYTHONPATH": import_path()}
     try:
@@ -91,7 +91,7 @@ def _description(script: Path, name: str) -> dict[str, Any]:
 
 
 def header_text(package: str, name: str, description: Mapping[str, Any]) -> str:
-    """The header of a configuration.
+    """Return the header of a configuration.
 
     Args:
         package: its package.
@@ -178,7 +178,7 @@ def _lines(package: str, name: str, description: Mapping[str, Any]) -> Iterator[
 
 
 def _visitors(config: str, parameters: Sequence[tuple[Mapping[str, Any], int]]) -> Iterator[str]:
-    """The functions that call a visitor with each field, of one configuration and of two."""
+    """Yield the functions that call a visitor with each field, of one configuration and of two."""
     yield from ("    template <class V>", f"    static void visit(V visitor, {config} &config)", "    {")
     yield from ("        static_cast<void>(visitor);", "        static_cast<void>(config);")
     for each, group in parameters:
@@ -193,14 +193,14 @@ def _visitors(config: str, parameters: Sequence[tuple[Mapping[str, Any], int]]) 
 
 
 def _inside_out(group: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-    """A group and those inside, in the order in which ROS describes them."""
+    """Yield a group and its inner groups, in the order of ROS's descriptions."""
     for each in _inner(group):
         yield from _inside_out(each)
     yield group
 
 
 def _outside_in(group: Mapping[str, Any], place: str) -> Iterator[tuple[Mapping[str, Any], str]]:
-    """A group and those inside, in the order of parameters and states, each with its member of the class."""
+    """Yield a group and its inner groups, in the order of parameters and states, each with its member of the class."""
     yield group, place
     for each in _inner(group):
         yield from _outside_in(each, f"{place}.{_identifier(each['name']).lower()}")
@@ -213,7 +213,7 @@ def _group(group: Mapping[str, Any]) -> str:
 
 
 def _group_members(group: Mapping[str, Any], member: str) -> list[str]:
-    """A group as a member of a class, with its parameters and the groups inside, as dynamic_reconfigure has it."""
+    """Return a group as a member of a class, with its parameters and inner groups, as dynamic_reconfigure has it."""
     lines = [f"struct {_identifier(group['name']).upper()}", "{", "    bool        state = true;"]
     lines += [f"    std::string name  = {quoted(group['name'])};"]
     lines += [f"    {_C_TYPES[each['type']]} {each['name']};" for each in group["parameters"]]

@@ -1,4 +1,4 @@
-"""What is converted: the nodes in C++ of a launch file or of a package, each with its names, MsgIds and entry point."""
+"""A conversion: the nodes in C++ of a launch file or of a package, each with its names, MsgIds and entry point."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from rospy_shim.types.msgs.packages import name_of
 
 @dataclass(slots=True)
 class ConversionTask:
-    """What is to be converted.
+    """The input of a conversion.
 
     Attributes:
-        title: of it, such as the launch file's name.
+        title: its title, such as the launch file's name.
         made_from: the launch file, or the package's folder.
         nodes: the nodes in C++.
         params: the tree of parameters.
         scripts: full names of the nodes in Python, which stay as they are.
-        notes: what the reader of a launch file had to say.
+        notes: notes of the reader of the launch file.
         launch: the launch file with its arguments; None for a package.
     """
 
@@ -48,13 +48,13 @@ class ConversionTask:
 
 @dataclass(slots=True)
 class ConvertedNode:
-    """A node with all that is generated for it.
+    """A node with all its generated parts.
 
     Attributes:
-        node: what the launch file or the package says.
-        program: what it is compiled of.
-        sources: all files of it.
-        headers: all that it includes, those of the interface library, too.
+        node: its entry in the launch file or the package.
+        program: its sources and build settings.
+        sources: all its files.
+        headers: all headers that it includes, also the interface library's.
         types: message types whose headers it includes.
         configurations: texts of the headers of configurations that it includes.
         names: its topics and services.
@@ -78,12 +78,12 @@ class ConvertedNode:
 
 @dataclass(slots=True)
 class Conversion:
-    """What came of a task.
+    """The result of a task.
 
     Attributes:
-        task: it.
-        nodes: those that were converted.
-        refused: why others were not, by full name.
+        task: the task.
+        nodes: the converted nodes.
+        refused: the reasons why other nodes were not converted, by full name.
         ids: with the MsgIds of all names.
         library: of message types.
     """
@@ -96,7 +96,7 @@ class Conversion:
 
 
 def task_of(words: Sequence[str], environ: Mapping[str, str]) -> ConversionTask:
-    """What a command line names: a launch file with its arguments, a package's folder or its name.
+    """Return the task of a command line: a launch file with its arguments, a package's folder or its name.
 
     Args:
         words: of the command line.
@@ -133,7 +133,7 @@ def _of_package(folder: Path, environ: Mapping[str, str]) -> ConversionTask:
 
 
 def _app_names(names: Iterable[str]) -> dict[str, str]:
-    """A name of an application for each program."""
+    """Return an application's name for each program."""
     found: dict[str, str] = {}
     for name in names:
         found[name] = app_name(name.rpartition("/")[2], found.values())
@@ -154,9 +154,9 @@ def converted(
     """Convert the nodes of a task.
 
     Args:
-        task: what to convert.
-        config: MsgIds that a mission and its lock file give.
-        judge: says why a program is not to be converted; an empty text for one that is.
+        task: the task.
+        config: MsgIds of a mission and its lock file.
+        judge: returns why a program is not converted; an empty text if it is.
 
     Raises:
         UsageError: two names have one MsgId, or there are no more.
@@ -210,7 +210,7 @@ def _node(
 
 
 def _with_ids(config: RosConfig, nodes: Iterable[ConvertedNode]) -> RosConfig:
-    """MsgIds for all names: of a mission that has none locked, each name gets one that is free."""
+    """Return MsgIds for all names. Without locked MsgIds of a mission, each name gets a free one."""
     topics: dict[str, bool] = {}
     services: dict[str, bool] = {}
     for each in nodes:
@@ -219,7 +219,7 @@ def _with_ids(config: RosConfig, nodes: Iterable[ConvertedNode]) -> RosConfig:
     if config.topics or config.locked_topics or config.locked_services:
         ids = MsgIds(config)
         for name in topics:
-            ids.of_topic(name)  # two names on one MsgId are told here
+            ids.of_topic(name)  # raises if two names have one MsgId
     of_topics, of_services = locked(config, topics, services)
     return replace(config, locked_topics=of_topics, locked_services=of_services)
 

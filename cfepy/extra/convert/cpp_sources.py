@@ -1,4 +1,4 @@
-"""What a node is compiled of: its sources with all headers that they include, found as the compiler finds them."""
+"""The files of a node: its sources and all headers that they include, found as the compiler finds them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class SourceSet:
 
     Attributes:
         texts: of each file, without comments; the sources first.
-        digests: of each file, as it is.
+        contents: of each file, unchanged.
         missing: headers that are in none of the folders, as written.
     """
 
@@ -35,7 +35,7 @@ class SourceSet:
 
 
 def collect(sources: Iterable[Path], includes: Sequence[Path]) -> SourceSet:
-    """Follow the includes of sources; conditions are not looked at.
+    """Follow the includes of sources. Preprocessor conditions are ignored.
 
     Args:
         sources: files.
@@ -61,7 +61,7 @@ def collect(sources: Iterable[Path], includes: Sequence[Path]) -> SourceSet:
         text = found.texts[file] = without_comments(found.contents[file].decode("utf-8", "replace"))
         for name in dict.fromkeys(includes_of(text)):
             beside = file.parent / name
-            if ".." in beside.parts:  # otherwise files that include each other would have new names without end
+            if ".." in beside.parts:  # otherwise files that include each other would get ever new names
                 beside = Path(os.path.normpath(beside))
             if _is_there(beside):
                 waiting.append(beside)
@@ -78,16 +78,16 @@ def collect(sources: Iterable[Path], includes: Sequence[Path]) -> SourceSet:
 
 
 def _is_there(file: Path) -> bool:
-    """Whether there is a header; what is no file and no folder counts, so that reading it tells what is wrong."""
+    """Return True if a header exists, even if it is not a regular file, so that reading it raises the error."""
     return os.path.exists(file) and not os.path.isdir(file)
 
 
 def message_types(headers: Iterable[str], library: Library) -> list[str]:
-    """The message and service types whose headers are included, sorted.
+    """Return the message and service types whose headers are included, sorted.
 
     Args:
-        headers: as they are included, such as "std_msgs/String.h".
-        library: of the types that there are.
+        headers: names as included, such as "std_msgs/String.h".
+        library: of the available types.
     """
     found = {name for header in headers if (name := _type_of(header, library))}
     return sorted(found)
@@ -104,7 +104,7 @@ def _type_of(header: str, library: Library) -> str:
 
 
 def main_form(sources: Iterable[Path], where: Path) -> bool:
-    """Whether the main function of a node has parameters.
+    """Return True if the main function of a node has parameters.
 
     Args:
         sources: of the node.

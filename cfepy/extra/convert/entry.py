@@ -1,4 +1,4 @@
-"""The entry point of a converted node: the source file that tells the interface library all about the node.
+"""The entry point of a converted node: a source file that describes the node to the interface library.
 
 It has the node's names, arguments, remaps, MsgIds and the first contents of its table of parameters as constants
 (`roscfe::NodeDescription` in roscfe/include/roscfe/node.h), and the function that ES calls.
@@ -21,24 +21,24 @@ ENTRY_SUFFIX = "_AppMain"
 MAIN_SYMBOL = "roscfe_node_main"
 LONGEST_QUEUE, PIPE_DEPTH = 64, 50
 FREE_ROWS = 16
-"""Rows of a table of parameters that a node has for what it sets itself."""
+"""Free rows of a table of parameters, for parameters that the node sets itself."""
 
 
 @dataclass(frozen=True, slots=True)
 class NodeEntry:
-    """What is generated around a node.
+    """The generated entry point of a node.
 
     Attributes:
         app: name of the application.
-        name: of the node, without its namespace; empty for what ros::init says.
+        name: of the node, without its namespace; empty for the name in ros::init.
         namespace: of the node, such as "/".
         args: of main, after the program's name.
         topics: MsgId, and whether it is raw, by resolved name.
         services: MsgId of the answers, by resolved name.
-        remaps: resolved names, and what takes their place.
+        remaps: resolved names, and their replacements.
         rows: of its table of parameters.
         takes_arguments: whether main has parameters.
-        nodelet: the class of C++ that the node is, if it is a nodelet.
+        nodelet: the C++ class of the node, if it is a nodelet.
         params_are_given: cfepy's parameter server has the parameters before the node starts.
     """
 
@@ -56,16 +56,16 @@ class NodeEntry:
 
     @property
     def symbol(self) -> str:
-        """The entry point's name: APP_AppMain, or a short one where OSAL would cut that."""
+        """The entry point's name: APP_AppMain, or a short one if OSAL would cut that."""
         return entry_symbol(self.app)
 
     def text(self) -> str:
-        """The source file."""
+        """Return the source file."""
         return "\n".join(_lines(self))
 
 
 def entry_symbol(app: str) -> str:
-    """The entry point of an application, no longer than OSAL allows.
+    """Return the entry point of an application, no longer than OSAL allows.
 
     Args:
         app: its name.
@@ -77,13 +77,13 @@ def entry_symbol(app: str) -> str:
 
 
 def main_header(takes_arguments: bool) -> str:
-    """What is included before each source of a node: its main function gets a symbol of its own, and stays main."""
+    """Return the text that is included before each source of a node, which gives its main function its own symbol."""
     parameters = "int, char **" if takes_arguments else ""
     return f'int main({parameters}) __asm__("{MAIN_SYMBOL}");\n'
 
 
 def parameter_rows(params: Mapping[str, Any], node: str, others: Iterable[str] = ()) -> list[Row]:
-    """The rows of a node's table: its own parameters and those that no other node has as its own, then free ones.
+    """Return the rows of a node's table: its own parameters, those that belong to no other node, then free rows.
 
     Args:
         params: the tree of all parameters.
@@ -99,12 +99,12 @@ def parameter_rows(params: Mapping[str, Any], node: str, others: Iterable[str] =
 
 
 def quoted(text: str) -> str:
-    """A text as C has it."""
+    """Return a text as a C literal."""
     return '"' + "".join(_escaped(byte) for byte in text.encode()) + '"'
 
 
 def _field(text: str, size: int) -> str:
-    """A text in an array of so many characters: C++ takes no literal for an array that has no room for its end."""
+    """Return a text for an array of `size` characters. C++ takes no literal for an array without room for its NUL."""
     if len(text) < size:
         return quoted(text)
     return f"{{{', '.join(_character(byte) for byte in text.encode())}}}"

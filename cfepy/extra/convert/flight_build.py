@@ -1,6 +1,6 @@
-"""Nodes in C++ for a mission of cfepy: built when the mission is read, with what its launch file says of them.
+"""Nodes in C++ for a mission of cfepy, built when the mission is read, with the settings of its launch file.
 
-MsgIds are not among it: the application ROS of the mission gives them when the node starts.
+MsgIds are not among them: the mission's application ROS assigns them when the node starts.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from cfepy.status import UsageError
 from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 
 LINES_SHOWN = 12
-"""Lines of what the compiler says that are told of a node that cannot be built."""
+"""Lines of the compiler's output in the error for a node that cannot be built."""
 
 
 def build_for_flight(
@@ -82,12 +82,12 @@ def build_for_flight(
 
 
 def message_library(packages: Packages) -> Library:
-    """The message types that a node can include: those of packages near by, and those that come with cfepy."""
+    """Return the message types that a node can include: from nearby packages, and the types that come with cfepy."""
     return Library([OnDisk(packages)], base=shipped())
 
 
 def shortened(text: str) -> str:
-    """The first lines of what a compiler says."""
+    """Return the first lines of a compiler's output."""
     lines = text.splitlines()
     more = [f"... and {len(lines) - LINES_SHOWN} more lines"] if len(lines) > LINES_SHOWN else []
     return "\n".join([*lines[:LINES_SHOWN], *more])

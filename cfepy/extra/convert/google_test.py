@@ -1,6 +1,6 @@
-"""Tests of GoogleTest as nodes: they are compiled together with GoogleTest's sources, as the computer has them.
+"""GoogleTest programs as nodes, compiled together with the GoogleTest sources of the computer.
 
-What such a program asks of an operating system, and the file with what came of its tests, is in `roscfe/gtest`.
+The operating system functions of such a program, and the file with its test results, are in `roscfe/gtest`.
 """
 
 from __future__ import annotations
@@ -14,32 +14,32 @@ from cfepy.reading.resources import shipped
 from cfepy.status import UsageError
 
 PLACES = ("/usr/src/googletest/googletest", "/usr/src/gtest")
-"""Where distributions put the sources."""
+"""Folders in which distributions put the sources."""
 ROOT = "GTEST_ROOT"
-"""The environment variable that says where else they are, as it does for CMake."""
+"""The environment variable with another folder of the sources, as for CMake."""
 SOURCE, MAIN, MOCK = "src/gtest-all.cc", "src/gtest_main.cc", "src/gmock-all.cc"
 DEFINITIONS = ("GTEST_HAS_PTHREAD=0",)
-"""The file of the flight computer with what came of the tests."""
+"""The file of the flight computer with the results of the tests."""
 
 
 def uses_google_test(missing: Iterable[str]) -> bool:
-    """Whether sources include GoogleTest's headers.
+    """Return True if sources include GoogleTest's headers.
 
     Args:
-        missing: headers that are not near by.
+        missing: headers that nearby packages do not have.
     """
     return any(each.startswith(("gtest/", "gmock/")) for each in missing)
 
 
 def add_google_test(program: Program, missing: Iterable[str]) -> None:
-    """Make GoogleTest a part of a program.
+    """Add GoogleTest to a program.
 
     Args:
         program: the test.
-        missing: headers that are not near by.
+        missing: headers that nearby packages do not have.
 
     Raises:
-        UsageError: GoogleTest is not there.
+        UsageError: GoogleTest is not installed.
     """
     folder = google_test_folder()
     parts = [folder]
@@ -56,10 +56,10 @@ def add_google_test(program: Program, missing: Iterable[str]) -> None:
 
 
 def google_test_folder() -> Path:
-    """Where the sources of GoogleTest are.
+    """Return the folder of GoogleTest's sources.
 
     Raises:
-        UsageError: they are not there.
+        UsageError: they are not installed.
     """
     said = os.environ.get(ROOT)
     for place in (said,) if said else PLACES:

@@ -1,10 +1,9 @@
 """C++ headers of messages, services and actions, as gencpp makes them for roscpp: `#include <std_msgs/String.h>`.
 
-They are made of the definitions that `rospy_shim.types.msgs` has, those that cfepy's own Python nodes use. A struct has
-what public nodes use of gencpp's: `_field_type`, `Ptr`, `ConstPtr`, constants, `==`, `<<`. Beside it stand the visitor
-of its fields (`roscfe::wire::Fields`) and what else is known of it (`roscfe::wire::Traits`); see roscfe/include.
-
-In the strict profile nothing allocates: a text and an array have a capacity there, one for each field.
+They are made from the definitions of `rospy_shim.types.msgs`, which cfepy's own Python nodes use. A struct has the
+parts of gencpp's that public nodes use: `_field_type`, `Ptr`, `ConstPtr`, constants, `==`, `<<`. With it come the
+visitor of its fields (`roscfe::wire::Fields`) and its other properties (`roscfe::wire::Traits`); see roscfe/include. In
+the strict profile nothing allocates: a text and an array have a capacity there, one for each field.
 """
 
 from __future__ import annotations
@@ -40,16 +39,16 @@ _KEYWORDS = frozenset({
 })  # fmt: skip
 _PARTS = ("Request", "Response")
 _IN_ENUM = frozenset(PRIMITIVES) - {"bool", "int64", "uint64", "float32", "float64"}
-_LONGEST_LITERAL = 2000  # characters of a line of a definition that a string literal takes at once
+_LONGEST_LITERAL = 2000  # characters of a definition's line in one string literal
 
 
 class Profile(StrEnum):
-    """What messages are made of; see docs/reference/roscfe.md."""
+    """The form of messages; see docs/reference/roscfe.md."""
 
     HOST = "host"
     """std::string and std::vector."""
     POOL = "pool"
-    """As in host; they allocate on the node's own arena."""
+    """As in host, but they allocate on the node's own arena."""
     STRICT = "strict"
     """Strings and vectors of a fixed capacity."""
 
@@ -59,13 +58,13 @@ def write_headers(
 ) -> list[Path]:
     """Write the headers of types and of all types in them, each to `folder/package/Name.h`.
 
-    A file that has the right text already is left alone, so that what was compiled with it stays valid.
+    A file that already has the right text is not written, so that files compiled with it stay valid.
 
     Args:
         types: full names of messages or services, e.g. "std_msgs/String", "std_srvs/SetBool".
         folder: for the include path of a compiler.
-        profile: what the messages are made of.
-        library: where the definitions are, e.g. `rospy_shim.types.msgs.shipped()`.
+        profile: the form of the messages.
+        library: the definitions, e.g. `rospy_shim.types.msgs.shipped()`.
         capacities: of the fields, for the strict profile; None for the defaults.
 
     Returns:
@@ -95,7 +94,7 @@ class _Maker:
         self._sizes: dict[str, tuple[int, bool]] = {}
 
     def headers(self, types: Iterable[str]) -> dict[str, str]:
-        """Texts by full name: of messages and services, and of all messages that they need."""
+        """Return texts by full name: of messages and services, and of all messages that they need."""
         made: dict[str, str] = {}
         wanted = list(types)
         while wanted:
@@ -210,7 +209,7 @@ class _Maker:
         return "\n".join(lines)
 
     def _service_traits(self, full_name: str) -> Iterator[str]:
-        """What a request and a response know of their service."""
+        """Yield the lines by which a request and a response know their service."""
         for part in _PARTS:
             service = full_name.removesuffix(part)
             if full_name.endswith(part) and not self._library.has(full_name) and self._library.has(service, "srv"):
@@ -225,7 +224,7 @@ class _Maker:
             yield ""
 
     def _type(self, owner: str, each: Field) -> str:
-        """The C++ type of a field."""
+        """Return the C++ type of a field."""
         place = f"{owner}.{each.name}"
         item = _NUMBERS.get(each.base) or "::" + each.base.replace("/", "::")
         if each.base == "string":
@@ -262,7 +261,7 @@ class _Maker:
             yield ""
 
     def _size(self, full_name: str) -> tuple[int, bool]:
-        """The fewest bytes that a message takes, and whether it always takes as many."""
+        """Return the fewest bytes of a message, and whether it always has this size."""
         if full_name not in self._sizes:
             sizes = [self._field_size(each) for each in self._library.spec(full_name).fields]
             self._sizes[full_name] = sum(least for least, _ in sizes), all(fixed for _, fixed in sizes)
@@ -291,20 +290,20 @@ def _check_name(spec: Spec) -> None:
 
 
 def _known_to_wire(first: str, *lines: str) -> Iterator[str]:
-    """What roscfe/wire.h knows of a type: specialisations of its templates, of which the first is named."""
+    """Yield specialisations of the templates in roscfe/wire.h for a type; the first one is named."""
     yield from ("namespace roscfe", "{", "namespace wire", "{", "", "template <>", f"struct {first}", "{")
     yield from lines
     yield from ("};", "", "} // namespace wire", "} // namespace roscfe", "")
 
 
 def _names(md5: str, full_name: str, which: str = "") -> Iterator[str]:
-    """A type's sum and its name."""
+    """Yield a type's sum and its name."""
     yield f'    static const char *{which}md5() {{ return "{md5}"; }}'
     yield f'    static const char *{which}type() {{ return "{full_name}"; }}'
 
 
 def _cpp_name(name: str) -> str:
-    """A field's name in C++: a word of the language gets an underscore, as genpy gives one to a word of Python."""
+    """Return a field's name in C++. A keyword gets an underscore, as genpy does for keywords of Python."""
     return name + "_" if name in _KEYWORDS else name
 
 
@@ -314,7 +313,7 @@ def _guard(package: str, name: str) -> list[str]:
 
 
 def _without_macros(names: Iterable[str], verb: str) -> Iterator[str]:
-    """Keep the preprocessor from names such as DEBUG, NAN or ERROR, which are macros on one platform or another."""
+    """Yield lines that protect names such as DEBUG, NAN or ERROR, which are macros on some platforms."""
     empty = True
     for name in names:
         empty = False
@@ -356,7 +355,7 @@ def _visitor(name: str, kind: str, argument: str, calls: Iterable[str]) -> Itera
 
 
 def _literal(text: str) -> list[str]:
-    """A return of a text, a literal for each of its lines."""
+    """Return the statement that returns a text, with a literal for each of its lines."""
     pieces = [
         line[start : start + _LONGEST_LITERAL]
         for line in text.splitlines(keepends=True) or [""]
@@ -367,7 +366,7 @@ def _literal(text: str) -> list[str]:
 
 
 def _quoted(text: str) -> str:
-    """A text as a literal, its bytes as UTF-8."""
+    """Return a text as a literal, its bytes as UTF-8."""
     return '"' + "".join(map(_escaped, text.encode())) + '"'
 
 
@@ -381,7 +380,7 @@ def _escaped(byte: int) -> str:
 
 
 def _number(constant: Constant) -> str:
-    """A constant's value as C++ has it."""
+    """Return a constant's value in C++."""
     if constant.type == "bool":
         return "1" if constant.value else "0"
     if constant.type in ("float32", "float64"):

@@ -1,6 +1,6 @@
-"""Writing what was generated: the same bytes each time, and never over a file that its user has changed since.
+"""Writes generated files: the same bytes each time, and never over a file that its user has changed since.
 
-A list of what was written, with the hash of each file, lies beside them.
+A list of the written files, with the hash of each file, lies beside them.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ SHOWN = 6
 
 
 def write_files(folder: Path, files: Mapping[str, bytes], force: bool = False) -> list[str]:
-    """Write files to a folder, and take away those of the last time that are no longer made.
+    """Write files to a folder, and remove files of the last time that are no longer made.
 
     Args:
-        folder: made if need be.
+        folder: made if necessary.
         files: contents by path in the folder.
-        force: write over files that were changed by hand, too.
+        force: also overwrite files that were changed by hand.
 
     Returns:
-        Paths of the files that are other than before, sorted.
+        Paths of the files that have changed, sorted.
 
     Raises:
-        UsageError: the user has changed a file, or it is not one of ours, or a name leads out of the folder; nothing
+        UsageError: the user has changed a file, or cfepy did not make it, or a name leads out of the folder; nothing
             has been written.
         OSError: the folder cannot be written.
     """
@@ -55,7 +55,7 @@ def write_files(folder: Path, files: Mapping[str, bytes], force: bool = False) -
 
 
 def _known(folder: Path) -> dict[str, str]:
-    """What was written the last time: hashes by path."""
+    """Return the files written the last time: hashes by path."""
     try:
         found = json.loads(read_limited(folder / MANIFEST, MANIFEST_BYTES))
     except (OSError, ValueError, RecursionError):
@@ -65,7 +65,7 @@ def _known(folder: Path) -> dict[str, str]:
 
 
 def _is_changed(file: Path, known: str | None, content: bytes | None) -> bool:
-    """Whether a file has something else than what was written to it, and than what would be."""
+    """Return True if a file differs both from the last written content and from the new one."""
     if not file.is_file():
         return False
     present = read_limited(file, sys.maxsize)

@@ -1,7 +1,7 @@
-"""A catkin package's C++ side: which executables and libraries it has, and what each is compiled of.
+"""A catkin package's C++ side: its executables and libraries, and the sources of each.
 
-Read from package.xml and CMakeLists.txt, those of rosbuild and catkin_simple included; nothing is built for it. What a
-target is linked with is a library of the package, one of another package near by, or one from outside, which is named.
+It is read from package.xml and CMakeLists.txt, also in the forms of rosbuild and catkin_simple; nothing is built. A
+linked library belongs to the package, to a nearby package, or comes from outside; outside libraries are listed by name.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _KINDS = ("STATIC", "SHARED", "MODULE", "OBJECT", "INTERFACE", "EXCLUDE_FROM_ALL
 _FOUND_ANYWAY = ("catkin", "Boost", "Eigen3", "Eigen", "Threads")
 _NO_LIBRARIES = ("catkin", "Boost", "Eigen3", "Eigen", "Threads", "cmake_modules")
 _SYSTEM_LIBRARIES = ("m", "pthread", "rt", "dl", "stdc++", "boost_system", "boost_thread", "boost_date_time")
-"""Libraries that a node is linked with on Linux, and that its application does without."""
+"""Libraries that a node links on Linux, and that its application does not need."""
 
 
 @dataclass(slots=True)
@@ -43,14 +43,14 @@ class CppTarget:
     """An executable or a library of a package.
 
     Attributes:
-        name: as the package's CMakeLists.txt calls it.
+        name: its name in the package's CMakeLists.txt.
         folder: of that file; relative sources start there.
-        is_library: whether it is one.
+        is_library: whether it is a library.
         sources: as written.
         includes: folders of headers, absolute.
         definitions: the compiler's -D, without -D.
-        links: what it is linked with, as written.
-        file_name: of the program, when that is another than the target's.
+        links: linked libraries, as written.
+        file_name: of the program, if it differs from the target's name.
     """
 
     name: str
@@ -68,7 +68,7 @@ class PluginClass:
     """A class that a package offers through pluginlib, such as a nodelet.
 
     Attributes:
-        name: under which it is loaded, such as "demo/Filter".
+        name: the name under which it is loaded, such as "demo/Filter".
         type: of C++, such as "demo::Filter".
         base: the class that it is derived from.
         library: the target that has it.
@@ -82,11 +82,11 @@ class PluginClass:
 
 @dataclass(slots=True)
 class CppPackage:
-    """What a package has in C++.
+    """The C++ contents of a package.
 
     Attributes:
         name: of the package.
-        folder: where its package.xml is.
+        folder: folder of its package.xml.
         targets: by name.
         includes: folders of headers that others see.
         exported: its libraries that others link with.
@@ -103,32 +103,32 @@ class CppPackage:
     plugins: dict[str, PluginClass] = field(default_factory=dict)
 
     def executables(self) -> list[str]:
-        """The types of its nodes, sorted."""
+        """Return the types of its nodes, sorted."""
         return sorted(each.file_name or each.name for each in self.targets.values() if not each.is_library)
 
     def nodelets(self) -> dict[str, PluginClass]:
-        """Its nodelets, by the name that pluginlib knows."""
+        """Return its nodelets, by the name that pluginlib knows."""
         return {name: each for name, each in self.plugins.items() if each.base.lstrip(":") == NODELET}
 
     def executable(self, node_type: str) -> CppTarget | None:
-        """The target behind a node's type."""
+        """Return the target for a node's type."""
         found = (each for each in self.targets.values() if (each.file_name or each.name) == node_type)
         return next((each for each in found if not each.is_library), None)
 
 
 @dataclass(slots=True)
 class Program:
-    """All that a node is compiled of.
+    """The sources and build settings of a node.
 
     Attributes:
         package: its package.
         type: of the node.
-        sources: files, those of the libraries of packages near by included.
+        sources: files, including those of the libraries of nearby packages.
         includes: folders of headers, the first searched first.
         definitions: the compiler's -D, without -D.
-        outside: libraries that it is linked with and that have no sources here, as written.
-        nodelet: the class of C++ that it is, such as "demo::Filter"; empty for a program.
-        support: sources of a library that is compiled with it, which has nothing of the program's in it.
+        outside: linked libraries without sources here, as written.
+        nodelet: its C++ class, such as "demo::Filter"; empty for a program.
+        support: sources of a library that is compiled with it, which are independent of the program.
     """
 
     package: CppPackage
@@ -145,15 +145,15 @@ def read_package(folder: Path, name: str, testing: bool = False) -> CppPackage:
     """Read a package.
 
     Args:
-        folder: where its package.xml is.
+        folder: folder of its package.xml.
         name: of the package.
         testing: whether its tests are among its targets, as with catkin's CATKIN_ENABLE_TESTING.
 
     Returns:
-        What it has; nothing of C++ when it has no CMakeLists.txt.
+        Its contents; no C++ when it has no CMakeLists.txt.
 
     Raises:
-        UsageError: its manifest gives it a name that no package has, or its CMakeLists.txt is too much.
+        UsageError: its manifest has an invalid package name, or its CMakeLists.txt exceeds the limits.
     """
     check_package_name(folder)
     package = CppPackage(name, folder)
@@ -168,16 +168,16 @@ def read_package(folder: Path, name: str, testing: bool = False) -> CppPackage:
 
 
 def program_of(package: CppPackage, node_type: str, packages: Packages, ours: Iterable[str] = ()) -> Program:
-    """What a node is compiled of.
+    """Return the sources and build settings of a node.
 
     Args:
         package: of the node.
         node_type: of the node: an executable, or a nodelet as pluginlib knows it, such as "demo/Filter".
-        packages: where other packages are looked for.
-        ours: packages whose place our own headers and libraries take.
+        packages: finds other packages.
+        ours: packages that our own headers and libraries replace.
 
     Raises:
-        UsageError: the package has no such target, or a source of it is not there.
+        UsageError: the package has no such target, or one of its sources does not exist.
     """
     plugin = package.nodelets().get(node_type)
     target = package.executable(node_type) if plugin is None else package.targets.get(plugin.library)
@@ -191,12 +191,12 @@ def program_of(package: CppPackage, node_type: str, packages: Packages, ours: It
 
 
 class _Collector:
-    """Collects what a target needs, through the libraries that it is linked with.
+    """Collects the needs of a target, through its linked libraries.
 
     Args:
-        program: gets it.
-        packages: where other packages are looked for.
-        ours: packages that are left alone.
+        program: receives them.
+        packages: finds other packages.
+        ours: packages that are skipped.
     """
 
     def __init__(self, program: Program, packages: Packages, ours: set[str]) -> None:
@@ -208,10 +208,10 @@ class _Collector:
         self._outside = dict.fromkeys(program.outside)
 
     def take(self, package: CppPackage, target: CppTarget) -> None:
-        """A target, with all that it is linked with.
+        """Add a target and all its linked libraries.
 
         Raises:
-            UsageError: a source of it is not there, or they are too many.
+            UsageError: one of its sources does not exist, or they are too many.
         """
         open_at = [self._taking(package, target)]
         while open_at:
@@ -223,7 +223,7 @@ class _Collector:
         self._program.outside = list(self._outside)
 
     def _taking(self, package: CppPackage, target: CppTarget) -> Iterator[tuple[CppPackage, CppTarget]]:
-        """Take a target; gives what is to be taken before the next thing of it."""
+        """Add a target. Yields the inner targets, each of which must be added before the iteration goes on."""
         if (package.name, target.name) in self._taken:
             return
         self._taken.add((package.name, target.name))
@@ -243,7 +243,7 @@ class _Collector:
             yield from self._dependency(name)
 
     def _dependency(self, name: str) -> Iterator[tuple[CppPackage, CppTarget]]:
-        """A package near by that this one depends on: its headers, and the libraries that it offers."""
+        """Add the headers of a nearby package that this one depends on. Yields its exported libraries."""
         if name in self._ours or name in self._read:
             return
         folder = next((each for each in self._packages.folders(name) if os.path.isfile(each / FILE)), None)
@@ -276,7 +276,7 @@ def _files(target: CppTarget) -> list[Path]:
 
 
 def _manifest(folder: Path) -> Element | None:
-    """The manifest of a package; None when it has none that can be read."""
+    """Return the manifest of a package; None if there is no readable one."""
     try:
         return plain_xml(read_limited(folder / MANIFEST, XML_BYTES))
     except (OSError, ValueError):
@@ -305,7 +305,7 @@ def _plugins(manifest: Element | None, folder: Path) -> Iterator[PluginClass]:
 
 
 def _plugin_file(text: bytes) -> Element:
-    """What a file of plugins has; pluginlib takes several libraries, one behind the other, which is no XML."""
+    """Return the contents of a plugin file. pluginlib accepts several libraries in sequence, which is not valid XML."""
     try:
         return plain_xml(text)
     except XmlError:
@@ -336,13 +336,13 @@ _ROSTESTS = ("add_rostest_gtest", "add_rostest_gmock")
 
 
 class _CatkinReader(CMakeScript):
-    """Reads the CMakeLists.txt of a package, and those of its subfolders.
+    """Reads the CMakeLists.txt of a package and of its subfolders.
 
     Args:
-        package: gets what is found.
+        package: receives the results.
         folder: of the file.
-        variables: those that are set before.
-        budget: what is left of that of the file around; None for the package's own.
+        variables: variables that are already set.
+        budget: the remaining budget of the including file; None for the package's own.
     """
 
     def __init__(
@@ -366,7 +366,7 @@ class _CatkinReader(CMakeScript):
         self._made: list[CppTarget] = []
 
     def read(self, file: Path) -> None:
-        """Carry out the file, and give its targets what holds for its whole folder."""
+        """Execute the file, and give its targets the settings of the whole folder."""
         self.run(text_limited(file, CMAKE_BYTES, "replace"))
         flags = " ".join(self.variables.get("CMAKE_CXX_FLAGS", [])).split()
         self._definitions += [each[2:] for each in flags if each.startswith("-D")]
@@ -376,7 +376,7 @@ class _CatkinReader(CMakeScript):
             self._grow(target.definitions, self._definitions)
 
     def _grow(self, found: list[T], more: Iterable[T]) -> None:
-        """Add what a list has not; to look through it takes time."""
+        """Add missing items to a list, and charge the budget for the search."""
         self.budget.spend(len(found))
         _add(found, more)
 
@@ -408,11 +408,11 @@ class _CatkinReader(CMakeScript):
                     super().command(name, words)
 
     def glob(self, pattern: str, deep: bool = False) -> list[str]:
-        """A pattern may begin with this folder's path."""
+        """Return files of a pattern, which may begin with this folder's path."""
         return super().glob(pattern.removeprefix(f"{self.folder}/"), deep)
 
     def _of_target(self, name: str, words: list[str]) -> bool:
-        """A command about one target; False when it is none."""
+        """Execute a command for one target. Returns False for other commands."""
         target = self._package.targets.get(words[0]) if words else None
         if target is None or not name.startswith(("target_", "set_target_", "rosbuild_link", "rosbuild_add_compile")):
             return False
@@ -444,7 +444,7 @@ class _CatkinReader(CMakeScript):
         return [each for each in named if os.path.isdir(each)]
 
     def _find(self, name: str, rest: list[str], is_package: bool) -> None:
-        """Something to be found on the computer: its libraries go by its name, its headers are where they are."""
+        """Define a package that CMake would find: its libraries have its name, its headers stay in place."""
         if is_package and name == "catkin":
             marks = ("REQUIRED", "COMPONENTS", "QUIET", "EXACT")
             self._grow(self._package.depends, (each for each in rest if each not in marks and each[:1].isalpha()))
@@ -458,7 +458,7 @@ class _CatkinReader(CMakeScript):
             self.variables[f"{prefix}_INCLUDE_DIRS"] = self.variables[f"{prefix}_INCLUDE_DIR"] = headers
 
     def _export(self, words: list[str]) -> None:
-        """What `catkin_package` offers to other packages."""
+        """Record the exports of `catkin_package` for other packages."""
         said: dict[str, list[str]] = {}
         section = ""
         for each in words:
@@ -473,6 +473,6 @@ class _CatkinReader(CMakeScript):
 
 
 def _definitions(flags: Iterable[str], plain: bool = False) -> list[str]:
-    """The definitions among flags; with `plain` a word without -D is one too."""
+    """Return the definitions among flags; with `plain` a word without -D is one too."""
     words = [word for flag in flags if "$<" not in flag for word in flag.split()]
     return [word.removeprefix("-D") for word in words if word.startswith("-D") or plain]

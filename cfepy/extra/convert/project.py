@@ -45,22 +45,22 @@ MADE = "made by cfepy convert"
 MAIN_HEADERS = {True: "main_with_arguments.h", False: "main_without_arguments.h"}
 EXPORTS = "exports.map"
 EXPORTED = "{ global: *_AppMain; RN_*_Main; roscfe_node; local: *; };\n"
-"""What a node exports. A copy of a function of the C++ library would be used by that library, too, when the node is the
-first one that needs it; the node then stays in memory, and is started again with what it left there."""
+"""Exports of a node. If a node exported a copy of a C++ library function and were the first one that needs it, the
+library would use that copy too. The node would then stay in memory, and start again with its old state."""
 C_ONLY = ("-std=c99", "-pedantic", "-Wstrict-prototypes", "-Wmissing-prototypes", "-Werror")
-"""Options that a cFS mission gives all languages, and that C++ sources cannot have."""
+"""Options that a cFS mission sets for all languages, but that are invalid for C++."""
 
 
 def project_files(made: Conversion, config: CppNodesConfig, folder: Path) -> dict[str, bytes]:
-    """All files of the folder, by path.
+    """Return all files of the folder, by path.
 
     Args:
-        made: what was converted.
-        config: what the nodes are built for.
-        folder: where it will be, for paths that lead out of it.
+        made: the conversion.
+        config: the build settings of the nodes.
+        folder: the later folder, for paths that lead out of it.
 
     Raises:
-        CppNodesError: a capacity of a type or field that is not there, or has none.
+        CppNodesError: a capacity of a type or field that does not exist, or has none.
         UsageError: a field without a capacity.
     """
     files: dict[str, bytes] = {}
@@ -80,21 +80,21 @@ def project_files(made: Conversion, config: CppNodesConfig, folder: Path) -> dic
 
 
 def startup_line(node: ConvertedNode) -> str:
-    """The line of a startup script that starts a node."""
+    """Return the line of a startup script that starts a node."""
     app = node.node.app
     return f"CFE_APP, {node.file}, {node.entry.symbol}, {app}, {PRIORITY}, {COMPILED_STACK_BYTES}, 0x0, 0;\n"
 
 
 def origin(node: ConvertedNode) -> str:
-    """Where a node comes from: package and type."""
+    """Return the origin of a node: package and type."""
     return node.node.type if node.entry.nodelet else f"{node.node.package}/{node.node.type}"
 
 
-# -- what is built -----------------------------------------------------------------------------------------------------
+# -- sources and build files -------------------------------------------------------------------------------------------
 
 
 def _library(made: Conversion, options: BuildOptions) -> dict[str, bytes]:
-    """The interface library with the headers of all messages."""
+    """Return the interface library with the headers of all messages."""
     root = library_folder()
     found = {
         f"roscfe/{each.relative_to(root)}": each.read_bytes() for each in sorted(root.rglob("*")) if each.is_file()
@@ -123,7 +123,7 @@ def _cmake_of_library(sources: Iterable[str], options: BuildOptions) -> str:
     definitions = f"\n    target_compile_definitions(${{ROSCFE_LIBRARY}} PRIVATE {words})" if arena else ""
     exceptions = () if profile is Profile.HOST else WITHOUT_EXCEPTIONS
     flags = [*LANGUAGE, f"-DROSCFE_PROFILE_{profile.name}"]
-    linked = " ".join(link_flags(profile)[1:])  # -shared is CMake's
+    linked = " ".join(link_flags(profile)[1:])  # CMake adds -shared
     listed = "".join(f"\n      ${{ROSCFE_DIR}}/{each}" for each in sources)
     return f"""# The interface library for ROS nodes, and how a node is built with it; {MADE}.
 # A CMakeLists.txt includes this file before anything else.
@@ -190,7 +190,7 @@ roscfe_node({node.file} {MAIN_HEADERS[node.entry.takes_arguments]} fsw/src/{node
 
 
 def _place(node: ConvertedNode, file: Path) -> str:
-    """Where a file of a node's goes below packages/: in the folder of its package, at the place that it has there."""
+    """Return the path of a node's file below packages/: in the folder of its package, at the same place as there."""
     file = Path(os.path.abspath(file))
     roots = [(node.program.package.name, node.program.package.folder)]
     roots += [(each.name, each.parent if each.name == "include" else each) for each in node.program.includes]
@@ -202,7 +202,7 @@ def _place(node: ConvertedNode, file: Path) -> str:
 
 
 def _include_folders(node: ConvertedNode) -> list[str]:
-    """The include folders of a node's packages that have files here."""
+    """Return the include folders of a node's packages that have files here."""
     found: dict[str, None] = {}
     for folder in node.program.includes:
         inside = next((each for each in node.sources.contents if each.is_relative_to(folder)), None)
@@ -213,22 +213,22 @@ def _include_folders(node: ConvertedNode) -> list[str]:
     return [cmake_word(each, where, "${CMAKE_CURRENT_LIST_DIR}/../packages/") for each in found]
 
 
-# -- what is beside it -------------------------------------------------------------------------------------------------
+# -- other files -------------------------------------------------------------------------------------------------------
 
 
 def cmake_word(text: str, of: Path, before: str = "") -> str:
-    """A text as one argument of a command of CMake.
+    """Return a text as one argument of a command of CMake.
 
     Args:
         text: such as the path of a source, or a definition.
-        of: what it belongs to, for errors.
-        before: what stands before it in the argument, as CMake has it.
+        of: its owner, for errors.
+        before: text before it in the argument, in CMake's form.
 
     Returns:
-        The text itself where it needs no quotes, else in quotes, in which nothing has a meaning of its own.
+        The text itself if it needs no quotes, else in quotes, with all special characters escaped.
 
     Raises:
-        UsageError: CMake would take it apart all the same: lists are divided at semicolons, and paths are lists.
+        UsageError: CMake would split it anyway: lists are divided at semicolons, and paths are lists.
     """
     if _PLAIN_WORD.fullmatch(text):
         return before + text
@@ -242,7 +242,7 @@ _DIVIDING = (";", "[", "]", "$<")
 
 
 def _line(text: str) -> str:
-    """A text in a comment, which ends with its line."""
+    """Return a text for a comment, which ends with its line."""
     return "".join(each if each.isprintable() else "?" for each in text)
 
 
@@ -257,7 +257,7 @@ list(APPEND MISSION_GLOBAL_APPLIST {names})
 
 
 def _mission(made: Conversion, config: CppNodesConfig, folder: Path) -> dict[str, str]:
-    """A mission of cfepy: the launch file with the MsgIds, the profile and the capacities that are compiled in."""
+    """Return a mission of cfepy: the launch file with the compiled-in MsgIds, profile and capacities."""
     launch = made.task.launch
     if launch is None:
         return {}
@@ -278,7 +278,7 @@ def _mission(made: Conversion, config: CppNodesConfig, folder: Path) -> dict[str
 
 
 def _cpp_nodes(config: CppNodesConfig) -> Iterator[str]:
-    """The section `cpp_nodes:`, without what goes without saying."""
+    """Yield the section `cpp_nodes:`, without default values."""
     usual = CppNodesConfig()
     if config.profile == usual.profile:
         return
@@ -326,7 +326,7 @@ Convert again after a change of the launch file, of the nodes or of MsgIds, whic
 
 
 def report(made: Conversion) -> dict[str, Any]:
-    """What was mapped to what, as plain values."""
+    """Return the mapping of nodes and names as plain values."""
     return {
         "made_from": made.task.title,
         "nodes": [_row(node) for node in made.nodes],
@@ -363,7 +363,7 @@ def _row(node: ConvertedNode) -> dict[str, Any]:
 
 
 def report_text(made: Conversion) -> str:
-    """The report for a reader."""
+    """Return the report as Markdown."""
     return "\n".join(_report_lines(report(made))) + "\n"
 
 

@@ -1,8 +1,8 @@
-"""The names of topics and services in the sources of a node: they get their MsgIds before the node is compiled.
+"""The names of topics and services in the sources of a node, which get their MsgIds before the node is compiled.
 
-A name is found where the source has it as a text: in the call that advertises, subscribes or calls, or in the variable,
-the default of a parameter or the parameter's value that the call is given. Comments do not count. What namespace the
-name is in is said by its NodeHandle; of one whose namespace is not seen all are taken that the node's handles have.
+A name is found if the source has it as a text: in the call that advertises, subscribes or calls, or in the variable,
+the default of a parameter or the parameter's value in that call. Comments do not count. The NodeHandle defines the
+namespace of a name. If the namespace is not known, all namespaces of the node's handles are used.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ _RETURNED = re.compile(rf"\b(\w++)\s*+=[^;=]*?\bparam\s*+{_TYPE}\s*+\(\s*+{_STRI
 _INCLUDE = re.compile(r"^[ \t]*+#[ \t]*+include[ \t]*+[<\"]([^>\"\n]{1,8000}+)[>\"]", re.MULTILINE)
 _MOST_NAMES = 10_000
 _MOST_SPACES = 200
-_LONGEST_WORD = 200  # characters of what a call is given that is not a text
+_LONGEST_WORD = 200  # characters of an argument that is not a text
 _NAME = re.compile(r"[~/A-Za-z]?[\w/]*")
 
 
@@ -68,9 +68,9 @@ class UsedName(NamedTuple):
     """A name in a source.
 
     Attributes:
-        name: as it is there, with the namespace of its handle: absolute, "~private" or relative.
+        name: as written, with the namespace of its handle: absolute, "~private" or relative.
         is_service: of a service, not of a topic.
-        is_certain: the call has it itself; otherwise it is what a variable may hold.
+        is_certain: the call contains it; otherwise it is a possible value of a variable.
     """
 
     name: str
@@ -80,11 +80,11 @@ class UsedName(NamedTuple):
 
 @dataclass(slots=True)
 class NodeNames:
-    """The names of a node, resolved and with the node's remaps done, in order.
+    """The names of a node, resolved and with the node's remaps applied, in order.
 
     Attributes:
-        topics, services: those that it has; each certain or not.
-        remaps: resolved names, and what takes their place.
+        topics, services: its names; each certain or not.
+        remaps: resolved names, and their replacements.
         open: texts of calls whose name is not known.
     """
 
@@ -95,17 +95,17 @@ class NodeNames:
 
 
 def without_comments(text: str) -> str:
-    """A source without its comments; texts in it stay."""
+    """Return a source without its comments; string literals stay."""
     return _COMMENT.sub(lambda match: match[1] or " ", text)
 
 
 def includes_of(text: str) -> list[str]:
-    """What a source includes, as written; comments must be gone."""
+    """Return the includes of a source without comments, as written."""
     return _INCLUDE.findall(text)
 
 
 class SourceNames:
-    """Looks for names in the sources of one node.
+    """Finds names in the sources of one node.
 
     Args:
         texts: of its sources and own headers, without comments.
@@ -121,7 +121,7 @@ class SourceNames:
         self.open: list[str] = []
 
     def used(self) -> list[UsedName]:
-        """All names, each once.
+        """Return all names, each once.
 
         Raises:
             UsageError: they are too many.
@@ -156,7 +156,7 @@ class SourceNames:
             yield from (UsedName(name, True, True) for name in services)
 
     def _by_variable(self, handle: str, call: str, variable: str, is_service: bool) -> Iterator[UsedName]:
-        """NodeNames that a variable may hold; a call that is given options has its name there."""
+        """Yield names that a variable may hold. A call with options has its name in them."""
         word = variable.strip()
         if len(word) > _LONGEST_WORD:
             self.open.append(f"{call}({word[:_LONGEST_WORD]}...)")
@@ -168,12 +168,12 @@ class SourceNames:
             yield from self._spaced(handle, name, is_service, False)
 
     def _members(self, text: str) -> Iterator[str]:
-        """The names of actions whose server or client is a member that a constructor begins."""
+        """Yield the names of actions whose server or client is a member that a constructor initialises."""
         for member in dict.fromkeys(_ACTION_MEMBER.findall(text)):
             yield from self._actions_begun.get(member, ())
 
     def _spaced(self, handle: str, name: str, is_service: bool, is_certain: bool) -> Iterator[UsedName]:
-        """A name in the namespaces that its handle may have."""
+        """Yield a name in the possible namespaces of its handle."""
         if not _NAME.fullmatch(name) or not name:
             return
         if name[0] in (SEP, PRIVATE):
@@ -183,10 +183,10 @@ class SourceNames:
             yield UsedName(joined(space, name), is_service, is_certain)
 
     def _handle_namespaces(self) -> dict[str, list[str]]:
-        """Namespaces of the node's handles, by their variables; "" has all, for a handle that is not known."""
+        """Return namespaces of the node's handles, by their variables; "" has all, for an unknown handle."""
         found: dict[str, list[str]] = {}
         unknown: set[str] = set()
-        plain: list[str] = []  # declared with nothing behind the name: a constructor may begin them otherwise
+        plain: list[str] = []  # declared without an initialiser: a constructor may initialise them differently
         texts = [_HANDLES.sub(_one_by_one, text) for text in self._texts]
         self._handles_begun = _by_name(_BEGUN_HANDLE, texts)
         for text in texts:
@@ -218,7 +218,7 @@ class SourceNames:
         return {**known, "": list(every)}
 
     def _begin_later(self, name: str, found: dict[str, list[str]], unknown: set[str]) -> None:
-        """What a handle gets away from its declaration: of a constructor, or of an assignment."""
+        """Add the namespaces that a handle gets after its declaration: in a constructor, or in an assignment."""
         for parent, space, other in self._handles_begun.get(name, ()):
             if not other:
                 found[name] = [*found[name], *(joined(each, space) for each in found.get(parent) or [""])]
@@ -229,7 +229,7 @@ class SourceNames:
             _check_few(found[name])
 
     def _spaces_made(self, rest: str, found: Mapping[str, list[str]]) -> list[str] | None:
-        """The namespaces of a handle by what follows its name where it is declared; None when that is not seen."""
+        """Return a handle's namespaces from the text after its name in the declaration; None if they are not known."""
         if rest.startswith(";"):
             return [""]
         if rest.startswith((",", ")")):
@@ -240,7 +240,7 @@ class SourceNames:
         return [""] if re.match(r"[({]\s*[)}]", rest) else None
 
     def _variables(self, values: Mapping[str, str]) -> dict[str, list[str]]:
-        """What variables may hold: the texts that they are given."""
+        """Return the texts that variables may hold."""
         found: dict[str, list[str]] = {}
         for text in self._texts:
             for name, value in (*_VARIABLE.findall(text), *_MACRO.findall(text)):
@@ -256,7 +256,7 @@ class SourceNames:
 
 
 def _by_name(pattern: re.Pattern[str], texts: Iterable[str]) -> dict[str, list[Any]]:
-    """What a pattern finds in texts behind names: by its first group, the others (or the only other one)."""
+    """Return the matches of a pattern in texts: by its first group, the other groups (or the only other one)."""
     found: dict[str, list[Any]] = {}
     for text in texts:
         for name, *others in pattern.findall(text):
@@ -265,7 +265,7 @@ def _by_name(pattern: re.Pattern[str], texts: Iterable[str]) -> dict[str, list[A
 
 
 def _check_few(spaces: Sized) -> None:
-    """Check that namespaces do not multiply, as those of a handle do that is made of itself.
+    """Check that namespaces do not multiply, as for a handle that is made from itself.
 
     Raises:
         UsageError: they are too many.
@@ -275,7 +275,7 @@ def _check_few(spaces: Sized) -> None:
 
 
 def _one_by_one(declaration: re.Match[str]) -> str:
-    """Handles that are declared in one go, each by itself; parameters of a function stay as they are."""
+    """Split a declaration of several handles into one for each; parameters of a function stay as they are."""
     if "," not in declaration[1]:
         return declaration[0]
     parts = [_DECLARED.fullmatch(each) for each in re.split(r",(?![^()]*\))", declaration[1])]
@@ -285,14 +285,14 @@ def _one_by_one(declaration: re.Match[str]) -> str:
 
 
 def joined(space: str, name: str) -> str:
-    """A name in a namespace; an absolute or private one stays."""
+    """Return a name in a namespace; an absolute or private one stays."""
     if not space or name.startswith((SEP, PRIVATE)):
         return name
     return f"{space}{name}" if space.endswith((SEP, PRIVATE)) else f"{space}{SEP}{name}"
 
 
 def resolved(name: str, namespace: str, node: str) -> str:
-    """A name as ros::names::resolve has it, without remaps.
+    """Return a name as ros::names::resolve does, without remaps.
 
     Args:
         name: absolute, private or relative.
@@ -307,13 +307,13 @@ def resolved(name: str, namespace: str, node: str) -> str:
 
 
 def names_of(used: Iterable[UsedName], namespace: str, node: str, remaps: Iterable[tuple[str, str]]) -> NodeNames:
-    """The names of a node as its graph has them.
+    """Return the names of a node in the ROS graph.
 
     Args:
         used: in its sources.
         namespace: of the node.
         node: its full name.
-        remaps: as the launch file has them.
+        remaps: from the launch file.
     """
     found = NodeNames(remaps={resolved(a, namespace, node): resolved(b, namespace, node) for a, b in remaps})
     for each in used:
@@ -325,7 +325,7 @@ def names_of(used: Iterable[UsedName], namespace: str, node: str, remaps: Iterab
 
 
 def texts_below(params: Any, node: str) -> dict[str, str]:
-    """The private parameters of a node that are texts, by name without the "~".
+    """Return the private parameters of a node that are texts, by name without the "~".
 
     Args:
         params: the tree of parameters.

@@ -1,8 +1,8 @@
-"""The debugger: it stops a run at breakpoints, goes on in steps, and opens Python's debugger in an application's task.
+"""The debugger: stops a run at breakpoints, steps through it, and opens Python's debugger in an application's task.
 
-What belongs here stops a run and asks its user (`debugger`), says where a run may be stopped (`breakpoints`), or goes
-back in it (`journey`, `keepers`). What watches a run without stopping it belongs to `cfepy.monitors`, what draws a run
-afterwards to `cfepy.extra.reports`. The central file is `cfepy/extra/debugger/debugger.py`.
+Code that stops a run and asks its user (`debugger`), defines where a run may stop (`breakpoints`), or goes back in it
+(`journey`, `keepers`) belongs here. Observers that do not stop a run belong to `cfepy.monitors`, pictures of a finished
+run to `cfepy.extra.reports`. The central file is `cfepy/extra/debugger/debugger.py`.
 """
 
 from __future__ import annotations

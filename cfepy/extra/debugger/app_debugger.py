@@ -1,4 +1,4 @@
-"""`AppDebugger`: Python's debugger in one task of the mission, which stops in lines of the mission only."""
+"""`AppDebugger`: Python's debugger in one task of the mission, which stops only in lines of the mission."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from cfepy.interpreter.own_code import is_own_code, is_shown
 
 
 class AppDebugger(pdb.Pdb):
-    """One for each task that is looked into.
+    """Python's debugger for one task.
 
     Args:
         on_quit: ends the run; the application itself is not disturbed.
         waiting: a context around each time that it waits for its user.
-        commands, stream: where the user writes and reads.
-        root: folder that source files lie below, and that their paths are shown without.
+        commands, stream: input from the user, and output to the user.
+        root: folder that contains the source files; their paths are shown without it.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class AppDebugger(pdb.Pdb):
         self.way_back: LineWay | None = None
 
     def count_lines(self) -> None:
-        """The task begins: from now on its own lines are counted, so that they are found again."""
+        """Begin to count the task's own lines, so that they can be found again."""
         here = sys._getframe()
         self.reset()
         self.botframe = here  # not a frame that is ever executed again: nothing stops
@@ -51,7 +51,7 @@ class AppDebugger(pdb.Pdb):
         sys.settrace(self.trace_dispatch)
 
     def trace_dispatch(self, frame: FrameType, event: str, arg: Any) -> Any:
-        """As of `bdb.Bdb`; each line of the task's own code counts."""
+        """Trace a frame as `bdb.Bdb` does, and count each line of the task's own code."""
         if self._has_quit:
             return None
         way = self.way_back
@@ -67,14 +67,14 @@ class AppDebugger(pdb.Pdb):
         return frame.f_lineno in self.breaks.get(self.canonic(frame.f_code.co_filename), ())
 
     def set_continue(self) -> None:
-        """As of `bdb.Bdb`, which would not look at lines any more where there is no breakpoint."""
+        """Continue as `bdb.Bdb` does, but keep tracing lines without breakpoints."""
         if self.way_back is None:
             super().set_continue()
         else:
             self._runs_on()
 
     def _runs_on(self) -> None:
-        """Stop at breakpoints alone; lines are looked at nevertheless."""
+        """Stop only at breakpoints, but keep tracing lines."""
         base: Any = super()
         base._set_stopinfo(self.botframe, None, -1)
 
@@ -95,11 +95,11 @@ class AppDebugger(pdb.Pdb):
         return way(self.way_back) and bool(self.do_continue(""))
 
     def canonic(self, filename: str) -> str:
-        """As of `bdb.Bdb`: by this path a file is shown, and has its breakpoints."""
+        """Return the path under which a file is shown and has its breakpoints, as `bdb.Bdb` does."""
         return super().canonic(filename).removeprefix(self._root)
 
     def lookupmodule(self, filename: str) -> str | None:
-        """As of `pdb.Pdb`; a file whose lines are known need not be on this computer."""
+        """Find a file as `pdb.Pdb` does. A file with known lines need not be on this computer."""
         return filename if filename in linecache.cache else super().lookupmodule(filename)
 
     def cmdloop(self, intro: Any = None) -> None:
@@ -107,11 +107,11 @@ class AppDebugger(pdb.Pdb):
             super().cmdloop(intro)
 
     def stop_here(self, frame: FrameType) -> bool:
-        """As of `bdb.Bdb`, in code of the mission only."""
+        """Return True where `bdb.Bdb` would stop, in code of the mission only."""
         return is_own(frame) and bool(super().stop_here(frame))
 
     def get_stack(self, f: FrameType | None, t: TracebackType | None) -> tuple[list[tuple[FrameType, int]], int]:
-        """As of `bdb.Bdb`, without the frames of cfepy."""
+        """Return the stack as `bdb.Bdb` does, without the frames of cfepy."""
         stack, at = super().get_stack(f, t)
         shown = [entry for entry in stack if is_shown(entry[0].f_code.co_filename)]
         current = stack[at] if stack else None
@@ -131,12 +131,12 @@ class AppDebugger(pdb.Pdb):
 
 
 def is_own(frame: FrameType) -> bool:
-    """Whether a frame is code of this mission, not of a library or of cfepy."""
+    """Return True if a frame is code of this mission, not of a library or of cfepy."""
     return is_own_code(frame.f_code.co_filename)
 
 
 def own_frame() -> FrameType | None:
-    """The innermost frame of the mission's own code in the task that runs; None when there is none."""
+    """Return the innermost frame of the mission's own code in the running task; None if there is none."""
     frame: FrameType | None = sys._getframe(1)
     while frame is not None and not is_own(frame):
         frame = frame.f_back
@@ -148,19 +148,19 @@ def look_into(debugger: AppDebugger, frame: FrameType | None) -> None:
 
     Args:
         debugger: for this task.
-        frame: where the application is; None when it has not begun.
+        frame: the application's current frame; None when it has not begun.
     """
     debugger.set_trace(sys._getframe() if frame is None else frame)
 
 
 def leave_thread() -> None:
-    """No debugger of a task follows the calling thread any more, which for tasks on greenlets is that of the host."""
+    """Stop tracing the calling thread for a task's debugger. For tasks on greenlets, it is the host's thread."""
     if isinstance(getattr(sys.gettrace(), "__self__", None), AppDebugger):
         sys.settrace(None)
 
 
 def look_at_end(debugger: AppDebugger, error: BaseException) -> None:
-    """Open the debugger where an uncaught exception came from."""
+    """Open the debugger at the origin of an uncaught exception."""
     trace: TracebackType | None = error.__traceback__
     while trace is not None and not is_own(trace.tb_frame):
         trace = trace.tb_next  # the kernel's frames, above the application's

@@ -1,4 +1,4 @@
-"""What a run may be stopped at: an event, messages of one MsgId, or messages of which a predicate holds."""
+"""Breakpoints of a run: an event, messages of one MsgId, or messages for which a predicate holds."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
 
 NAMES = ("msg", "topic", "sender", "t")
-"""What a predicate may name: the message, its topic or packet name, its sender, the virtual time in s."""
+"""Names in a predicate: the message, its topic or packet name, its sender, the virtual time in s."""
 FORMS = "APP:ID or APP:ERROR for an event, a MsgId or the name of a packet or topic, or a Python expression about msg"
 MOST_REASONS = 3
 _EVENT = re.compile(r"([A-Za-z_]\w*|\*):(\d+|\*|[A-Z]+)")
@@ -29,22 +29,22 @@ _TOPIC = re.compile(r"/[\w/*?\[\]~-]*")
 _HARMLESS = frozenset(
     {"abs", "all", "any", "bool", "float", "int", "isinstance", "len", "max", "min", "round", "str", "sum"}
 )
-"""What an expression about variables may call."""
+"""Functions that an expression about variables may call."""
 
 Hit = Callable[[str], object]
-"""Is called with each event or message, in the task that sends it and before any receiver gets it."""
+"""Called with each event or message, in the task that sends it and before any receiver gets it."""
 
 
 class Breakpoint(Attachment):
-    """What stops a run, by the text of a user.
+    """A breakpoint, from the text of a user.
 
     Args:
         text: see `FORMS`.
         spec: the mission.
-        hit: is called at each occasion.
+        hit: is called at each match.
 
     Raises:
-        UsageError: the text means nothing of the kind.
+        UsageError: the text is not a valid breakpoint.
     """
 
     def __init__(self, text: str, spec: MissionSpec, hit: Hit) -> None:
@@ -61,7 +61,7 @@ class Breakpoint(Attachment):
 
     @property
     def missed(self) -> str | None:
-        """That it has stopped nothing, and why if that is known; None when it has."""
+        """A message if the breakpoint never matched, with the reason if it is known; None if it matched."""
         if self._has_hit:
             return None
         why = self._watch.why_not() if isinstance(self._watch, _AtPredicate) else ""
@@ -116,7 +116,7 @@ def _at_packet(name: str, dictionary: Dictionary, hit: Hit) -> Attachment:
 
 
 class _AtPredicate(Attachment):
-    """Stops where a predicate holds of a message; where it does not apply, as for want of a field, it does not hold."""
+    """Stops where a predicate holds for a message. It does not hold if it does not apply, as with a missing field."""
 
     def __init__(self, text: str, spec: MissionSpec, hit: Hit) -> None:
         try:
@@ -148,7 +148,7 @@ class _AtPredicate(Attachment):
             self._hit(f"{self._predicate.source}: {_told(heard)}")
 
     def why_not(self) -> str:
-        """What hindered it from ever holding: a misspelt field, rather than messages that are not so."""
+        """Return why it never applied, such as a misspelt field; empty if it applied and was only false."""
         if self._applies or not self._errors:
             return ""
         topics = sorted(self._errors, key=lambda topic: not topic.startswith("/"))[:MOST_REASONS]
@@ -160,7 +160,7 @@ def _told(heard: Heard) -> str:
 
 
 def _shown(heard: Heard) -> str:
-    """A message on one line."""
+    """Return a message on one line."""
     try:
         message: Any = heard.msg
     except UsageError as error:
@@ -169,18 +169,18 @@ def _shown(heard: Heard) -> str:
 
 
 def breakpoints(texts: Sequence[str], spec: MissionSpec, hit: Hit) -> list[Breakpoint]:
-    """What stops a run at several things; see `Breakpoint`."""
+    """Return the breakpoints for several texts; see `Breakpoint`."""
     return [Breakpoint(text, spec, hit) for text in texts]
 
 
 class VariableCondition:
-    """An expression about what the code of a mission has in its variables.
+    """An expression about variables in the code of a mission.
 
     Args:
-        text: a Python expression, in which nothing is called but a few built-in functions that change nothing.
+        text: a Python expression; it may call only a few built-in functions that change nothing.
 
     Raises:
-        UsageError: it is none.
+        UsageError: it is not such an expression.
     """
 
     def __init__(self, text: str) -> None:
@@ -195,17 +195,17 @@ class VariableCondition:
         self._code: CodeType = compile(tree, "--back-to", "eval")
 
     def holds(self, frame: FrameType | None) -> bool:
-        """Whether it holds in code that is being executed; not where its names are not known."""
+        """Return True if it holds in a frame; False if its names are not known there."""
         if frame is None:
             return False
         try:
             return bool(eval(self._code, frame.f_globals, frame.f_locals))
-        except Exception:  # whatever the code of the mission has there
+        except Exception:  # any error of the mission's objects
             return False
 
 
 def finders(text: str, spec: MissionSpec, hit: Callable[[str], object]) -> list[Breakpoint] | VariableCondition:
-    """What a text looks for: what a breakpoint stops at, or, when it is none, what holds of variables.
+    """Return the breakpoints for a text, or a condition on variables if it is not a breakpoint.
 
     Raises:
         UsageError: it is neither.

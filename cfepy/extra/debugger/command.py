@@ -1,4 +1,4 @@
-"""`cfepy replay` with --break, --step, --pdb, --gdb or --back: the debugger that the command line asks for."""
+"""`cfepy replay` with --break, --step, --pdb, --gdb or --back: the debugger for these options."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ def fly_with_debugger(
     Args:
         arguments: of `cfepy replay`.
         replay: the replay.
-        view: what is shown of it.
-        looking_on: what else watches each flight.
+        view: its output for the user.
+        looking_on: other observers of each flight.
 
     Returns:
         The exit status, and the last of the replays.
@@ -55,7 +55,7 @@ def _fly_all(
     looking_on: Sequence[Attachment],
     keepers: Keepers | None,
 ) -> tuple[int, Replay]:
-    """All flights in this process; with keepers, it may be another one that comes back."""
+    """Make all flights in this process. With keepers, another process may return from this call."""
     journey = None if arguments.gdb is not None else Journey(arguments.back, arguments.back_to)
     while True:
         debugger = debugger_of(arguments, replay, journey, keepers)
@@ -73,7 +73,7 @@ def _fly_all(
 
 
 def _may_fork(arguments: argparse.Namespace, replay: Replay) -> bool:
-    """Whether processes may be forked on the way, so that the way back is short."""
+    """Return True if processes may be forked during the run, so that going back is fast."""
     wanted = arguments.back or arguments.back_to is not None
     writes = arguments.bag is not None or arguments.trace is not None  # while the run goes on
     is_alone = task_kind(replay.plan.tasks).name == GREENLET and arguments.pdb is None and hasattr(os, "fork")
@@ -81,10 +81,10 @@ def _may_fork(arguments: argparse.Namespace, replay: Replay) -> bool:
 
 
 def _in_other_processes(replay: Replay, flights: Callable[[Keepers], tuple[int, Replay]]) -> tuple[int, Replay]:
-    """Fly in a child of this process, or in what that forks; what came of it is told here.
+    """Fly in a child of this process, or in its forks, and receive the result here.
 
     Raises:
-        UsageError: what the flights raise, or the process of the run ended.
+        UsageError: a flight raised it, or the process of the run ended.
     """
     reader, writer = os.pipe()
     sys.stdout.flush()
@@ -109,7 +109,7 @@ def _in_other_processes(replay: Replay, flights: Callable[[Keepers], tuple[int, 
 
 
 def _tell_parent(writer: int, flights: Callable[[Keepers], tuple[int, Replay]]) -> None:
-    """Fly, tell the process that waits what came of it, and end."""
+    """Fly, send the result to the waiting process, and end."""
     keepers = Keepers()
     try:
         status, last = flights(keepers)
@@ -127,16 +127,16 @@ def _tell_parent(writer: int, flights: Callable[[Keepers], tuple[int, Replay]]) 
 def debugger_of(
     arguments: argparse.Namespace, replay: Replay, journey: Journey | None, keepers: Keepers | None
 ) -> Debugger:
-    """The debugger for a replay.
+    """Return the debugger for a replay.
 
     Args:
-        arguments: of `cfepy replay`; with --step, --pdb or --gdb, --until is where the first stop is, not the end.
+        arguments: of `cfepy replay`; with --step, --pdb or --gdb, --until is the time of the first stop, not the end.
         replay: the replay.
-        journey: what its flights have in common; None for no way back.
+        journey: the state that its flights share; None for no way back.
         keepers: processes that shorten the way back; None for none.
 
     Raises:
-        UsageError: a breakpoint that cannot be, or an application that there is not.
+        UsageError: an invalid breakpoint, or an unknown application.
     """
     spec = replay.stage.spec()
     if arguments.pdb is not None and arguments.gdb is not None:
@@ -163,11 +163,11 @@ def debugger_of(
 
 
 def _application(name: str, spec: MissionSpec, option: str) -> str:
-    """The cFE name of the application or node that a user means."""
+    """Return the cFE name of the application or node that a user names."""
     apps = [entry.name for entry in spec.entries]
     nodes = {config.name: app for app, config in spec.ros.nodes.items() if config.name is not None}
     plain = name.lstrip("/")
-    for app in (name, nodes.get(plain), plain.upper()):  # a node that names itself has its file's name in capitals
+    for app in (name, nodes.get(plain), plain.upper()):  # a self-named node's application: its file in capitals
         if app in apps or app in CORE_APPS:
             return str(app)
     known = [*apps, *nodes]
@@ -176,11 +176,11 @@ def _application(name: str, spec: MissionSpec, option: str) -> str:
 
 
 class DebugView(View):
-    """What a person sees of a run that stops: no status line, which would write over what the debugger says.
+    """The output of a run that stops: no status line, which would overwrite the debugger's output.
 
     Args:
         view: the view without a debugger.
-        journey: of the replay; what its user has seen before is not shown again.
+        journey: of the replay; output that its user has seen before is not shown again.
     """
 
     def __init__(self, view: View, journey: Journey | None) -> None:
@@ -201,10 +201,10 @@ class DebugView(View):
 
 
 class _LateDisplay(PlainDisplay):
-    """Lines, but for those that come while a replay is on its way to where its user wants to be.
+    """Lines, without those that come while a replay is on its way back to the user's target.
 
     Args:
-        stream: where to.
+        stream: the output.
         journey: of the replay.
     """
 
@@ -218,10 +218,10 @@ class _LateDisplay(PlainDisplay):
 
 
 class _Typed(io.TextIOBase):
-    """What is typed, read line by line: what one process read ahead, another one would not see."""
+    """Typed input, read line by line, because another process would not see input that one process has read ahead."""
 
     def readline(self, size: int = -1, /) -> str:  # type: ignore[override]  # only whole lines are asked for
-        """The next line; empty at the end."""
+        """Return the next line; empty at the end."""
         line = b""
         while not line.endswith(b"\n") and (more := os.read(0, 1)):
             line += more

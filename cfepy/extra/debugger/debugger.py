@@ -1,9 +1,9 @@
-"""`Debugger`: stops a run, says where it is, and does what its user wants: go on, step, look around, look into an app.
+"""`Debugger`: stops a run, shows the place, and executes its user's commands: continue, step, inspect, open an app.
 
-The user is asked inside the simulation, in the task in which the run stops, so everything stands still meanwhile. What
-is asked and answered changes nothing in the run. To look into an application, Python's debugger (`AppDebugger`) is
-opened in its task: it stops in the application's own lines, never in those of cfepy, and follows that one task; what
-other tasks do happens within the line that waits for them.
+The user is asked inside the simulation, in the task in which the run stops, so everything is paused meanwhile.
+Questions and answers do not change the run. To look into an application, Python's debugger (`AppDebugger`) is opened in
+its task. It stops in the application's own lines, never in those of cfepy, and follows that one task. Operations of
+other tasks happen within the line that waits for them.
 """
 
 from __future__ import annotations
@@ -51,20 +51,20 @@ class Debugger(Observer):
 
     Args:
         spec: the mission.
-        stops: what to stop at; see `cfepy.extra.debugger.breakpoints`.
+        stops: the breakpoints; see `cfepy.extra.debugger.breakpoints`.
         step: stop at everything that happens, from the beginning or from `from_ns` on.
         app: open Python's debugger in the tasks of this application: at once, or at the first stop when there are
-            `stops` or `from_ns`; and where an exception came from whose traceback is written to the console.
+            `stops` or `from_ns`; and at the origin of an exception whose traceback is written to the console.
         from_ns: virtual time of the first stop; None for none.
         gdb: open gdb on the process instead, once.
         on_quit: ends the run.
-        commands, stream: where the user writes and reads; None for this process's own.
-        root: folder that the mission's files lie below, and that their paths are shown without.
+        commands, stream: input from the user, and output to the user; None for this process's own.
+        root: folder that contains the mission's files; their paths are shown without it.
         journey: lets the user go back, by other flights of the same run; None for no way back.
         keepers: processes that shorten the way back; None for none.
 
     Raises:
-        UsageError: a breakpoint that cannot be.
+        UsageError: an invalid breakpoint.
 
     Attributes:
         count: stops so far.
@@ -101,7 +101,7 @@ class Debugger(Observer):
         self._app = app
         self._gdb = gdb
         self._looks = app is not None and not stops and from_ns is None
-        self._error: BaseException | None = None  # the last one that was looked at
+        self._error: BaseException | None = None  # the last one that was shown
         self._debuggers: dict[Task, AppDebugger] = {}
         self._on_quit = on_quit
         self._commands = sys.stdin if commands is None else commands
@@ -118,7 +118,7 @@ class Debugger(Observer):
         return super().bus(base)
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """A task that begins, or goes on with what it was doing, may stop."""
+        """Return a kernel whose tasks may stop when they begin, or continue after a wait."""
         debugger = self
 
         class StoppingKernel(super().kernel(base)):  # type: ignore[misc]  # mypy follows no class that is a result
@@ -146,7 +146,7 @@ class Debugger(Observer):
         self._has_begun = True
 
     def _beginning(self, entry: Callable[[], object]) -> Callable[[], object]:
-        """What a task does, with a look before it begins."""
+        """Wrap a task's entry point, with a possible stop before it begins."""
 
         def begin() -> object:
             task = self._kernel.current
@@ -158,7 +158,7 @@ class Debugger(Observer):
         return begin
 
     def conclude(self) -> None:
-        """At the end of the run there is a way back, too."""
+        """Offer the way back at the end of the run, too."""
         super().conclude()
         journey = self._journey
         if journey is None or self._is_over:
@@ -176,7 +176,7 @@ class Debugger(Observer):
         journey.was_in_vain = False
         if is_here or (journey.asks_at_end and not journey.is_silent):
             self._looks = False
-            self._on_quit = _nothing  # it is the end anyway
+            self._on_quit = _nothing  # the run has already ended
             self._say(f"{self._kernel.now / NS_PER_S:.9f} the end of the run")
             with self._mission.stall_watch.paused():
                 self._ask()
@@ -190,10 +190,10 @@ class Debugger(Observer):
 
     @property
     def missed(self) -> list[str]:
-        """A line for each breakpoint that has stopped nothing, although the run went to its end."""
+        """A line for each breakpoint that never matched, although the run went to its end."""
         return [] if self._is_over else [each.missed for each in self._breakpoints if each.missed is not None]
 
-    # -- what happens ------------------------------------------------------------------------------------------------
+    # -- events --------------------------------------------------------------------------------------------------------
 
     def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
         self._look_around(f"sends {self._names[sent.msg_id]} (0x{sent.msg_id:04X}), {sent.size} bytes")
@@ -209,7 +209,7 @@ class Debugger(Observer):
         self._look_around(text)
 
     def on_console(self, line: str, at_ns: int) -> None:
-        """A task that writes a traceback there has just caught the exception."""
+        """Look for an exception: a task that writes a traceback to the console has just caught it."""
         self._look_around(f"console: {line}")
         error = sys.exc_info()[1]
         is_silent = self._journey is not None and self._journey.is_silent
@@ -218,14 +218,14 @@ class Debugger(Observer):
             self._look_at(error)
 
     def _look_at(self, error: BaseException) -> None:
-        """An exception that its application did not expect."""
+        """Open the debugger at an exception that its application did not expect."""
         task = self._kernel.current
         if app_of(task) == self._app and not self._is_over and self._gdb is None:
             self._say(f"{self._place(task)}: {type(error).__name__}: {error}")
             look_at_end(self._debugger_of(task), error)
 
     def _look_around(self, what: str) -> None:
-        """Something happens in the task that runs."""
+        """Handle an event in the running task."""
         kernel = self._kernel
         if self._is_over or kernel.current is kernel.host:
             return
@@ -250,9 +250,9 @@ class Debugger(Observer):
     # -- the way back ------------------------------------------------------------------------------------------------
 
     def _looked_for(self, spec: MissionSpec) -> tuple[list[Breakpoint], dict[str, VariableCondition]]:
-        """What finds the moments that were looked for: messages and events, or what holds of variables."""
+        """Return the finders of the searched moments: for messages and events, and for conditions on variables."""
         found: list[Breakpoint] = []
-        self._found_by: set[str] = set()  # the texts that messages and events are found by
+        self._found_by: set[str] = set()  # the texts about messages and events
         conditions: dict[str, VariableCondition] = {}
         for text in () if self._journey is None else self._journey.texts:
             means = finders(text, spec, partial(self._find, text))
@@ -264,7 +264,7 @@ class Debugger(Observer):
         return found, conditions
 
     def _find(self, text: str, what: str) -> None:
-        """A message or an event that was looked for."""
+        """Record a message or an event that was searched for."""
         if self._journey is None or self._is_over:
             return
         at = self._moment
@@ -274,7 +274,7 @@ class Debugger(Observer):
             self._arrive(self._journey, moment, what)
 
     def _pass_by(self, journey: Journey, what: str) -> None:
-        """Something happens that the user has seen before, or that is only looked at in search of another."""
+        """Handle an event that the user has seen before, or that is only examined in a search."""
         moment, search = self._moment, journey.search
         if search is not None and search.text:
             condition = self._condition(search.text)
@@ -283,7 +283,7 @@ class Debugger(Observer):
         self._arrive(journey, moment, what)
 
     def _condition(self, text: str) -> VariableCondition | None:
-        """What a text says of variables; None when it is about messages and events."""
+        """Return the condition on variables of a text; None if it is about messages and events."""
         if text not in self._conditions and text not in self._found_by:
             means = finders(text, self._spec, lambda what: None)
             if isinstance(means, VariableCondition):
@@ -303,7 +303,7 @@ class Debugger(Observer):
             self._break_off()
 
     def _break_off(self) -> None:
-        """This flight is over, and another one goes where the user wants to be, here or from where a keeper is."""
+        """End this flight. Another one goes to the user's target, from the beginning or from a keeper."""
         keepers, journey = self._keepers, self._journey
         if keepers is not None and journey is not None:
             search = journey.search
@@ -316,7 +316,7 @@ class Debugger(Observer):
         self._on_quit()
 
     def _hit(self, what: str) -> None:
-        """A breakpoint stops."""
+        """Handle a match of a breakpoint."""
         if self._is_over:
             return
         at, journey = self._moment, self._journey
@@ -328,15 +328,15 @@ class Debugger(Observer):
             self._stop(what)
 
     def _back(self) -> bool:
-        """To the thing that happened before."""
+        """Go back to the event before."""
         return self._go(lambda journey: journey.go_to(self._moment.before()), self._moment.before().happened > 0)
 
     def _reverse(self) -> bool:
-        """To the last breakpoint."""
+        """Go back to the last breakpoint."""
         return self._go(lambda journey: journey.look_for("", self._moment), bool(self._breakpoints))
 
     def _back_to(self, text: str) -> bool:
-        """To the last time at which something happened or held."""
+        """Go back to the last time at which a breakpoint matched or a condition held."""
         try:
             finders(text, self._spec, lambda what: None)
         except UsageError as error:
@@ -353,7 +353,7 @@ class Debugger(Observer):
         return True
 
     def _stop(self, what: str) -> None:
-        """The run stops here: say where that is, and ask."""
+        """Stop the run here: show the place, and ask the user."""
         if self._is_over:
             return
         self.count += 1
@@ -374,7 +374,7 @@ class Debugger(Observer):
     # -- the user ----------------------------------------------------------------------------------------------------
 
     def _ask(self) -> None:
-        """Do what the user wants until the run may go on."""
+        """Execute commands of the user until the run may continue."""
         answers: dict[str, Callable[[], bool]] = {
             "c": lambda: True,
             "s": self._step,
@@ -389,7 +389,7 @@ class Debugger(Observer):
         while True:
             word = self._read()
             if word is None:
-                self._stepping = self._then_steps  # the input has ended: the stops are shown, and the run goes on
+                self._stepping = self._then_steps  # the input has ended: show the stops, and let the run go on
                 return
             short = {"continue": "c", "step": "s", "": "s", "where": "w", "quit": "q", "back": "b"}.get(word, word)
             verb, _, text = word.partition(" ")
@@ -468,4 +468,4 @@ class Debugger(Observer):
 
 
 def _nothing() -> None:
-    """What ends a run that is over."""
+    """Do nothing: the run is already over."""

@@ -1,7 +1,7 @@
-"""gdb on compiled applications: started on this process, with the symbols of what is loaded.
+"""gdb on compiled applications: it is started on this process, with the symbols of the loaded objects.
 
-Compiled code is at the same addresses in each run, but no loader of the host knows of it: a script for gdb says which
-file is where, and stops at the main function of the application. While gdb has the process, its clock on the wall does
+Compiled code is at the same addresses in each run, but no loader of the host knows about it. A script for gdb gives the
+address of each file, and stops at the main function of the application. While gdb has the process, its wall time does
 not count.
 """
 
@@ -20,21 +20,21 @@ from cfepy.mission import Mission
 from cfepy.status import UsageError
 
 WATCH_SIGNAL = signal_number("SIGRTMIN") + 6
-"""With which the engine looks after code that computes without a call."""
+"""Signal by which the engine watches code that computes without a call."""
 PR_SET_PTRACER = 0x59616D61
 ANYBODY = -1
 LOOK_S = 0.05
 SETTLE_S = 0.3
-"""Wall time after gdb has a thread; it stops all of them before that is over, and goes on when its user says so."""
+"""Wall time to wait after gdb has a thread. In this time it stops all threads until its user continues."""
 
 
 def gdb_script(mission: Mission, folder: Path, function: str) -> str:
-    """Commands that tell gdb what is loaded, and where to stop.
+    """Return commands that give gdb the loaded objects, and the place of the first stop.
 
     Args:
-        mission: that flies.
-        folder: where copies of the objects are put, since those of the mission may be in its journal only.
-        function: where to stop; empty for nowhere.
+        mission: the flying mission.
+        folder: receives copies of the objects, because those of the mission may be only in its journal.
+        function: function of the first stop; empty for none.
     """
     runtime = mission.processor.compiled
     lines = [
@@ -70,7 +70,7 @@ class GdbSession:
         """Start gdb on this process, and wait until its user lets the process go on.
 
         Args:
-            mission: that flies.
+            mission: the flying mission.
             is_running: whether the application is past the beginning of its main function.
 
         Raises:
@@ -100,7 +100,7 @@ class GdbSession:
         self._waited(SETTLE_S)
 
     def _waited(self, seconds: float) -> int | None:
-        """Wait for the end of gdb; its exit status, None when it goes on."""
+        """Wait for the end of gdb. Returns its exit status, or None if it still runs."""
         assert self._process is not None
         try:
             return self._process.wait(seconds)
@@ -108,11 +108,11 @@ class GdbSession:
             return None
 
     def close(self) -> None:
-        """The run is over: gdb sees that the process ends, and its user leaves it."""
+        """Remove the files of the session. gdb sees that the process ends, and its user leaves it."""
         self._folder.close()
 
 
 def _is_traced() -> bool:
-    """Whether somebody traces this thread."""
+    """Return True if a debugger traces this thread."""
     status = Path("/proc/thread-self/status").read_text(encoding="utf-8")
     return next(int(line.split()[1]) for line in status.splitlines() if line.startswith("TracerPid:")) != 0

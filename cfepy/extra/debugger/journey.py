@@ -1,7 +1,7 @@
-"""`Journey`: where a replay that can go back has been, and where it is to stop next.
+"""`Journey`: the state of a replay that can go back: the moments it has been at, and its next stop.
 
-A replay does the same each time. So to go back is to fly it again from its beginning, unseen and unheard, and to stop
-earlier: at a moment that is known, or at the last one before now of which something holds, which is looked for first.
+A replay is the same each time. So to go back, cfepy flies it again from its beginning without output, and stops
+earlier: at a known moment, or at the last earlier moment for which a text matches, which is searched first.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ class RunMoment(NamedTuple):
     """A moment of a run, the same in each replay of it.
 
     Attributes:
-        happened: how many things have happened until then.
-        hits: how many breakpoints have stopped since the last of these.
-        finds: how often what is looked for was found since then.
-        text: what is looked for.
+        happened: number of events until then.
+        hits: number of breakpoint matches since the last event.
+        finds: number of matches of the searched text since then.
+        text: the searched text.
     """
 
     happened: int
@@ -29,12 +29,12 @@ class RunMoment(NamedTuple):
     text: str = ""
 
     def before(self) -> RunMoment:
-        """The last thing that happened before."""
+        """Return the moment of the last event before."""
         return RunMoment(self.happened if self.hits or self.finds else self.happened - 1)
 
 
 class LineMoment(NamedTuple):
-    """A moment of a task that Python's debugger looks into: so many lines of its own code have begun."""
+    """A moment of a task in Python's debugger: the number of its own lines that have begun."""
 
     task: int
     lines: int
@@ -45,14 +45,14 @@ AnyMoment = RunMoment | LineMoment
 
 @dataclass(slots=True)
 class BackSearch:
-    """What is looked for, up to a moment.
+    """A search for a moment, up to a limit.
 
     Attributes:
         text: as for `--back-to`; empty for breakpoints.
-        limit: the moment; None for the end of the run.
-        found: the last one until now.
-        begins_at: how many things have happened where it begins; what was before is looked through after that.
-        origin: where the user was; None for the limit.
+        limit: the moment at which it ends; None for the end of the run.
+        found: the last match until now.
+        begins_at: number of events at its beginning; earlier events are searched after that.
+        origin: the user's moment; None for the limit.
     """
 
     text: str
@@ -63,18 +63,18 @@ class BackSearch:
 
 
 class Journey:
-    """What flights of one replay have in common.
+    """The state that flights of one replay share.
 
     Args:
         asks_at_end: the user is asked at the end of the run.
-        back_to: what to look for in the first flight.
+        back_to: the text to search for in the first flight.
 
     Attributes:
-        target: where to stop; None when nothing is stepped over.
-        search: what is looked for.
-        texts: all that was looked for.
-        flies_again: this flight is broken off, for another one.
-        was_in_vain: a search has found nothing, and its user is not told yet.
+        target: the moment of the next stop; None if no moment is skipped.
+        search: the current search.
+        texts: all searched texts.
+        flies_again: this flight is aborted for another one.
+        was_in_vain: a search has found nothing, and its user has not been informed yet.
     """
 
     def __init__(self, asks_at_end: bool = False, back_to: str | None = None) -> None:
@@ -86,21 +86,21 @@ class Journey:
 
     @property
     def is_silent(self) -> bool:
-        """Whether nothing is shown, as the user has seen it before."""
+        """Whether nothing is shown, because the user has seen it before."""
         return self.target is not None or self.search is not None
 
     def go_to(self, target: AnyMoment) -> None:
-        """Stop there, in another flight."""
+        """Stop at a moment, in another flight."""
         self.target, self.search, self.flies_again = target, None, True
 
     def look_for(self, text: str, limit: AnyMoment) -> None:
-        """Find the last moment before another, in another flight; see `BackSearch`."""
+        """Find the last matching moment before another one, in another flight; see `BackSearch`."""
         self.target, self.search, self.flies_again = None, BackSearch(text, limit), True
         if text and text not in self.texts:
             self.texts.append(text)
 
     def arrives(self, moment: AnyMoment) -> bool:
-        """Whether the user is to be asked at a moment; when a search ends there, with success, the flight is over."""
+        """Return True if the user is to be asked at a moment. A search that ends there with success ends the flight."""
         if self.target == moment:
             self.target = None
             return True
@@ -109,7 +109,7 @@ class Journey:
         return not self.ends_search()
 
     def ends_search(self) -> bool:
-        """The search is over: go to what it has found, if it has."""
+        """End the search, and go to its match if there is one. Returns True if another flight is needed."""
         assert self.search is not None
         search, self.search = self.search, None
         if search.found is not None:
@@ -123,11 +123,11 @@ class Journey:
         return self.flies_again
 
     def finds(self, moment: AnyMoment, text: str = "") -> None:
-        """Something was found, in the search for it."""
+        """Record a match of the search."""
         search = self.search
         if search is None or search.text != text or moment == search.limit:
             return
-        if text or type(moment) is type(search.limit):  # a debugger's breakpoints are others than those of the run
+        if text or type(moment) is type(search.limit):  # pdb's breakpoints differ from breakpoints of the run
             search.found = moment
 
 
@@ -138,7 +138,7 @@ class LineWay:
         journey: of the replay.
         task: number of the task.
         break_off: ends this flight.
-        say: tells the user something.
+        say: shows a text to the user.
     """
 
     def __init__(self, journey: Journey, task: int, break_off: Callable[[], None], say: Callable[[str], None]) -> None:
@@ -149,11 +149,11 @@ class LineWay:
 
     @property
     def is_silent(self) -> bool:
-        """Whether the user has seen all this before: then breakpoints do not stop."""
+        """Whether the user has seen all this before; then breakpoints do not stop."""
         return self._journey.is_silent
 
     def passes(self, has_break: bool) -> bool:
-        """A line of the task begins; whether the user is to be asked there."""
+        """Count a line of the task that begins. Returns True if the user is to be asked there."""
         journey = self._journey
         self._at = moment = LineMoment(self._at.task, self._at.lines + 1)
         if not journey.is_silent or journey.flies_again:
@@ -170,7 +170,7 @@ class LineWay:
         return False
 
     def step_back(self) -> bool:
-        """To the line before; False when this is the first one."""
+        """Go back to the line before. Returns False if this is the first one."""
         if self._at.lines < 2:
             self._say(NOTHING_BEFORE)
             return False
@@ -179,7 +179,7 @@ class LineWay:
         return True
 
     def to_break(self) -> bool:
-        """To the last line with a breakpoint."""
+        """Go back to the last line with a breakpoint."""
         self._journey.look_for("", self._at)
         self._break_off()
         return True

@@ -1,10 +1,10 @@
-"""`Keepers`: processes that stand still at moments of a run, from each of which it can go on.
+"""`Keepers`: paused processes at moments of a run, from each of which the run can go on.
 
     keeper at 1 --fork--> keeper at 2001 --fork--> ... --fork--> the process that flies, and asks its user
 
-The process that flies forks now and then: the parent waits there, and its child goes on. To go back, the child writes
-to the keeper before the moment that is meant where to go, and ends; the keeper forks once more. So a way back takes as
-long as the run took from that keeper on. Only tasks on greenlets can be forked, since a fork takes one thread along.
+The flying process forks regularly: the parent waits there, and its child goes on. To go back, the child sends the
+target to the last keeper before it, and ends; the keeper forks once more. So going back takes as long as the run took
+from that keeper on. Only tasks on greenlets can be forked, because a fork copies one thread only.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ from cfepy.extra.debugger.journey import BackSearch, Journey, LineMoment, RunMom
 from cfepy.interpreter.garbage import freeze
 from cfepy.interpreter.host_system import end_process
 
-FIRST = 500  # things that happen between two keepers, at first
+FIRST = 500  # events between two keepers, at first
 LEAST = 50
-PARTS = 8  # of a way back, with a keeper behind each
+PARTS = 8  # parts of a way back, with a keeper after each
 LENGTH_BYTES = 8
-MOST = 24  # keepers; when there are more, every other one goes, and the next ones come half as often
+MOST = 24  # keepers; beyond this, every other one ends, and new ones come half as often
 
 
 class Keeper(NamedTuple):
-    """A process that waits.
+    """A waiting process.
 
     Attributes:
-        happened: how many things have happened there.
-        orders: where it is told to go on, or to end.
+        happened: number of events at its moment.
+        orders: pipe for its orders: go on to a target, or end.
     """
 
     happened: int
@@ -43,7 +43,7 @@ class Keeper(NamedTuple):
 
 
 class KeeperOrder(NamedTuple):
-    """What a keeper is told: see `Journey`."""
+    """An order for a keeper; see `Journey`."""
 
     target: RunMoment | LineMoment | None
     search: BackSearch | None
@@ -52,7 +52,7 @@ class KeeperOrder(NamedTuple):
 
 
 class Keepers:
-    """Those of the flights of a replay, in the order of their moments."""
+    """The keepers of the flights of a replay, in the order of their moments."""
 
     def __init__(self) -> None:
         self._all: list[Keeper] = []
@@ -60,11 +60,11 @@ class Keepers:
         self._next = 1
 
     def keep(self, journey: Journey, happened: int, waiting: Callable[[], AbstractContextManager[None]]) -> None:
-        """So much has happened: leave a keeper here, if it is time for one.
+        """Leave a keeper here if one is due after this number of events.
 
         Args:
-            journey: of the replay; changed when this comes back in a process that was told where to go.
-            happened: how many things.
+            journey: of the replay; changed when this call returns in a process that got an order.
+            happened: number of events.
             waiting: a context around the time that the keeper waits.
         """
         if happened < self._next:
@@ -74,15 +74,15 @@ class Keepers:
         self._next = happened + self._every
         sys.stdout.flush()
         sys.stderr.flush()
-        freeze()  # a child that went through these objects would have to copy them
+        freeze()  # a garbage collection in a child would have to copy these objects
         with waiting():
             self._fork(journey, happened)
 
     def _fork(self, journey: Journey, happened: int) -> None:
-        """This process becomes the keeper; it comes back in its children alone."""
+        """Turn this process into the keeper. The call returns only in its children."""
         while True:
             reader, writer = os.pipe()
-            with warnings.catch_warnings():  # of other threads: here they only watch, and hold no lock
+            with warnings.catch_warnings():  # about other threads, which only watch here and hold no lock
                 warnings.simplefilter("ignore", DeprecationWarning)
                 child = os.fork()
             if not child:
@@ -94,13 +94,13 @@ class Keepers:
             if order is None:
                 end_process(0)
             os.close(reader)
-            os.waitpid(child, 0)  # which has ended, as all have that stood at later moments
+            os.waitpid(child, 0)  # it has ended, as have all processes at later moments
             journey.target, journey.search, journey.texts, journey.was_in_vain = order
             journey.flies_again = False
             self._come_closer(order, happened)
 
     def _come_closer(self, order: KeeperOrder, happened: int) -> None:
-        """Who goes back once does it again: more keepers on the way make the next ways shorter."""
+        """Place more keepers on the way, because a user who goes back usually does it again."""
         at = order.target if order.search is None else order.search.limit
         if isinstance(at, RunMoment):
             self._every = max(LEAST, (at.happened - happened) // PARTS)
@@ -113,7 +113,7 @@ class Keepers:
         self._every *= 2
 
     def serves(self, journey: Journey) -> bool:
-        """Whether a keeper can go where a journey wants to be; then `hand_over` lets it."""
+        """Return True if a keeper can go to the journey's target; then call `hand_over`."""
         return self._before(journey) is not None
 
     def _before(self, journey: Journey) -> Keeper | None:
@@ -125,10 +125,10 @@ class Keepers:
         return next((keeper for keeper in reversed(self._all) if keeper.happened <= last), None)
 
     def hand_over(self, journey: Journey) -> None:
-        """Let a keeper go on; this process ends.
+        """Let a keeper go on. This process ends.
 
         Raises:
-            LookupError: none can.
+            LookupError: no keeper can.
         """
         sys.stdout.flush()
         sys.stderr.flush()
@@ -139,14 +139,14 @@ class Keepers:
             if journey.search is not None:
                 journey.search.begins_at = chosen.happened
             order = pickle.dumps(KeeperOrder(journey.target, journey.search, journey.texts, journey.was_in_vain))
-            with contextlib.suppress(BrokenPipeError):  # it has been thinned out since this process was forked
+            with contextlib.suppress(BrokenPipeError):  # this keeper was removed after the fork of this process
                 os.write(chosen.orders, len(order).to_bytes(LENGTH_BYTES, "little") + order)
                 end_process(0)
             self._all = self._all[: self._all.index(chosen)]
         raise LookupError("no process to continue from")
 
     def dismiss(self) -> None:
-        """None is needed any more."""
+        """End all keepers."""
         for keeper in reversed(self._all):
             _dismiss(keeper)
         self._all.clear()
@@ -154,7 +154,7 @@ class Keepers:
 
 
 def _wait_for_order(reader: int) -> KeeperOrder | None:
-    """What this keeper is told; None when it is to end, or the process that would tell it has ended."""
+    """Return the order for this keeper; None if it is to end, or if the ordering process has ended."""
     usual = signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that flies
     length = int.from_bytes(_read(reader, LENGTH_BYTES), "little")
     order: KeeperOrder | None = pickle.loads(_read(reader, length)) if length else None
@@ -170,7 +170,7 @@ def _read(reader: int, count: int) -> bytes:
 
 
 def _dismiss(keeper: Keeper) -> None:
-    """Let it end; others that were forked later may still have its pipe."""
+    """Let a keeper end. Processes that were forked later may still have its pipe."""
     with contextlib.suppress(BrokenPipeError):
         os.write(keeper.orders, bytes(LENGTH_BYTES))
     os.close(keeper.orders)

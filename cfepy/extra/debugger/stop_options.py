@@ -6,7 +6,7 @@ import argparse
 
 
 def add_stops(replay: argparse.ArgumentParser) -> None:
-    """Add them to the command replay."""
+    """Add the options to the command replay."""
     replay.add_argument(
         "--break",
         dest="stops",

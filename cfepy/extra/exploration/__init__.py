@@ -1,11 +1,11 @@
-"""Exploring schedules: a mission is flown under many, failures are told apart, and a failing schedule is made short.
+"""Exploration of schedules: fly a mission under many schedules, tell failures apart, and shorten a failing schedule.
 
-What belongs here works with many runs of one mission that differ in which task goes first: the choice of schedules
-(`search`), the processes that fly them (`campaign`, `worker_pools`, `workers`), what counts as a failure (`trial`,
-`failure_kinds`, `deadlock`, `result_watch`), and how a failing schedule is made short and shown (`shrink`, `timeline`).
-The same processes fly runs that differ in their plans, such as rates and boards (`batch`, `sweep`). The policies that
-decide within one run belong to `cfepy.rtos`; what must hold of every run belongs to `cfepy.monitors`. The central file
-is `cfepy/extra/exploration/exploration.py`.
+Code that works with many runs of one mission, which differ in which task goes first, belongs here. It chooses schedules
+(`search`) and flies them in processes (`campaign`, `worker_pools`, `workers`). It defines failures (`trial`,
+`failure_kinds`, `deadlock`, `result_watch`), and shortens and shows a failing schedule (`shrink`, `timeline`). The same
+processes fly runs that differ in their plans, such as rates and boards (`batch`, `sweep`). The policies that decide
+within one run belong to `cfepy.rtos`; properties of every run belong to `cfepy.monitors`. The central file is
+`cfepy/extra/exploration/exploration.py`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""A lot: many runs of another kind than schedules of one trial, flown by the same crews of processes.
+"""A lot: many runs that are not schedules of one trial, flown by the same crews of processes.
 
-A crew hands out subjects and brings back answers; what they are, it does not look at. So what flies a campaign's
-schedules flies the points of a sweep as well, on this computer or on a cluster.
+A crew hands out subjects and brings back answers, and does not look into them. So the crews that fly a campaign's
+schedules also fly the points of a sweep, on this computer or on a cluster.
 """
 
 from __future__ import annotations
@@ -18,34 +18,37 @@ A = TypeVar("A")
 
 
 class Lot(ABC, Generic[S, A]):
-    """What is done with each subject; pickled for crews of other processes, as its subjects and answers are."""
+    """The work on each subject. It is pickled for crews of other processes, and so are its subjects and answers."""
 
     @abstractmethod
     def judge(self, subject: S) -> A:
-        """The answer for a subject. An error of cfepy itself is told in it, so that the others are flown.
+        """Return the answer for a subject. It includes an error of cfepy itself, so that the other subjects still fly.
 
         Raises:
-            UsageError: none of them can fly.
+            UsageError: no subject can fly.
         """
 
     @abstractmethod
     def died(self, subject: S, fate: str, words: str) -> A:
-        """The answer for a subject that ends the process in which it is flown.
+        """Return the answer for a subject that ended the process in which it was flown.
 
         Args:
-            subject: which one.
+            subject: the subject.
             fate: how the process ended.
-            words: its last ones.
+            words: the last output of the process.
         """
 
 
 def answers(lot: Lot[S, A], subjects: Sequence[S], crew: Crew) -> Iterator[tuple[int, A]]:
-    """All answers, as they come; each with the number of its subject. The crew is closed at the end.
+    """Fly all subjects and yield the answers as they arrive. Close the crew at the end.
 
     Args:
-        lot: what is flown.
+        lot: the work to do.
         subjects: each is handed out once.
-        crew: who flies.
+        crew: the processes that fly them.
+
+    Yields:
+        The number of a subject, and its answer.
 
     Raises:
         UsageError: no worker can fly them.

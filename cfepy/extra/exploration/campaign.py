@@ -1,8 +1,8 @@
-"""A campaign: one trial under many schedules, and its verdicts in order, whichever process runs them.
+"""A campaign: one trial under many schedules. Its verdicts are in order, whichever process runs them.
 
-What a campaign reports does not depend on how it was run: a crew (`workers`, `worker_pools`) gives verdicts as they
-come, the campaign puts them in order, keeps them in the results file, and takes from there what an earlier run found.
-It holds only verdicts that wait for their turn, so its memory does not grow with the number of schedules.
+The report of a campaign does not depend on how it was run. A crew (`workers`, `worker_pools`) gives verdicts as they
+arrive. The campaign puts them in order, keeps them in the results file, and takes the results of an earlier run from
+there. It holds only verdicts that wait for their turn, so its memory does not grow with the number of schedules.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ Job = tuple[int, Schedule]
 """Number of a schedule in its campaign, from 0, and the schedule."""
 NumberedVerdict = tuple[int, Verdict]
 Take = Callable[[int], list[Job]]
-"""Gives at most so many jobs; fewer or none when there are no more just now."""
+"""Gives at most the requested number of jobs; fewer or none if there are no more at the moment."""
 
 
 class Experiment(Protocol):
-    """What is tried under each schedule. It is pickled for crews of other processes."""
+    """The work that is tried under each schedule. It is pickled for crews of other processes."""
 
     def run(self, schedule: Schedule) -> Verdict:
         """Fly the mission under a schedule.
@@ -40,46 +40,46 @@ class Experiment(Protocol):
 
 
 class Search(Protocol):
-    """Which schedules are tried, in which order."""
+    """Chooses the schedules that are tried, and their order."""
 
     def next(self) -> Schedule | None:
-        """The next schedule; None when there is none before more verdicts are told, or at all."""
+        """Return the next schedule. None if the search needs more verdicts first, or is at its end."""
 
     def tell(self, number: int, verdict: Verdict) -> None:
-        """The verdict on the schedule of this number, from 0, was found; told in the order of numbers."""
+        """Take the verdict on the schedule of this number, from 0. Verdicts arrive in the order of numbers."""
 
 
 class Crew(Protocol):
     """Runs trials."""
 
     def run(self, trial: Experiment, take: Take) -> Generator[NumberedVerdict, None, None]:
-        """Run jobs until there are none; verdicts come in any order, each job has exactly one.
+        """Run jobs until there are none. Verdicts come in any order, exactly one for each job.
 
         Args:
             trial: the same one in every call.
-            take: where jobs come from; asked again after every result.
+            take: source of jobs; asked again after every result.
 
         Raises:
             UsageError: the trial cannot run, or no worker can run it.
         """
 
     def close(self) -> None:
-        """End everything that runs for this crew."""
+        """End all processes of this crew."""
 
 
 class Inline:
-    """A crew without workers: runs in this process, which a mission that ends its process takes with it."""
+    """A crew without workers, which runs in this process. A mission that ends its process also ends this one."""
 
     def run(self, trial: Experiment, take: Take) -> Generator[NumberedVerdict, None, None]:
         while jobs := take(16):
             yield from ((number, judge(trial, schedule)) for number, schedule in jobs)
 
     def close(self) -> None:
-        """Nothing runs beside this process."""
+        """Do nothing: there are no other processes."""
 
 
 def judge(trial: Experiment, schedule: Schedule) -> Verdict:
-    """The verdict of a trial; an error that is not the mission's is kept in it, so that a campaign goes on.
+    """Return the verdict of a trial. It includes an error that is not the mission's, so that the campaign goes on.
 
     Raises:
         UsageError: the mission cannot fly at all.
@@ -94,13 +94,13 @@ def judge(trial: Experiment, schedule: Schedule) -> Verdict:
 
 @dataclass(slots=True)
 class Tally:
-    """What a campaign came to.
+    """Counts of the results of a campaign.
 
     Attributes:
         done: schedules with a verdict, in order from the first one.
-        failed: those of them under which the mission failed.
-        troubled: those of them that ended in an error of cfepy.
-        resumed: those of them that an earlier run had found.
+        failed: schedules among these under which the mission failed.
+        troubled: schedules among these that ended in an error of cfepy.
+        resumed: schedules among these that an earlier run had flown.
         interrupted: the user pressed Ctrl-C.
     """
 
@@ -115,12 +115,12 @@ class Campaign:
     """Runs a trial under the schedules of a search.
 
     Args:
-        trial: what is tried.
-        search: which schedules; a new one, from its start also when a results file is resumed.
-        count: how many schedules at most.
+        trial: the trial.
+        search: the schedules; a new search from its start, also when a results file is resumed.
+        count: the most schedules that are tried.
         crew: runs them; closed by `run`.
-        file: takes the verdicts, and gives those of an earlier run; closed by `run`.
-        progress: is told how far it is.
+        file: takes the verdicts, and gives the verdicts of an earlier run; closed by `run`.
+        progress: shows the number of finished schedules.
     """
 
     def __init__(
@@ -138,20 +138,20 @@ class Campaign:
         self._crew = crew
         self._file = file
         self._progress = progress if progress is not None else NoProgress()
-        self._waiting: dict[int, Verdict] = {}  # for a verdict before them
-        self._resumed: set[int] = set()  # which of these were found earlier
+        self._waiting: dict[int, Verdict] = {}  # they wait for a verdict before them
+        self._resumed: set[int] = set()  # numbers of waiting verdicts from an earlier run
         self._drawn = 0  # schedules that the search gave
         self._tally = Tally()
 
     def run(self, on_verdict: Callable[[int, Verdict], bool | None]) -> Tally:
-        """Run until there are no more schedules, the user presses Ctrl-C, or `on_verdict` has seen enough.
+        """Run until there are no more schedules, the user presses Ctrl-C, or `on_verdict` returns True.
 
         Args:
-            on_verdict: gets number and verdict in the order of numbers; True ends the campaign. Whatever the crew,
-                it gets the same calls.
+            on_verdict: gets number and verdict in the order of numbers; True ends the campaign. It gets the same calls
+                from every crew.
 
         Raises:
-            UsageError: the trial cannot run, or no worker can run it; what was found is in the file.
+            UsageError: the trial cannot run, or no worker can run it; earlier verdicts are in the file.
         """
         try:
             with contextlib.closing(self._verdicts()) as verdicts:
@@ -168,7 +168,7 @@ class Campaign:
         return self._tally
 
     def _verdicts(self) -> Generator[NumberedVerdict, None, None]:
-        """All verdicts in order. A crew that has nothing to do stops; what is told then may give it more."""
+        """Yield all verdicts in order. A crew without jobs stops; later verdicts may give it more jobs."""
         before = -1
         while before != self._tally.done:
             before = self._tally.done

@@ -1,7 +1,8 @@
-"""The cause of a failure in one sentence, where what was observed says it.
+"""The cause of a failure in one sentence, if the observations show it.
 
-The deeds of the failing run are held against those of the run under fifo, in which the failure is not. A sentence
-states what happened in the one and not in the other; where none of the patterns below is there, nothing is said.
+The module compares the operations (deeds) of the failing run with the operations of the run under fifo, which does not
+fail. A sentence states an event that is in the failing run and not in the other. If none of the patterns below matches,
+there is no sentence.
 """
 
 from __future__ import annotations
@@ -25,21 +26,21 @@ from cfepy.units import time_text
 
 _PLACE = re.compile(r"\(([\w.-]+:\d+)\)$")  # of an exception, at the end of its text
 NOTHING: Counter[str] = Counter()
-NOBODY = "0"  # waits for what is notified
+NOBODY = "0"  # number of tasks that were woken
 _HELD = re.compile(r"(?P<task>\S+) waits for (?P<what>[^;]+), held by (?P<holder>[^;,]+)")
 
 
 class Evidence:
-    """What is known of a failure.
+    """The observations of a failure.
 
     Args:
-        failure: itself.
-        moves: what the schedule does.
+        failure: the failure.
+        moves: the deviations of the schedule.
         rows: of the failing run, up to the failure.
         deeds: of the failing run, up to the failure.
-        usual: those of the run under fifo.
-        names: what locks are called that the failure tells by their numbers.
-        ran: by task, for how many ns it ran in the span of a deadline that was missed; empty for other failures.
+        usual: the deeds of the run under fifo.
+        names: names of the locks that the failure identifies by number.
+        ran: by task, the ns for which it ran in the span of a missed deadline; empty for other failures.
         usually_ran: the same under fifo.
     """
 
@@ -66,13 +67,13 @@ class Evidence:
         self._usual_at = {key: at for at, key in enumerate(keys_of(self.usual))}
 
     def is_flipped(self, first: int, second: int) -> bool:
-        """Whether two deeds of the failing run came in the other order under fifo."""
+        """Return True if two deeds of the failing run came in the other order under fifo."""
         one, other = (self._usual_at.get(self._keys[at]) for at in (first, second))
         return one is not None and other is not None and other < one
 
 
 def cause_of(evidence: Evidence) -> str:
-    """The sentence; empty where there is none."""
+    """Return the sentence, or an empty string if no pattern matches."""
     sentences: tuple[Callable[[Evidence], str], ...] = (
         _deadlock,
         _late,
@@ -94,7 +95,7 @@ def cause_of(evidence: Evidence) -> str:
 
 
 def _deadlock(evidence: Evidence) -> str:
-    """Each of the tasks in a circle has what the one before it wants."""
+    """Return text if each task of a cycle holds the lock that the task before it wants."""
     if evidence.failure.kind != DEADLOCK:
         return ""
     waits = [(found["task"], found["what"], found["holder"]) for found in _HELD.finditer(evidence.failure.text)]
@@ -109,7 +110,7 @@ def _deadlock(evidence: Evidence) -> str:
 
 
 def _late(evidence: Evidence) -> str:
-    """Another task ran for longer than usual while something should have come."""
+    """Return text if another task ran for longer than usual in the span of a missed deadline."""
     span_ns = evidence.failure.span_ns
     task = "" if span_ns is None else longest_more(evidence.ran, evidence.usually_ran, span_ns)
     if span_ns is None or not task:
@@ -122,16 +123,15 @@ def _late(evidence: Evidence) -> str:
 
 
 class Torn(NamedTuple):
-    """Two accesses of a task, and one of another task between them that does not go together with both.
+    """Two accesses of a task, and an access of another task between them that makes them unserializable.
 
-    These are the interleavings that no order of the two tasks as wholes gives (Lu, Tucek, Qin, Zhou: AVIO, ASPLOS
-    2006).
+    No serial order of the two tasks gives such an interleaving (Lu, Tucek, Qin, Zhou: AVIO, ASPLOS 2006).
 
     Attributes:
-        first: what the task did.
-        other: what another task did then.
-        last: what the first one did next to the same.
-        switch: how many switches of the schedule there were when the other task did it; 0 where none of them let it in.
+        first: the first access of the task.
+        other: the access of the other task after it.
+        last: the next access of the first task to the same variable.
+        switch: number of switches of the schedule before the other task's access; 0 if no switch let the other task in.
     """
 
     first: Deed
@@ -141,7 +141,7 @@ class Torn(NamedTuple):
 
     @property
     def key(self) -> tuple[str, ...]:
-        """What it has in common with the same in another run."""
+        """The parts that are the same for the same interleaving in another run."""
         places = (self.first.place, self.other.place, self.last.place)
         return (plain_name(self.first.task), plain_name(self.other.task), self.other.thing, *places)
 
@@ -155,17 +155,17 @@ _DO_NOT_GO_TOGETHER = {
 
 
 def _lost_update(evidence: Evidence) -> str:
-    """Another task writes what a task has read, and this one writes over that without having read it."""
+    """Return text if a task overwrites a value that another task wrote after the first task's read."""
     return _told(evidence, _is_lost_update, _update_text)
 
 
 def _torn(evidence: Evidence) -> str:
-    """Another task accesses a variable between two accesses of a task."""
+    """Return text if another task accesses a variable between two accesses of a task."""
     return _told(evidence, lambda torn: True, _torn_text)
 
 
 def _told(evidence: Evidence, is_meant: Callable[[Torn], bool], text: Callable[[Torn], str]) -> str:
-    """The first one after the last switch that let any in, and that is not there under fifo."""
+    """Return the text of the first case after the last switch that let another task in and that fifo does not show."""
     usual = {torn.key for torn in _torn_in(evidence.usual)}
     found = [each for each in _torn_in(evidence.deeds) if each.switch and each.key not in usual and is_meant(each)]
     last = max((torn.switch for torn in found), default=0)
@@ -174,12 +174,12 @@ def _told(evidence: Evidence, is_meant: Callable[[Torn], bool], text: Callable[[
 
 @dataclass(slots=True)
 class _Own:
-    """What a task did to an object, and what others did to it since then.
+    """The accesses of a task to an object, and the accesses of other tasks since then.
 
     Attributes:
-        epoch: of the task: it is another one with each message that the task goes for.
+        epoch: epoch of the task; a new one begins with each message that the task waits for.
         own: its accesses, each with the number of the last switch.
-        others: those of others since, each with the switch by which the task gave way; 0 for none.
+        others: later accesses of other tasks, each with the switch by which the task was preempted; 0 for none.
     """
 
     epoch: int
@@ -188,7 +188,7 @@ class _Own:
 
 
 def _torn_in(deeds: Sequence[Deed]) -> Iterator[Torn]:
-    """All of a run, in the order of their ends; a task that went for another message has begun anew."""
+    """Yield all cases of a run, in the order of their ends. A task that waits for another message begins anew."""
     seen: dict[int | str, dict[str, _Own]] = {}  # by object, by task
     epochs: dict[str, int] = {}
     gave_way: dict[str, int] = {}
@@ -214,7 +214,7 @@ def _torn_in(deeds: Sequence[Deed]) -> Iterator[Torn]:
 
 
 def _is_like(one: Deed, other: Deed) -> bool:
-    """Whether an access tells no more than one before it."""
+    """Return True if an access adds nothing to an earlier one."""
     return (one.task, one.verb, one.key) == (other.task, other.verb, other.key)
 
 
@@ -251,7 +251,7 @@ def _torn_text(torn: Torn) -> str:
 
 
 def _raised(evidence: Evidence) -> str:
-    """What a line has read was changed by another task when the line raised an exception."""
+    """Return text if another task changed a value that a line had read when the line raised an exception."""
     place = _PLACE.search(evidence.failure.text)
     if evidence.failure.kind not in (RAISED, DIED) or place is None:
         return ""
@@ -270,7 +270,7 @@ def _raised(evidence: Evidence) -> str:
 
 
 def _order(evidence: Evidence) -> str:
-    """A read and a write come in another order than under fifo, of this one variable and of no other."""
+    """Return text if a read and a write have another order than under fifo, for one variable only."""
     found = list(_flipped_accesses(evidence))
     if len({later.thing for _, later in found}) != 1:
         return ""
@@ -282,7 +282,7 @@ def _order(evidence: Evidence) -> str:
 
 
 def _flipped_accesses(evidence: Evidence) -> Iterator[tuple[Deed, Deed]]:
-    """Accesses of two tasks in another order than under fifo, where a switch kept the second one back."""
+    """Yield accesses of two tasks in another order than under fifo, if a switch delayed the second task."""
     gave_way: dict[str, int] = {}
     seen: dict[int, list[int]] = {}
     for at, deed in enumerate(evidence.deeds):
@@ -298,7 +298,7 @@ def _flipped_accesses(evidence: Evidence) -> Iterator[tuple[Deed, Deed]]:
 
 
 def _is_order_seen(one: Deed, other: Deed) -> bool:
-    """Whether it matters which of two accesses comes first; who changes all of a container also looks at it."""
+    """Return True if the order of two accesses matters. A change of a whole container also counts as a read of it."""
     both = (one, other)
     reads = any(each.verb == do.READS or each.key == do.ALL for each in both)
     return one.is_of_same(other) and reads and any(each.verb == do.WRITES for each in both)
@@ -312,7 +312,7 @@ def _did(deed: Deed) -> str:
 
 
 def _lost_wake_up(evidence: Evidence) -> str:
-    """A task waits in vain for what was set or notified before it waited."""
+    """Return text if a task waits in vain because the object was set or notified before the wait."""
     for at in _vain_waits(evidence.deeds):
         text = _notified_early(evidence, at) or _set_and_cleared(evidence, at)
         if text:
@@ -330,7 +330,7 @@ def _notified_early(evidence: Evidence, at: int) -> str:
 
 
 def _set_and_cleared(evidence: Evidence, at: int) -> str:
-    """An event was set while the one that clears it was kept from doing so."""
+    """Return text if an event was set while the task that clears it was delayed."""
     wait = evidence.deeds[at]
     cleared_at = _last(evidence.deeds[:at], wait, do.CLEARS)
     set_at = None if cleared_at is None else _last(evidence.deeds[:cleared_at], wait, do.SETS)
@@ -349,7 +349,7 @@ def _set_and_cleared(evidence: Evidence, at: int) -> str:
 
 
 def _vain_waits(deeds: Sequence[Deed]) -> list[int]:
-    """The waits that no wake-up ended before the failure, the last in front."""
+    """Return the positions of the waits that no wake-up ended before the failure, the last one first."""
     begun: dict[tuple[str, str], int] = {}
     vain: list[int] = []
     for at, deed in enumerate(deeds):
@@ -364,7 +364,7 @@ def _vain_waits(deeds: Sequence[Deed]) -> list[int]:
 
 
 def _last(deeds: Sequence[Deed], like: Deed, verb: str) -> int | None:
-    """Where something of this kind was done last to the same thing."""
+    """Return the position of the last deed of this kind to the same object."""
     found = (at for at in reversed(range(len(deeds))) if deeds[at].verb == verb and deeds[at].thing == like.thing)
     return next(found, None)
 
@@ -373,7 +373,7 @@ def _last(deeds: Sequence[Deed], like: Deed, verb: str) -> int | None:
 
 
 def _overflow(evidence: Evidence) -> str:
-    """A message did not fit into a pipe, and under fifo all fit."""
+    """Return text if a message did not fit into a pipe, although all messages fit under fifo."""
     usual = {(deed.thing, deed.note) for deed in evidence.usual if deed.verb == do.LOSES}
     for deed in evidence.deeds:
         if deed.verb == do.LOSES and (deed.thing, deed.note) not in usual:
@@ -388,7 +388,7 @@ def _overflow(evidence: Evidence) -> str:
 
 
 def _late_subscription(evidence: Evidence) -> str:
-    """A message was sent before somebody subscribed to it."""
+    """Return text if a message was sent before a task subscribed to it."""
     for at, subscription in _of(evidence.deeds, do.SUBSCRIBES):
         for sent_at, sending in _of(evidence.deeds[:at], do.SENDS):
             if sending.thing == subscription.thing and evidence.is_flipped(sent_at, at):
@@ -400,7 +400,7 @@ def _late_subscription(evidence: Evidence) -> str:
 
 
 def _deleted(evidence: Evidence) -> str:
-    """A task went to receive from a pipe that was deleted."""
+    """Return text if a task tried to receive from a deleted pipe."""
     usual = {deed.thing for _, deed in _received_late(evidence.usual)}
     for deletion, receiving in _received_late(evidence.deeds):
         if receiving.thing not in usual:
@@ -412,19 +412,19 @@ def _deleted(evidence: Evidence) -> str:
 
 
 def _received_late(deeds: Sequence[Deed]) -> Iterator[tuple[Deed, Deed]]:
-    """The deletion of a pipe, and who would receive from it."""
+    """Yield the deletion of a pipe, and a later attempt to receive from it."""
     deleted: dict[str, Deed] = {}
     for deed in deeds:
         if deed.verb == do.DELETES:
             deleted[deed.thing] = deed
         elif deed.verb == do.RECEIVES and deed.thing in deleted:
             yield deleted[deed.thing], deed
-        elif deed.verb == do.SUBSCRIBES:  # one of that name was made anew
+        elif deed.verb == do.SUBSCRIBES:  # a new pipe of that name
             deleted.pop(f"pipe {deed.note}", None)
 
 
 def _message_order(evidence: Evidence) -> str:
-    """An application that the schedule meddles with got two messages in another order."""
+    """Return text if an application that the schedule affects received two messages in another order."""
     apps = {deed.app for deed in evidence.deeds for move in evidence.moves if deed.task in (move.task, move.chosen)}
     got = [(at, deed) for at, deed in _of(evidence.deeds, do.GETS) if deed.app in apps]
     for number, (at, later) in enumerate(got):
@@ -434,11 +434,11 @@ def _message_order(evidence: Evidence) -> str:
     return ""
 
 
-# -- what else there is ------------------------------------------------------------------------------------------------
+# -- other causes ------------------------------------------------------------------------------------------------------
 
 
 def _one_switch(evidence: Evidence) -> str:
-    """A single switch, without which the run is that of fifo."""
+    """Return text if the schedule differs from fifo by a single switch."""
     moves = [at for at, row in enumerate(evidence.rows) if row.kind in (PREEMPTED, ORDERED)]
     if len(evidence.moves) != 1 or evidence.moves[0].question or len(moves) != 1:
         return ""

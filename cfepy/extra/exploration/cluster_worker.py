@@ -1,6 +1,6 @@
-"""What a dask worker does for a campaign: it flies batches in worker processes of its own.
+"""The dask worker's side of a campaign: it flies batches in its own worker processes.
 
-So the dask worker survives whatever a mission does to its process, and says under which schedule that happened. Only
+So the dask worker survives a mission that ends its process, and reports the schedule under which that happened. Only
 this module and `worker_pools` know dask; this one is only imported where dask is installed.
 """
 
@@ -27,9 +27,9 @@ class Desk(WorkerPlugin):
     """A campaign's place on a dask worker: the mission's files, and a process for each of its threads.
 
     Args:
-        name: of the campaign, on the whole cluster.
-        trial: pickled.
-        shipment: the mission's files; None when the trial needs none.
+        name: name of the campaign, unique on the cluster.
+        trial: the pickled trial.
+        shipment: the mission's files; None if the trial needs none.
         longest_s: see `Processes`.
     """
 
@@ -41,7 +41,7 @@ class Desk(WorkerPlugin):
         self._versions = comparable_versions()
 
     def setup(self, worker: Any) -> None:
-        """The dask worker has got it."""
+        """Unpack the mission's files when the dask worker receives this plugin."""
         self._address = str(worker.address)
         self._idle: SimpleQueue[Processes] = SimpleQueue()
         self._folder = tempfile.TemporaryDirectory(prefix="cfepy-")
@@ -54,7 +54,7 @@ class Desk(WorkerPlugin):
             self._moved = _with_plan(self._moved, self._shipment, inside)
 
     def teardown(self, worker: Any) -> None:
-        """The campaign is over, or the dask worker ends."""
+        """End the processes and remove the files when the campaign is over or the dask worker ends."""
         while (crew := self._idle_crew()) is not None:
             crew.close()
         self._folder.cleanup()
@@ -63,7 +63,7 @@ class Desk(WorkerPlugin):
         """Fly a batch.
 
         Raises:
-            UsageError: the trial cannot run, or not here.
+            UsageError: the trial cannot run, or cannot run on this worker.
         """
         check_versions(self._address, comparable_versions(), self._versions)
         left = list(jobs)
@@ -94,19 +94,19 @@ def _with_plan(trial: Any, shipment: Shipment, inside: Unpacked) -> Experiment:
 
 
 def fly(name: str, jobs: Sequence[Job]) -> list[NumberedVerdict]:
-    """Fly a batch of a campaign on the dask worker that this is called on."""
+    """Fly a batch of a campaign on the current dask worker."""
     desk = get_worker().plugins[name]
     assert isinstance(desk, Desk)
     return desk.run(jobs)
 
 
 def check_versions(address: str, there: Mapping[str, str], here: Mapping[str, str]) -> None:
-    """Results are comparable only between the same versions.
+    """Check that a dask worker has the client's versions, because only then are results comparable.
 
     Args:
-        address: of a dask worker.
+        address: address of the dask worker.
         there: its versions; see `comparable_versions`.
-        here: those of the process that began the campaign.
+        here: versions of the process that began the campaign.
 
     Raises:
         UsageError: they differ.

@@ -1,8 +1,8 @@
-"""Tasks that wait for ever, although under fifo such a wait came to its end: a wake-up that was lost.
+"""Tasks that wait forever, although such a wait ends under fifo: a lost wake-up.
 
-Only waits without a time-out count, for objects that other tasks release: locks, semaphores, conditions, a message that
-was asked for. To wait for a pipe is what an idle application does. A wait belongs to a place, the line of its
-application's own source, so that it does not matter which of several workers waits there.
+Only waits without a timeout count, for objects that other tasks release: locks, semaphores, conditions, a requested
+message. An idle application waits for its pipe, so such waits do not count. A wait belongs to a place, the line of its
+application's own source, so it does not matter which of several workers waits there.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ from cfepy.pilot import BOOT_S, RUN, RunPlan, fly
 from cfepy.rtos import Kernel, Policy, Task, wrapping
 from cfepy.units import NS_PER_S
 
-SHORTEST_NS = NS_PER_S // 10  # a task that waits for less may have got there just before the end
-FACTOR = 10  # a place is suspect when no task went on from it for so many times longer than ever under fifo
+SHORTEST_NS = NS_PER_S // 10  # a shorter wait may have begun just before the end
+FACTOR = 10  # a place is suspect when its idle time is this many times longer than ever under fifo
 _AWAITED = re.compile(r"lock|semaphore|condition|mutex|readers of lock|writers of lock|a message on (?!pipe )")
 
 WaitPlace = tuple[str, str]
-"""Name of the application, and what it waits for where."""
+"""Name of the application, and the object and place of the wait."""
 
 
 class Left(NamedTuple):
-    """A task that waits when the run is over.
+    """A task that still waits at the end of the run.
 
     Attributes:
-        place: where.
+        place: the place where it waits.
         task: its name.
         since_ns: virtual time at which it began to wait.
-        idle_ns: for how long no task has gone on from this place.
+        idle_ns: time since a task last continued from this place.
     """
 
     place: WaitPlace
@@ -53,7 +53,7 @@ class Waits:
     """The waits of a run.
 
     Attributes:
-        longest_ns: by place, the longest time for which a task waited there and none went on.
+        longest_ns: by place, the longest time for which a task waited there and no task continued.
         left: the tasks that wait at the end.
     """
 
@@ -63,7 +63,7 @@ class Waits:
 
 @dataclass(slots=True)
 class _Account:
-    """A place where tasks wait: since when none has gone on while one waits, and the longest such time."""
+    """A place where tasks wait: the time since a task last continued while one waits, and the longest such time."""
 
     since_ns: int = 0
     longest_ns: int = 0
@@ -71,10 +71,10 @@ class _Account:
 
 
 class WaitWatch(Attachment):
-    """Keeps the waits of a run.
+    """Records the waits of a run.
 
     Attributes:
-        waits: at the end of the time of the run; of none before.
+        waits: the waits when the run's time is over; empty before.
     """
 
     def __init__(self) -> None:
@@ -83,7 +83,7 @@ class WaitWatch(Attachment):
         self._mission: Mission | None = None
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """Every wait goes through `block`."""
+        """Wrap `block`, which every wait uses."""
         return wrapping(base, {"block": self._blocking})
 
     def begin(self, mission: Mission) -> None:
@@ -91,7 +91,7 @@ class WaitWatch(Attachment):
         mission.kernel.frames_wanted = True
 
     def conclude(self) -> None:
-        """Note the tasks that wait now."""
+        """Record the tasks that wait now."""
         assert self._mission is not None
         now = self._mission.kernel.now
         left: list[Left] = []
@@ -132,7 +132,7 @@ def _is_core(task: Task) -> bool:
 
 
 def place_of(frame: FrameType | None, what: str) -> str:
-    """What a task waits for, without its number, and the innermost line of its own source: `lock at arm.py:12`."""
+    """Return the awaited object without its number, and the innermost line of own source: `lock at arm.py:12`."""
     kind = what if what.startswith("a message") or "lock " not in what else "lock"
     last = ""
     while frame is not None:
@@ -147,7 +147,7 @@ def place_of(frame: FrameType | None, what: str) -> str:
 
 
 def waits_of(plan: RunPlan, end_ns: int, policy: Policy | None) -> Waits:
-    """The waits of a run that goes on for twice the time.
+    """Return the waits of a run that goes on for twice the time.
 
     Args:
         plan: the run.
@@ -161,10 +161,10 @@ def waits_of(plan: RunPlan, end_ns: int, policy: Policy | None) -> Waits:
 
 
 def stuck(found: Waits, reference: Waits) -> tuple[Left, ...]:
-    """The waits at the end that are suspect.
+    """Return the suspect waits at the end.
 
-    No task has gone on from the place for much longer than ever in the reference, and more tasks of the application are
-    in such a wait than at the end of the reference.
+    A wait is suspect if two conditions hold. No task has continued from the place for much longer than ever in the
+    reference. More tasks of the application are in such a wait than at the end of the reference.
     """
     usual = Counter(each.place[0] for each in _idle(reference))
     now = Counter(each.place[0] for each in _idle(found))
@@ -182,11 +182,11 @@ def _idle(waits: Waits) -> Iterator[Left]:
 def stuck_for_good(
     found: Waits, reference: Waits, plan: RunPlan, end_ns: int, again: Callable[[], Policy | None]
 ) -> Iterator[Failure]:
-    """Failures for tasks that are stuck, and still are when the run goes on for as long again.
+    """Yield failures for tasks that are stuck, and are still stuck when the run goes on for as long again.
 
     Args:
         found: the waits of the run.
-        reference: those under the default schedule, in twice the time (`waits_of`).
+        reference: the waits under the default schedule, in twice the time (`waits_of`).
         plan: the run.
         end_ns: virtual time at its end.
         again: makes a policy that decides as in the run.

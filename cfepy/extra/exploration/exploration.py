@@ -1,11 +1,11 @@
-"""An exploration from its beginning to its end: which schedules, what became of them, each failure shrunk and told.
+"""A complete exploration: fly schedules, judge the runs, then shrink and report each failure.
 
     expedition = Expedition(plan, seeds=200)
     report = expedition.run()
     for told in report.findings: print(told.finding.failure.title, told.timeline)
 
-The reference run, under fifo, comes first: what fails in it as well is told apart, and what other schedules come to is
-held against it.
+The reference run, under fifo, comes first. Failures that it also has are marked, and the results of the other schedules
+are compared with its results.
 """
 
 from __future__ import annotations
@@ -41,25 +41,25 @@ from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
 FROM_OPERATIONAL = 0.0
-BASE = "at"  # fifo as a policy, which is asked, so that decisions can be counted and options count
+BASE = "at"  # fifo as a policy object, so that decisions are counted and options apply
 DEFAULT_SEEDS = 100
 MOST_SCHEDULES = 100_000_000
-_NO_WAY = (PROCESS_DIED, STALLED)  # a run that was broken off has no trace to compare
+_NO_WAY = (PROCESS_DIED, STALLED)  # an aborted run has no trace to compare
 EVENTS = ("error", "critical", "none")
 
 
 @dataclass(slots=True)
 class Told:
-    """A failure as it is told.
+    """A failure of the report.
 
     Attributes:
         finding: the failure, and the schedules that showed it.
-        shrunk: its schedule with the fewest preemptions; None when it was not looked for, or has none.
-        story: what happens under that schedule.
-        inversions: the priority inversions before it, a sentence each, the longest first; of the task that failed where
-            it had any.
-        repeats: whether a second run under the schedule that showed it fails in the same way. If not, it is not the
-            schedule that decides.
+        shrunk: its schedule with the fewest preemptions; None if there is none, or it was not searched for.
+        story: the course of the run under that schedule.
+        inversions: the priority inversions before it, a sentence each, the longest first; only those of the failed task
+            if it had any.
+        repeats: whether a second run under the schedule that showed it fails in the same way. If not, the failure does
+            not depend on the schedule alone.
         is_steady: whether that run had the same trace.
     """
 
@@ -72,24 +72,24 @@ class Told:
 
     @property
     def timeline(self) -> list[str]:
-        """The story, a line each, 100 characters wide."""
+        """The lines of the story, 100 characters wide."""
         return self.story.lines()
 
 
 @dataclass(slots=True)
 class Report:
-    """What an exploration came to.
+    """The result of an exploration.
 
     Attributes:
-        trial: what was flown.
+        trial: the trial that was flown.
         reference: the verdict on the default schedule.
-        tally: how many schedules there were.
+        tally: the numbers of schedules.
         troubles: verdicts that ended in an error of cfepy.
         findings: each failure once.
-        notes: what its user should know.
-        is_steady: whether two runs under the default schedule went the same way. If not, no others were made.
-        breadth: how far it looked.
-        worst: the longest that was measured; None when nothing was to be.
+        notes: notes for the user.
+        is_steady: whether two runs under the default schedule were the same. If not, no other schedules were flown.
+        breadth: the extent of the search.
+        worst: the longest measured value; None without a measure.
     """
 
     trial: Trial
@@ -104,19 +104,19 @@ class Report:
 
     @property
     def unsteady(self) -> Schedule | None:
-        """A schedule under which two runs differed; None when all that were made twice went the same way."""
+        """A schedule under which two runs differed; None if all repeated runs were the same."""
         if not self.is_steady:
             return Schedule()
         return next((told.finding.verdict.schedule for told in self.findings if not told.is_steady), None)
 
     def schedule_of(self, told: Told) -> Schedule:
-        """The schedule that showed a failure first; a run under it shows the failure, data races too."""
+        """Return the schedule that showed a failure first. A run under it shows the failure, including a data race."""
         return _showing(
             told.finding.failure, Schedule() if told.finding.in_reference else told.finding.verdict.schedule
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data."""
         found = []
         for told in self.findings:
             command = self.trial.command(_showing(told.finding.failure, told.finding.verdict.schedule))
@@ -140,7 +140,7 @@ class Report:
 
 
 def _showing(failure: Failure, schedule: Schedule) -> Schedule:
-    """A schedule with the same choices, under which a failure is looked for: for data races none is under fifo."""
+    """Return a schedule with the same choices that looks for the failure; fifo itself does not look for data races."""
     return schedule.at({}) if failure.kind == RACE and schedule.kind == "fifo" else schedule
 
 
@@ -156,36 +156,36 @@ def _shrunk_numbers(shrunk: Shrunk[Trial]) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True)
 class Expedition:
-    """What is to be explored, and how; each attribute but the first is an option of `cfepy explore`.
+    """The settings of an exploration. Each attribute except the first is an option of `cfepy explore`.
 
     Attributes:
-        plan: what is flown; its own schedule does not matter.
-        seeds: how many schedules; None for any number within the budget.
-        budget_s: wall time after which no further schedule is begun; None for no limit.
-        policy: where they come from: "random", "pct", "abreast" (tasks side by side), "dfs" (every one with
-            few preemptions), "orders" (all orders that differ, each once), or "all".
-        depth: of the bugs that pct looks for; most preemptions of dfs; how many steps of a run the orders
-            may differ in.
+        plan: the run; its own schedule does not matter.
+        seeds: number of schedules; None for any number within the budget.
+        budget_s: wall time after which no further schedule begins; None for no limit.
+        policy: source of the schedules: "random", "pct", "abreast" (tasks side by side), "dfs" (every one with few
+            preemptions), "orders" (all orders that differ, each once), or "all".
+        depth: for pct, the depth of the bugs; for dfs, the most preemptions; for orders, the number of steps of a run
+            in which they may differ.
         first_seed: seed of the first schedule.
         any_priority: less urgent tasks may run before more urgent ones.
-        hold_s: how long the running task may be held up, in virtual s.
-        connect_s: how long a connection between two ROS nodes may take, in virtual s.
-        points: where others may get in besides calls (`cfepy.schedules.preemption_points`); empty for nowhere.
-        from_s: virtual time until which all is fifo's; 0 for that at which the mission becomes OPERATIONAL.
-        until_failure: whether the first failure ends it.
-        events: which events are failures: "error", "critical" or "none".
+        hold_s: longest delay of the running task, in virtual s.
+        connect_s: longest time for a connection between two ROS nodes, in virtual s.
+        points: preemption points in addition to calls (`cfepy.schedules.preemption_points`); empty for none.
+        from_s: virtual time until which all decisions are fifo's; 0 for the time at which the mission becomes
+            OPERATIONAL.
+        until_failure: whether the first failure ends the exploration.
+        events: the events that are failures: "error", "critical" or "none".
         starved_s, livelock_s: virtual time for which a task may be ready without running, and for which an application
             may run on without a message; None for any time.
         fair: decisions in which a task may be passed over; None for any number.
-        worst: what is to take as long as it can, such as "response:ARM" (`cfepy.monitors.durations`); None for nothing.
-        stuck: whether a task that waits for ever, and does not by default, is a failure.
+        worst: the measure to maximize, such as "response:ARM" (`cfepy.monitors.durations`); None for none.
+        stuck: whether it is a failure if a task waits forever and does not by default.
         jobs: processes on this computer; None for one on each CPU.
         cluster: address of a dask scheduler, or local:N.
         longest_s: wall time that a schedule may take.
-        results: file that keeps the verdicts, and that it goes on from.
-        shrink: how many runs it may take to shrink a failure; None for those of `budget_of`, 0 leaves it as
-            it is.
-        progress: where it is shown how far it has come; None shows nothing.
+        results: file that keeps the verdicts, from which the exploration resumes.
+        shrink: runs that shrinking a failure may take; None for the number of `budget_of`, 0 for no shrinking.
+        progress: stream for the progress; None shows nothing.
     """
 
     plan: RunPlan
@@ -217,10 +217,10 @@ class Expedition:
         """Explore.
 
         Args:
-            tell: gets what the user should know, before the campaign.
+            tell: gets the notes for the user, before the campaign.
 
         Raises:
-            UsageError: it cannot be explored like this.
+            UsageError: the mission cannot be explored with these options.
         """
         watch, options = Stopwatch(), self._options()
         if self.policy == "orders":
@@ -262,7 +262,7 @@ class Expedition:
         if not report.findings and not tally.interrupted and not self.points:
             try:
                 breadth.gaps = gaps_of(bare, options)
-            except KeyboardInterrupt:  # what was found must not be lost with it
+            except KeyboardInterrupt:  # keep the findings so far
                 tally.interrupted = True
         if distribution is not None and isinstance(trial, MeasuredTrial):
             budget = budget_of(tally.done) if self.shrink is None else self.shrink
@@ -270,8 +270,8 @@ class Expedition:
         return report
 
     def _search(self, first: Tried, options: Schedule) -> Search:
-        """The schedules, as `make_search` gives them, or with which the search for the longest begins."""
-        holds = self.worst is None  # a task that is held up is late by that time, which says nothing about the mission
+        """Return the search of `make_search`; with a measure, the search for the longest value that begins with it."""
+        holds = self.worst is None  # a delayed task is late by the delay, not by the mission
         steps, tick_ns = first.verdict.decisions, first.tick_ns
         found = make_search(self.policy, self.depth, steps, options, self.first_seed, tick_ns, holds=holds)
         return found if holds or not isinstance(found, SeededSearch) else WorstSearch(found, self.first_seed)
@@ -281,10 +281,10 @@ class Expedition:
         return Limits(*(round((each or 0.0) * NS_PER_S) for each in (self.starved_s, self.livelock_s)))
 
     def _options(self) -> Schedule:
-        """What the schedules have in common, as a schedule.
+        """Return the options that all schedules share, as a schedule.
 
         Raises:
-            UsageError: a time that cannot be.
+            UsageError: a time is invalid.
         """
         words = [BASE]
         words += ["any"] if self.any_priority else []
@@ -314,7 +314,7 @@ class Expedition:
         watch: Stopwatch,
         see: Callable[[int, Verdict], object],
     ) -> Tally | None:
-        """Run all schedules, or until the first failure; none, when another process goes another way under fifo."""
+        """Run all schedules, or until the first failure. None if another process runs differently under fifo."""
         if self.until_failure and reference.failed:
             return Tally()
         files = files_read(trial.plan) if self.results is not None or self.cluster is not None else []
@@ -344,7 +344,7 @@ class Expedition:
             keep_failure(self.results, told.finding.failure.group, told.finding.failure.title, shortest)
 
     def _is_steady(self, trial: Trial, crew: Crew, reference: Verdict) -> bool:
-        """Whether the run under the default schedule goes the same way again, in a process of the crew's."""
+        """Return True if the run under the default schedule is the same again in a process of the crew."""
         if reference.trouble or any(failure.kind in _NO_WAY for failure in reference.failures):
             return True
         once = [(0, reference.schedule)]
@@ -352,7 +352,7 @@ class Expedition:
             return all(self._is_same(reference, verdict) for _, verdict in verdicts)
 
     def _fly_again(self, trial: Trial, told: Told) -> None:
-        """Whether another run, in this process, goes the way of the one that showed a failure."""
+        """Record whether another run, in this process, is the same as the run that showed a failure."""
         finding = told.finding
         if not finding.in_reference and finding.failure.kind not in _NO_WAY:
             again = trial.fly(finding.verdict.schedule).verdict
@@ -360,13 +360,16 @@ class Expedition:
             told.is_steady = told.repeats and self._is_same(finding.verdict, again)
 
     def _is_same(self, one: Verdict, other: Verdict) -> bool:
-        """On another computer a mission lies in another folder, which is in the trace. One broken off has none."""
+        """Return True if two runs are the same.
+
+        On another computer a mission lies in another folder, which is in the trace. An aborted run has no trace.
+        """
         if self.cluster is not None:
             return one.groups == other.groups
         return one.trace == other.trace or bool(other.trouble) or not other.trace
 
     def _identity(self, trial: Trial, files: list[str]) -> dict[str, Any]:
-        """What a results file goes on with only when it is the same, by the option's name."""
+        """Return the values, by option name, that must be the same for a results file to be resumed."""
         search = {name: getattr(self, name) for name in ("policy", "depth", "first_seed", "any_priority", "events")}
         search |= {"hold": self.hold_s, "connect": self.connect_s, "from": self.from_s, "no_stuck": not self.stuck}
         search |= {"points": self.points} if self.points else {}
@@ -376,7 +379,7 @@ class Expedition:
         return identity_of(trial.plan, files, search)
 
     def _told(self, trial: Trial, finding: Finding, tally: Tally) -> Told:
-        """A failure, flown once more, shrunk, and with its timeline."""
+        """Fly a failure once more and shrink it. Returns it with its timeline."""
         told = Told(finding)
         try:
             if not tally.interrupted:
@@ -387,12 +390,12 @@ class Expedition:
                 told.shrunk = self._shrunk(trial, finding, tally.done) if told.repeats else None
             if told.shrunk is not None:
                 told.story = _story(told.shrunk, finding)
-        except KeyboardInterrupt:  # what was found must not be lost with it
+        except KeyboardInterrupt:  # keep the findings so far
             tally.interrupted = True
         return told
 
     def _shrunk(self, trial: Trial, finding: Finding, flown: int) -> Shrunk[Trial] | None:
-        """The fewest preemptions; None for a failure that needs none, or ends the process that flies it."""
+        """Return the schedule with the fewest preemptions; None if the failure needs none, or ends its process."""
         if self.shrink == 0 or finding.in_reference or finding.failure.kind == PROCESS_DIED:
             return None
         if self.progress is not None and self.progress.isatty():
@@ -409,14 +412,14 @@ class Expedition:
 
 
 def beside_fifo(bare: Trial, first: Tried, options: Schedule | None) -> Trial:
-    """A trial whose runs are held against the one under the default schedule.
+    """Return a trial that compares its runs with the run under the default schedule.
 
     Args:
         bare: the trial.
         first: its flight under the default schedule.
-        options: a schedule that is fifo's with the options of the others; None where who waits for ever may wait.
+        options: fifo's schedule with the options of the others; None if tasks may wait forever.
     """
-    if any(failure.kind == STALLED for failure in first.verdict.failures):  # which comes to no results
+    if any(failure.kind == STALLED for failure in first.verdict.failures):  # a stalled run has no results
         return bare
     trial, end_ns = bare.against(first.results), first.verdict.end_ns
     if options is None or not end_ns:

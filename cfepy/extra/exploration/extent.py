@@ -1,4 +1,4 @@
-"""How far an exploration looked: where others could get in, how many orders there were, what may have been missed."""
+"""The extent of an exploration: preemption points, number of orders, and possible misses."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ _KINDS = {
     "cfepy.extra.c": "calls of C",
     "cfepy.nodes.accesses": "lines and accesses",
 }
-"""What a point is at, by the module of the call; the longest name that fits counts."""
+"""Kind of a point, by the module of the call; the longest matching name counts."""
 _OF_THE_KERNEL = ("cfepy.rtos", "cfepy.schedules", "cfepy.mission.call_points", __name__)
 OTHER = "other calls"
 
 
 class PointCounter(AskingPolicy):
-    """Asks another policy, and counts the decisions by what their calls are.
+    """Asks another policy, and counts the decisions by the kinds of their calls.
 
     Args:
         inner: the policy that decides.
 
     Attributes:
-        kinds: how many decisions there were of each kind.
+        kinds: number of decisions of each kind.
     """
 
     def __init__(self, inner: Policy) -> None:
@@ -62,7 +62,7 @@ class PointCounter(AskingPolicy):
 
 
 def kind_of(frame: FrameType | None) -> str:
-    """What the innermost call above the kernel's is."""
+    """Return the kind of the innermost call above the kernel's."""
     while frame is not None:
         module = frame.f_globals.get("__name__", "")
         if not module.startswith(_OF_THE_KERNEL):
@@ -82,16 +82,16 @@ def _kind_of_module(module: str) -> str:
 
 @dataclass(slots=True)
 class Breadth:
-    """How far an exploration looked.
+    """The extent of an exploration.
 
     Attributes:
         points: decisions under the default schedule, by kind.
-        tasks: how many tasks there were under it.
+        tasks: number of tasks under it.
         orders: digests of the runs that differ from each other.
-        pct: by depth, how many schedules of PCT there were for bugs of that depth.
-        gaps: functions that touch what others touch, too, with no point between, a line each.
-        seen: of a search of orders: how far it came.
-        steps: the most decisions that a run of PCT's had, or was drawn for.
+        pct: by depth, the number of PCT schedules for bugs of that depth.
+        gaps: functions that access objects that other tasks also access, with no preemption point between; a line each.
+        seen: the extent of a search of orders.
+        steps: the most decisions that a PCT run had, or was drawn for.
     """
 
     points: dict[str, int] = field(default_factory=dict)
@@ -103,7 +103,7 @@ class Breadth:
     seen: OrdersSeen | None = None
 
     def take(self, verdict: Verdict) -> None:
-        """Another schedule was flown."""
+        """Count another flown schedule."""
         if verdict.trace:
             self.orders.add(verdict.trace)
         if verdict.schedule.kind == "pct":
@@ -111,16 +111,16 @@ class Breadth:
             self.steps = max(self.steps, verdict.schedule.steps, verdict.decisions)
 
     def chance(self, depth: int) -> float:
-        """The chance with which a bug that needs so many ordered events has shown, at least: PCT's bound.
+        """Return PCT's lower bound for the chance that a bug of this depth (number of ordered events) has shown.
 
         A schedule of PCT shows it with a probability of 1 / (tasks * steps ** (depth - 1)) or more (Burckhardt and
-        others, ASPLOS 2010). What other policies find is not counted.
+        others, ASPLOS 2010). Schedules of other policies are not counted.
         """
         each = 1 / (max(self.tasks, 1) * self.steps ** (depth - 1))
         return 1.0 if each >= 1 else -expm1(self.pct[depth] * log1p(-each))
 
     def lines(self) -> list[str]:
-        """A few lines for a person."""
+        """Return a few lines of text."""
         found = ["1 order" if len(self.orders) == 1 else f"{len(self.orders)} different orders"]
         if self.seen is not None:
             first, *others = self.seen.lines()
@@ -141,7 +141,7 @@ class Breadth:
         return found
 
     def to_dict(self) -> dict[str, object]:
-        """Plain data."""
+        """Return plain data."""
         return {
             "orders": len(self.orders),
             "classes": None if self.seen is None else self.seen.orders,

@@ -1,4 +1,4 @@
-"""The failures of a run as a search counts them: those of its problems, without events that are not to count."""
+"""The failures of a run as a search counts them: the failures of its problems, without the events that do not count."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from cfepy.mission import CORE_APPS, FailedCode, Mission
 from cfepy.pilot import RunProblem, failures_of, problems_so_far
 
 EVENT_LEVELS = {"error": ("ERROR", "CRITICAL"), "critical": ("CRITICAL",), "none": ()}
-"""Which events count as failures, by what `--events` of `cfepy explore` says."""
+"""Events that count as failures, by the value of `--events` of `cfepy explore`."""
 
 
 class FailureWatch(Attachment):
-    """Looks at what goes wrong in a run.
+    """Collects the failures of a run.
 
     Args:
         events: a key of EVENT_LEVELS.
@@ -37,17 +37,17 @@ class FailureWatch(Attachment):
 
     @property
     def trouble(self) -> list[str]:
-        """Errors of cfepy's own tasks, a traceback each; they say nothing about the mission."""
+        """Errors of cfepy's own tasks, a traceback each. They are not errors of the mission."""
         assert self._mission is not None
         return [each.detail for each in self._mission.record.part(FailedCode).died if each.who in CORE_APPS]
 
     def saw(self, group: str) -> bool:
-        """Whether there has been a failure of this group so far, of those that show while the mission runs."""
+        """Return True if there has been a failure of this group so far, among the failures that show during the run."""
         assert self._mission is not None
         return any(failure.group == group for failure in self.failures(problems_so_far(self._mission)))
 
     def failures(self, problems: Iterable[RunProblem]) -> tuple[Failure, ...]:
-        """The failures behind the problems of the run, by time, of each group the first."""
+        """Return the failures behind the problems of the run by time, the first of each group."""
         first: dict[str, Failure] = {}
         for failure in failures_of(problems):
             if failure.who not in CORE_APPS and self._counts(failure):

@@ -1,11 +1,11 @@
-"""Many runs that differ from one instant on: what comes before is run once, and a process is forked for each.
+"""Fork server: runs that are the same up to an instant share that part, and a process is forked for each.
 
     this process  --schedules-->  template (has run up to the instant)  --fork-->  one child a schedule
          ^------------------------------------ answers ------------------------------------'
 
-Only tasks on greenlets can be forked, since a fork takes one thread along; and only a system that has fork. A
-`ForkingJudge` flies the schedules of a trial this way when they differ from an instant on (`from=600ms`), and each by
-itself otherwise; `ForkingNotes` does so for what is shrunk. What comes out is that of whole flights.
+Only tasks on greenlets can be forked, because a fork copies one thread only, and the system must have fork. A
+`ForkingJudge` flies the schedules of a trial this way when they differ from an instant on (`from=600ms`), and each
+separately otherwise. `ForkingNotes` does the same for runs that are shrunk. The results are the same as without forks.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ LENGTH_BYTES = 8
 
 
 class LateSchedule:
-    """In place of a `Schedule`: one that is only known when the run has come to the instant where schedules part."""
+    """A stand-in for a `Schedule` that becomes known only at the instant from which schedules differ."""
 
     def __init__(self, server: ForkServer) -> None:
         self._gate = _Gate(server)
 
     @property
     def decided(self) -> Schedule:
-        """The schedule; fifo as long as nothing was decided."""
+        """The schedule; fifo until one is decided."""
         return self._gate.schedule
 
     def text(self) -> str:
@@ -52,12 +52,12 @@ class LateSchedule:
         return self._gate
 
     def watched(self) -> Attachment:
-        """Of a mission that is flown: while the template waits for schedules, no task of it is watched for a stall."""
+        """Return an attachment that turns off the stall watch while the template waits for schedules."""
         return _Pause(self._gate)
 
 
 class _Gate(Policy):
-    """Goes on as fifo until schedules part; then this process waits for schedules, and its children follow them."""
+    """Decides as fifo until schedules differ. Then this process waits for schedules, and its children follow them."""
 
     def __init__(self, server: ForkServer) -> None:
         super().__init__(*server.options.settings)
@@ -87,11 +87,11 @@ class _Pause(Attachment):
 
 
 class ForkServer:
-    """Runs a body under schedules that have everything up to an instant in common.
+    """Runs a body under schedules that are the same up to an instant.
 
     Args:
         body: does the whole run with a schedule that is decided late, on greenlets; its value can be pickled.
-        options: a schedule whose options (`from`, `any`, `hold`, `connect`) all schedules have.
+        options: a schedule with the options (`from`, `any`, `hold`, `connect`) that all schedules have.
 
     Raises:
         ValueError: `options` has no `from`, or this system has no fork.
@@ -110,16 +110,16 @@ class ForkServer:
         self._template = _fork()
         if not self._template:
             self._be_template()
-        self._requests.stop_receiving()  # so that the end of the template is seen as the end of its pipes
+        self._requests.stop_receiving()  # so that a broken pipe shows that the template has ended
         self._answers.stop_sending()
 
     def run(self, schedule: Schedule) -> Any:
-        """What the body gives under a schedule; a run that does not end keeps this waiting.
+        """Return the value of the body under a schedule. If the run does not end, this call does not return.
 
         Raises:
             ValueError: the schedule has other options.
             ChildProcessError: the process of this run ended without an answer.
-            Exception: what the body raised.
+            Exception: the exception that the body raised.
         """
         if schedule.at({}) != self.options:
             raise ValueError(f"schedule {schedule} must have the options of {self.options}")
@@ -136,7 +136,7 @@ class ForkServer:
         return value
 
     def close(self) -> None:
-        """End the template; `run` must not be called any more."""
+        """End the template. Do not call `run` after that."""
         self._requests.stop_sending()
         os.waitpid(self._template, 0)
         self._answers.stop_receiving()
@@ -146,13 +146,13 @@ class ForkServer:
     def _be_template(self) -> None:
         """Run the body up to the instant and, in each child, to its end. This process and its children end here."""
         status = 1
-        gc.disable()  # it would go through all objects at the end of each child, which is short of life
+        gc.disable()  # else it visits all objects at the end of each short-lived child
         try:
             self._requests.stop_sending()
             answer = self._outcome()
             if self._in_child:
                 self._answers.send(answer)
-            else:  # the run came to its end without a choice after the instant: so all do
+            else:  # the run ended without a decision after the instant, so all runs are the same
                 while self._requests.receive() is not None:
                     self._answers.send(answer)
             status = 0
@@ -166,14 +166,14 @@ class ForkServer:
             return None, error
 
     def wait_for_schedule(self) -> Schedule:
-        """The schedule of the child in which this returns; the template stays in here until the server is closed."""
+        """Return the schedule in each child. The template stays in this call until the server is closed."""
         gc.collect()
-        freeze()  # a child that went through these objects would have to copy them
+        freeze()  # a garbage collection in a child would have to copy these objects
         while (schedule := self._requests.receive()) is not None:
             child = _fork()
             if not child:
                 self._in_child = True
-                return schedule  # type: ignore[no-any-return]  # what `run` sent
+                return schedule  # type: ignore[no-any-return]  # a value from `run`
             _, status = os.waitpid(child, 0)
             if status:
                 self._answers.send(None)
@@ -181,20 +181,20 @@ class ForkServer:
 
 
 class _Channel:
-    """One way between processes, for values that can be pickled."""
+    """A one-way channel between processes, for values that can be pickled."""
 
     def __init__(self) -> None:
         self._reader, self._writer = os.pipe()
 
     def send(self, value: Any) -> None:
-        """Whole, or not at all."""
+        """Send a value, whole or not at all."""
         packed = pickle.dumps(value)
         data = memoryview(len(packed).to_bytes(LENGTH_BYTES, "little") + packed)
         while data:
             data = data[os.write(self._writer, data) :]
 
     def receive(self) -> Any:
-        """The next value; None when the other end is closed."""
+        """Return the next value, or None if the other end is closed."""
         head = self._read(LENGTH_BYTES)
         return pickle.loads(self._read(int.from_bytes(head, "little"))) if head else None
 
@@ -205,11 +205,11 @@ class _Channel:
         return data
 
     def stop_sending(self) -> None:
-        """This process only receives."""
+        """Close the sending end; this process only receives."""
         os.close(self._writer)
 
     def stop_receiving(self) -> None:
-        """This process only sends."""
+        """Close the receiving end; this process only sends."""
         os.close(self._reader)
 
 
@@ -222,11 +222,11 @@ def _fork() -> int:
 T = TypeVar("T")
 
 Fly = Callable[[Trial, Schedule, Policy | None, Sequence[Attachment]], T]
-"""Flies a trial under a schedule, with a policy that decides in its place (None for its own) and what else watches."""
+"""Flies a trial under a schedule, with a policy in its place (None for its own) and other observers."""
 
 
 class Forks(Generic[T]):
-    """Flies trials under schedules, in forked processes where that can be; `close` ends those that wait.
+    """Flies trials under schedules, in forked processes if possible. `close` ends the processes that wait.
 
     Args:
         fly: a flight, whose value can be pickled.
@@ -237,7 +237,7 @@ class Forks(Generic[T]):
         self._servers: dict[tuple[int, Schedule], ForkServer] = {}
 
     def fly(self, trial: Trial, schedule: Schedule) -> T:
-        """What the flight gives; errors as of `ForkServer.run` when it was forked."""
+        """Return the value of the flight. A forked flight raises the errors of `ForkServer.run`."""
         if not self.can_fork(trial, schedule):
             return self._fly(trial, schedule, None, ())
         options = schedule.at({})
@@ -253,7 +253,7 @@ class Forks(Generic[T]):
 
     @staticmethod
     def can_fork(trial: object, schedule: Schedule) -> bool:
-        """Whether it goes on from an instant, on greenlets, on a system that can fork."""
+        """Return True if the schedule begins at an instant, tasks are greenlets, and the system can fork."""
         has_instant = schedule.from_ns and isinstance(trial, Trial) and task_kind(trial.plan.tasks).name == GREENLET
         return bool(has_instant and hasattr(os, "fork"))
 
@@ -265,10 +265,10 @@ class Forks(Generic[T]):
 
 
 class ForkingJudge:
-    """Gives verdicts; `close` ends the processes that it has.
+    """Gives verdicts. `close` ends its processes.
 
     Args:
-        trial: what is tried.
+        trial: the trial.
     """
 
     def __init__(self, trial: Experiment) -> None:
@@ -276,14 +276,14 @@ class ForkingJudge:
         self._forks = Forks(_verdict)
 
     def judge(self, schedule: Schedule) -> Verdict:
-        """The verdict on a schedule; see `cfepy.extra.exploration.campaign.judge`."""
+        """Return the verdict on a schedule; see `cfepy.extra.exploration.campaign.judge`."""
         trial = self._trial
         if not isinstance(trial, Trial) or not Forks.can_fork(trial, schedule):
             return judge(trial, schedule)
         try:
             verdict = self._forks.fly(trial, schedule)
         except ChildProcessError:
-            return judge(trial, schedule)  # whatever ended that process does it here, where it is looked at
+            return judge(trial, schedule)  # the same end happens here, where it is examined
         return replace(verdict, schedule=told_as(schedule, dict(verdict.deviations)))
 
     def close(self) -> None:
@@ -292,13 +292,13 @@ class ForkingJudge:
 
 
 class ForkingNotes:
-    """Flies what is shrunk (`cfepy.extra.exploration.shrink.fly_noting`); `close` ends the processes that it has."""
+    """Flies runs for shrinking (`cfepy.extra.exploration.shrink.fly_noting`). `close` ends its processes."""
 
     def __init__(self) -> None:
         self._forks = Forks(_noted)
 
     def fly(self, trial: Trial, schedule: Schedule) -> NotedFlight:
-        """A flight with its moves."""
+        """Return a flight with its moves."""
         try:
             noted = self._forks.fly(trial, schedule)
         except ChildProcessError:

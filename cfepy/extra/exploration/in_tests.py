@@ -1,7 +1,7 @@
-"""`@explore` of `cfepy.testing`: a test is run under many schedules, and reported when it fails under one of them.
+"""`@explore` of `cfepy.testing`: runs a test under many schedules, and reports it if it fails under one of them.
 
-Each run is a complete one, with setup and teardown, so function-scoped fixtures are made anew; only those of a wider
-scope stay. pytest sees the reports of one run: the first that failed, shrunk, or the last.
+Each run is complete, with setup and teardown, so function-scoped fixtures are made anew. Fixtures of a wider scope
+stay. pytest sees the reports of one run: the first failed run, shrunk, or the last run.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ FAILED = "test failed"
 
 
 def schedules_of(exploration: Exploration, decisions: Callable[[], int], count: int) -> Iterator[Schedule]:
-    """So many schedules; fifo comes first, then the policies take turns, each schedule with a seed of its own.
+    """Yield this number of schedules: fifo first, then the policies in turn, each schedule with its own seed.
 
     Args:
         exploration: of the test.
-        decisions: how many the last run had.
-        count: how many schedules.
+        decisions: returns the number of decisions of the last run.
+        count: number of schedules.
     """
     yield Schedule()
     steps = max(exploration.steps, decisions())
@@ -66,7 +66,7 @@ class OneRun:
 
     Attributes:
         reports: of setup, call and teardown.
-        conditions: what its missions were flown under.
+        conditions: the conditions under which its missions were flown.
     """
 
     reports: tuple[pytest.TestReport, ...]
@@ -74,12 +74,12 @@ class OneRun:
 
     @property
     def is_done(self) -> bool:
-        """Whether there is no need for another schedule: it failed, or was skipped."""
+        """Whether no other schedule is needed: the test failed, or was skipped."""
         return any(report.outcome != "passed" for report in self.reports)
 
     @property
     def failure(self) -> Failure | None:
-        """How it failed; None when it did not. An expected failure (xfail) is one."""
+        """The failure; None if it passed. An expected failure (xfail) counts as one."""
         for report in self.reports:
             if report.failed or (report.skipped and hasattr(report, "wasxfail")):
                 crash = getattr(report.longrepr, "reprcrash", None)
@@ -89,11 +89,11 @@ class OneRun:
 
 
 class ExploredTests:
-    """The pytest plugin that runs them; registered when there are any."""
+    """The pytest plugin that runs explored tests; registered when there are any."""
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
-        """Run a test under its schedules; others, and all under --cfepy-schedule, are left to pytest."""
+        """Run a test under its schedules. pytest runs other tests, and all tests under --cfepy-schedule."""
         mark = item.get_closest_marker(EXPLORE_MARK)
         if mark is None or item.config.getoption("--cfepy-schedule") is not None:
             return None
@@ -109,7 +109,7 @@ class ExploredTest:
 
     Args:
         item: the test.
-        exploration: which schedules.
+        exploration: the settings of its schedules.
     """
 
     def __init__(self, item: pytest.Item, exploration: Exploration) -> None:
@@ -120,7 +120,7 @@ class ExploredTest:
         self._last: OneRun
 
     def explore(self, nextitem: pytest.Item | None) -> Sequence[pytest.TestReport]:
-        """Run it; the reports that stand for all runs."""
+        """Run the test. Returns the reports that stand for all runs."""
         count = self._item.config.getoption("--cfepy-schedules") or self._exploration.seeds
         for number, schedule in enumerate(schedules_of(self._exploration, self._decisions, count), 1):
             when = f"under the {number}. of {count} schedules"
@@ -138,23 +138,23 @@ class ExploredTest:
         return [*reports, *self._end_wider(nextitem)]
 
     def _decisions(self) -> int:
-        """Of the longest mission of the last run."""
+        """Return the number of decisions of the longest mission of the last run."""
         return max((each.decisions for each in self._last.conditions.recorded), default=0)
 
     def _end_wider(self, nextitem: pytest.Item | None) -> list[pytest.TestReport]:
-        """Tear down the fixtures of a wider scope that the next test does not need; a report if that fails."""
+        """Tear down the wider-scoped fixtures that the next test does not need. Returns a report if that fails."""
         setup_state = self._item.session._setupstate
         report = self._report("teardown", lambda: setup_state.teardown_exact(nextitem))
         return [report] if report.failed else []
 
     def _report(self, when: Literal["call", "teardown"], act: Callable[[], None]) -> pytest.TestReport:
-        """What pytest reports of a piece of the test."""
+        """Return pytest's report of a phase of the test."""
         call = pytest.CallInfo.from_call(act, when)
         report: pytest.TestReport = self._item.ihook.pytest_runtest_makereport(item=self._item, call=call)
         return report
 
     def _told(self, schedule: Schedule, when: str, group: str) -> list[pytest.TestReport]:
-        """The reports of the failure, shrunk if that can be."""
+        """Return the reports of the failure, shrunk if possible."""
         lines = [f"failed {when}, {schedule}"]
         shrunk = self._shrunk(schedule, group)
         if shrunk is not None:
@@ -169,7 +169,7 @@ class ExploredTest:
         return reports
 
     def _shrunk(self, schedule: Schedule, group: str) -> Shrunk[ExploredTest] | None:
-        """The shortest schedule; None when there is none to look for."""
+        """Return the shortest schedule, or None if shrinking does not apply."""
         recorded = self._last.conditions.recorded
         is_alone = len(recorded) == 1 and recorded[0].moments
         if self._exploration.shrink == 0 or not is_alone or self._item.config.getoption("usepdb"):
@@ -178,7 +178,7 @@ class ExploredTest:
         return Shrinker(self, [schedule], group, budget).run()
 
     def _timeline(self, schedule: Schedule, moves: Sequence[MadeMove]) -> list[str]:
-        """What happens under a schedule, a column for each task that matters; the test is run once more for it."""
+        """Run the test once more under a schedule. Returns its timeline, with a column for each task that matters."""
         look = TaskLook(self._last.conditions.plans[0].spec())
         policy = look.policy(schedule.policy() or Policy())
         self._last = self._once(Conditions(schedule, policy, (look,)))
@@ -187,27 +187,27 @@ class ExploredTest:
     # -- one run -------------------------------------------------------------------------------------------------------
 
     def fly(self, schedule: Schedule, policy: Policy | None = None) -> Tried:
-        """As `cfepy.extra.exploration.trial.Trial.fly`: the verdict under a schedule, or a policy in its place."""
+        """Return the verdict under a schedule, or under a policy in its place, as `Trial.fly` does."""
         run = self._once(Conditions(schedule, policy))
         failure, recorded = run.failure, run.conditions.recorded
         deviations = tuple(sorted(recorded[0].deviations.items())) if recorded else ()
         return Tried(Verdict(schedule, () if failure is None else (failure,), deviations=deviations))
 
     def until(self, end_ns: int) -> None:
-        """A test is as long as it is."""
+        """Do nothing: the length of a test cannot be changed."""
 
     @property
     def _missions(self) -> Missions | None:
         return cast("Missions | None", self._item.config.pluginmanager.get_plugin("cfepy-missions"))
 
     def _once(self, conditions: Conditions) -> OneRun:
-        """The whole test, from its setup to its teardown; fixtures of a wider scope stay."""
+        """Run the whole test, from its setup to its teardown. Fixtures of a wider scope stay."""
         item = self._item
         item._report_sections.clear()  # of the run before
         del item.user_properties[self._properties :]
         item.config.stash[UNDER_TEST] = conditions
         try:
-            parent = cast("pytest.Item", item.parent)  # what is not the parent's is torn down
+            parent = cast("pytest.Item", item.parent)  # fixtures that are not the parent's are torn down
             reports = runtestprotocol(item, log=False, nextitem=parent)
         finally:
             del item.config.stash[UNDER_TEST]

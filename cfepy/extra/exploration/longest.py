@@ -1,13 +1,13 @@
-"""The search for the longest: schedules under which a measure (`cfepy.monitors.durations`) takes as long as it can.
+"""The search for the longest: schedules under which a measure (`cfepy.monitors.durations`) takes as long as possible.
 
     search = WorstSearch(make_search(...))
     campaign = Campaign(MeasuredTrial(plan, measure=Measure.parse("response:ARM")), search, 200, crew)
 
-It is a search in generations. It begins with schedules from seeds. Then come generations, each made when the verdicts
-on all schedules before it are known, so they are the same for any number of processes. Each has the neighbours of the
-longest run, which answer one decision otherwise; changed ones of the longest runs; and a few more from seeds, so that
-the search does not stay where it began. What comes after the longest does not matter to it, so all changes are before
-that.
+It is a search in generations, which begins with schedules from seeds. Each generation is made when the verdicts on all
+earlier schedules are known, so it does not depend on the number of processes. A generation has three parts. Neighbours
+of the longest run answer one decision differently. Changed schedules come from the longest runs. A few more schedules
+come from seeds, so that the search does not stay near its start. Decisions after the longest value do not affect it, so
+all changes are before its end.
 """
 
 from __future__ import annotations
@@ -34,20 +34,20 @@ from cfepy.units import time_text
 
 FROM_SEEDS = 40  # schedules before the first generation
 NEIGHBOURS, CHANGED, FRESH = 6, 10, 4
-"""A generation: how many schedules of each kind. It does not depend on how many processes there are."""
+"""Schedules of each kind in a generation. The numbers do not depend on the number of processes."""
 PARENTS = 8
 MOST_CHANGES = 4
-WINDOW = 12  # decisions before the one that matters, which matter more often than others
+WINDOW = 12  # the last decisions before the end matter more often than others
 NOTHING = Measure("", "")
 
 
 @dataclass(frozen=True, slots=True)
 class MeasuredTrial(Trial):
-    """A trial whose verdicts say how long a measure took at most.
+    """A trial whose verdicts include the longest value of a measure.
 
     Attributes:
-        measure: what is measured.
-        limit_ns: what is at least as long counts as a failure of the kind LONGEST; 0 for no limit.
+        measure: the measure.
+        limit_ns: a value of at least this counts as a failure of the kind LONGEST; 0 for no limit.
     """
 
     measure: Measure = NOTHING
@@ -76,7 +76,7 @@ class MeasuredTrial(Trial):
 
 
 def _why_nothing(measure: Measure, mission: Mission) -> str:
-    """The end of a sentence about a measure that a run had nothing of."""
+    """Return the end of a sentence that explains why a run had no value of a measure."""
     if measure.kind == RESPONSE:
         return no_such_app(mission, measure.name)
     return "" if measure.kind == WAIT else SentNames(mission).why_not(filter(None, (measure.name, measure.effect)))
@@ -86,8 +86,8 @@ class WorstSearch:
     """Schedules with ever longer runs; see the module.
 
     Args:
-        seeded: where the first ones and some of the later ones come from.
-        seed: of the changes.
+        seeded: source of the first schedules and some of the later ones.
+        seed: seed of the changes.
     """
 
     def __init__(self, seeded: SeededSearch, seed: int = 0) -> None:
@@ -95,12 +95,12 @@ class WorstSearch:
         self._seeded = seeded
         self._given = self._told = 0
         self._waiting: deque[Schedule] = deque()
-        self._fresh = FROM_SEEDS  # schedules from seeds that are still to come in this generation
+        self._fresh = FROM_SEEDS  # schedules from seeds that are still missing in this generation
         self._tried: set[Schedule] = set()
         self._parents: list[tuple[int, Verdict]] = []  # the longest first; of equals the first one found
 
     def next(self) -> Schedule | None:
-        """A generation waits for the verdicts on all schedules before it."""
+        """Return the next schedule. None while a generation waits for the verdicts on all schedules before it."""
         if not self._waiting and not self._fresh:
             if self._told < self._given:
                 return None
@@ -121,7 +121,7 @@ class WorstSearch:
         self._learn(number, verdict)
 
     def _learn(self, number: int, verdict: Verdict) -> None:
-        """Keep the run among the longest ones, if it is one of them."""
+        """Keep the run if it is among the longest ones."""
         known = (_with(parent, _before_the_end(parent)) for _, parent in self._parents)
         if verdict.longest and _with(verdict, _before_the_end(verdict)) not in known:
             self._parents.append((number, verdict))
@@ -129,14 +129,14 @@ class WorstSearch:
             del self._parents[PARENTS:]
 
     def _generation(self) -> list[Schedule]:
-        """The next generation, without what comes from seeds."""
+        """Return the next generation, without its schedules from seeds."""
         if not self._parents:
             return []
         made = [*self._untried(self._neighbours(), NEIGHBOURS)]
         return [*made, *self._untried((self._changed() for _ in range(CHANGED * 4)), CHANGED)]
 
     def _untried(self, candidates: Iterable[Schedule], count: int) -> Iterator[Schedule]:
-        """The first ones that were not tried yet, so many at most."""
+        """Yield at most `count` schedules that were not tried yet."""
         for each in candidates:
             if not count:
                 return
@@ -146,7 +146,7 @@ class WorstSearch:
                 yield each
 
     def _neighbours(self) -> Iterator[Schedule]:
-        """Of the longest run, and then of the others: one decision otherwise, the last ones before the end first."""
+        """Yield schedules with one changed decision: of the longest run first, the last decisions first."""
         for _, parent in self._parents:
             answers = _before_the_end(parent)
             for decision in reversed(range(_end(parent))):
@@ -155,7 +155,7 @@ class WorstSearch:
                         yield _with(parent, {**answers, decision: answer})
 
     def _changed(self) -> Schedule:
-        """One of the longest runs, changed."""
+        """Return a changed schedule of one of the longest runs."""
         random = self._random
         parent = self._parents[int(len(self._parents) * random.random() ** 2)][1]
         widths = parent.widths[: _end(parent)]
@@ -168,13 +168,13 @@ class WorstSearch:
 def _changed(
     random: Random, answers: dict[int, int], widths: Sequence[int], other: Callable[[], dict[int, int]]
 ) -> dict[int, int]:
-    """The answers of a run with some decisions otherwise, and perhaps with the beginning of another one.
+    """Return the answers of a run with some decisions changed, and perhaps with the beginning of another run.
 
     Args:
         random: makes the choices.
-        answers: that are not fifo's, by decision.
-        widths: how many answers each decision had, also as negative numbers; those behind the last one that matters are
-            left out.
+        answers: the answers that differ from fifo's, by decision.
+        widths: number of answers of each decision, also as negative numbers; without the decisions after the last one
+            that matters.
         other: gives the answers of another run.
     """
     end = len(widths)
@@ -197,7 +197,7 @@ def _changed(
 
 
 def _end(verdict: Verdict) -> int:
-    """How many decisions there were when the longest was over."""
+    """Return the number of decisions before the end of the longest value."""
     return min(verdict.longest[2], len(verdict.widths)) if verdict.longest else 0
 
 
@@ -212,14 +212,14 @@ def _with(parent: Verdict, answers: dict[int, int]) -> Schedule:
 
 @dataclass(slots=True)
 class Distribution:
-    """How long it took in all runs; times in ns.
+    """The measured values of all runs; times in ns.
 
     Attributes:
-        measure: what was measured.
-        times: of each run in which it was, in order of the schedules; that of fifo is not among them.
-        under_fifo: of the reference run; None when it was not measured there.
-        longest: the verdict on the longest run, fifo's as well; of equals the first one.
-        number: of its schedule; None for fifo.
+        measure: the measure.
+        times: the value of each run that has one, in order of the schedules, without fifo's.
+        under_fifo: the value of the reference run; None if it has none.
+        longest: the verdict on the longest run, which may be fifo's; of equals the first one.
+        number: number of its schedule; None for fifo.
     """
 
     measure: Measure
@@ -230,20 +230,20 @@ class Distribution:
 
     @classmethod
     def of(cls, measure: Measure, reference: Verdict) -> Distribution:
-        """That of the reference run alone."""
+        """Return the distribution of the reference run alone."""
         found = cls(measure, [], reference.longest[0] if reference.longest else None)
         found.longest = reference if reference.longest else None
         return found
 
     def take(self, number: int, verdict: Verdict) -> None:
-        """Take a verdict."""
+        """Add a verdict."""
         if verdict.longest:
             self.times.append(verdict.longest[0])
             if self.longest is None or verdict.longest[0] > self.longest.longest[0]:
                 self.longest, self.number = verdict, number
 
     def quantiles(self) -> dict[str, int]:
-        """The shortest, the median, what 99 % were at most, and the longest; empty when nothing was measured."""
+        """Return the shortest, the median, the 99 % quantile and the longest; empty when nothing was measured."""
         times = sorted(self.times)
         if not times:
             return {}
@@ -253,13 +253,13 @@ class Distribution:
 
 @dataclass(slots=True)
 class Worst:
-    """The longest as it is told.
+    """The longest value for the report.
 
     Attributes:
-        distribution: how long it took in all runs.
+        distribution: the values of all runs.
         shrunk: the longest run's schedule with the fewest preemptions that take as long; None when fifo's is the
-            longest, or it was not looked for.
-        story: what happens under that schedule.
+            longest, or it was not searched for.
+        story: the course of the run under that schedule.
         inversions: the priority inversions in that run, a sentence each, the longest first.
     """
 
@@ -277,7 +277,7 @@ class Worst:
         return found.schedule if self.distribution.number is not None else Schedule()
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data; times in ns."""
+        """Return plain data; times in ns."""
         found, longest = self.distribution, self.distribution.longest
         return {
             "measure": found.measure.text,
@@ -294,12 +294,12 @@ class Worst:
 
 
 def worst_of(trial: MeasuredTrial, distribution: Distribution, most_probes: int) -> Worst:
-    """The longest run of a campaign, shrunk, and with its timeline.
+    """Return the longest run of a campaign, shrunk, and with its timeline.
 
     Args:
-        trial: what was flown.
-        distribution: how long it took.
-        most_probes: how many runs shrinking may take; 0 leaves the schedule as it is.
+        trial: the trial that was flown.
+        distribution: the measured values.
+        most_probes: runs that shrinking may take; 0 leaves the schedule as it is.
     """
     worst, longest = Worst(distribution), distribution.longest
     if longest is None:

@@ -1,7 +1,7 @@
-"""What a run did otherwise than fifo, and what it could have done, each as a move; and what is known by that of others.
+"""The deviations of a run from fifo, and its alternatives, as moves; and the predictions that known runs allow.
 
 The numbers of decisions in an `at:` schedule all change when one deviation is left out. Moves (`cfepy.schedules.moves`)
-keep their meaning, which is what makes a schedule easy to shorten.
+keep their meaning, which makes a schedule easy to shorten.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ class MadeMove(NamedTuple):
     """A move that a run made.
 
     Attributes:
-        move: itself.
+        move: the move.
         task: name of the task that fifo would have run, or of a question.
         chosen: name of the task that ran, or HOLD, or the answer.
-        preempts: the task was running, and could have gone on.
+        preempts: the task was running, and could have continued.
         question: the kind of the question that it answers; empty for a change of turns.
-        decision: which of the decisions of the run it was.
-        choice: which of the answers.
+        decision: number of the decision in the run.
+        choice: number of the answer.
     """
 
     move: Move
@@ -41,9 +41,9 @@ class Choice(NamedTuple):
     Attributes:
         now: virtual ns.
         answers: by name, fifo's first.
-        moves: what the other answers are.
-        taken: the answer.
-        subject: what it was about, by name.
+        moves: the other answers as moves.
+        taken: the number of the answer taken.
+        subject: name of the task or question that it was about.
         preempts, question: see `MadeMove`.
     """
 
@@ -60,7 +60,7 @@ class MoveNotingPolicy(AskingPolicy):
     """Asks another policy, and keeps its moves.
 
     Attributes:
-        choices: all decisions that there were.
+        choices: all decisions of the run.
     """
 
     def __init__(self, inner: Policy) -> None:
@@ -107,7 +107,7 @@ R = TypeVar("R", bound=NotedRun)
 
 
 class _Node(Generic[R]):
-    """All known runs that have begun with the same deviations from fifo."""
+    """All known runs that begin with the same deviations from fifo."""
 
     def __init__(self) -> None:
         self.following: dict[tuple[int, int], _Node[R]] = {}
@@ -115,18 +115,18 @@ class _Node(Generic[R]):
 
 
 class KnownRuns(Generic[R]):
-    """Runs of one mission, whose schedules have the same options: they tell what other schedules would come to.
+    """Known runs of one mission, whose schedules have the same options. They predict the runs of other schedules.
 
-    Runs whose policies have given the same answers until now are asked the same next. So a schedule is followed along a
-    known run; where it decides otherwise, along another one that has decided so there; until the end of one, or to
-    where none has been.
+    If two policies have given the same answers so far, the next decision is the same for both. So a schedule is
+    followed along a known run. Where it decides differently, it is followed along another known run with that decision.
+    This ends at the end of a run, or where no known run goes on.
     """
 
     def __init__(self) -> None:
         self._root: _Node[R] = _Node()
 
     def add(self, run: R) -> None:
-        """Know a run."""
+        """Add a run."""
         node = self._root
         deviations = [(number, choice.taken) for number, choice in enumerate(run.choices) if choice.taken]
         for deviation in deviations:
@@ -135,7 +135,7 @@ class KnownRuns(Generic[R]):
         node.runs.append((len(run.choices), run))
 
     def find(self, moves: Iterable[Move]) -> R | None:
-        """The run that these moves give; None when that is not known."""
+        """Return the run that these moves give, or None if it is not known."""
         to_make = MovesToMake(moves)
         node, number = self._root, 0
         while node.runs:

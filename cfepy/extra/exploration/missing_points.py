@@ -1,8 +1,8 @@
-"""Gaps of an exploration: functions that touch what other tasks touch, too, twice with no scheduling point between.
+"""Gaps of an exploration: functions that access shared objects twice with no scheduling point between.
 
-No schedule of an exploration at calls alone lets another task in there. One more run, of the default schedule, tells of
-them: its accesses are watched as for races, and two of one function belong together when its task has called nothing
-between.
+No schedule of an exploration at calls alone lets another task in there. One more run, of the default schedule, finds
+them. It watches accesses as the race watch does. Two accesses of one function form a pair when its task has called
+nothing between.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ MOST_TOLD = 5
 
 
 def gaps_of(trial: Trial, options: Schedule) -> list[str]:
-    """What no schedule with these options has looked at, a line each; the run is flown once more.
+    """Fly the run once more. Returns the gaps of all schedules with these options, a line each.
 
     Args:
-        trial: what is flown.
+        trial: the trial.
         options: of the schedules.
     """
     watch = GapWatch()
@@ -35,7 +35,7 @@ def gaps_of(trial: Trial, options: Schedule) -> list[str]:
 
 
 class GapWatch(RaceWatch):
-    """Watches a run whose points are at calls."""
+    """Finds gaps in a run whose points are at calls."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -48,7 +48,7 @@ class GapWatch(RaceWatch):
         mission.accesses.observers.append(self._pair)
 
     def _pair(self, touch: Touch) -> None:
-        """Look whether the function has touched the same before, and nobody could get in since."""
+        """Record a pair if the function accessed the same variable before, and no task could run since."""
         passed, touched = self._since.get(touch.task, (-1, {}))
         if passed != self._kernel.passed:
             touched = {}
@@ -58,7 +58,7 @@ class GapWatch(RaceWatch):
             self._gaps.setdefault((touch.code, touch.name), ((touch.thing, touch.key), first))
 
     def lines(self) -> list[str]:
-        """A line for each function, and what it touches."""
+        """Return a line for each function, with the variables that it accesses."""
         found: dict[str, list[str]] = {}
         for (code, name), (place, first) in self._gaps.items():
             if place in self.racing:

@@ -1,9 +1,8 @@
-"""What a campaign needs of this computer: the files that its mission reads, found, told apart, and sent to others.
+"""The inputs of a campaign on this computer: find the files that its mission reads, compare them, and ship them.
 
-The mission is flown once to see which files it opens. Their digests and the versions say whether two campaigns are the
+The mission is flown once to see which files it opens. Their digests and the versions show whether two campaigns are the
 same. On another computer the files lie in a folder as they lie here in the root: /home/me/arm/startup.scr in
-FOLDER/home/me/arm/startup.scr. So whatever names another file in a relative way finds it, and the mission does not see
-the folder.
+FOLDER/home/me/arm/startup.scr. So relative names of files still work, and the mission does not see the folder.
 """
 
 from __future__ import annotations
@@ -42,9 +41,9 @@ _FILES = ("board", "script", "faults", "play")
 
 
 def files_read(plan: RunPlan) -> list[str]:
-    """Absolute paths of the files that a run depends on, sorted; it is flown once to see which it opens.
+    """Fly a run once. Returns the absolute paths of the files that it depends on, sorted.
 
-    All files of a folder that it looks into are among them.
+    All files of a folder that it lists are among them.
 
     Args:
         plan: the run.
@@ -67,15 +66,15 @@ def files_read(plan: RunPlan) -> list[str]:
 
 
 def identity_of(plan: RunPlan, files: Sequence[str], search: Mapping[str, Any]) -> dict[str, Any]:
-    """What makes a campaign: results of two can be put together when this is the same.
+    """Return the identity of a campaign. Results of two campaigns can be combined when it is the same.
 
     Args:
         plan: the run.
-        files: that it reads; see `files_read`.
-        search: what else decides which schedules there are and what counts as a failure, by option.
+        files: the files that it reads; see `files_read`.
+        search: other settings that decide the schedules and the failures, by option.
 
     Returns:
-        Plain data, in which a change can be told to a person by name.
+        Plain data, so that an error message can name a changed value.
     """
     contents = {path: _hash_of(path) for path in files}
     return {"plan": plan.to_dict(), "search": dict(search), "files": contents, "versions": comparable_versions()}
@@ -87,7 +86,7 @@ def _hash_of(path: str) -> str:
 
 
 def comparable_versions() -> dict[str, str]:
-    """Of cfepy, cFE and Python; of the last one the minor version counts."""
+    """Return the versions of cfepy, cFE and Python; only the minor version of Python counts."""
     found = versions()
     return {**found, "python": ".".join(found["python"].split(".")[:2])}
 
@@ -111,11 +110,11 @@ class PlanElsewhere(RunPlan):
 
 @dataclass(frozen=True, slots=True)
 class Shipment:
-    """What a run needs of this computer.
+    """The inputs of a run from this computer.
 
     Attributes:
         plan: the run; its words begin with an absolute path.
-        files: all that it reads.
+        files: all files that it reads.
         folder: working directory, absolute.
         environ: variables that the mission can see.
     """
@@ -126,7 +125,7 @@ class Shipment:
     environ: Mapping[str, str]
 
     def unpack(self, root: Path) -> Unpacked:
-        """Put the files into a folder.
+        """Write the files into a folder.
 
         Args:
             root: the folder; it is made.
@@ -138,7 +137,7 @@ class Shipment:
         return Unpacked(root, make_folder(root, self.folder))
 
     def plan_in(self, inside: Unpacked) -> PlanElsewhere:
-        """The run, with the files where they were unpacked."""
+        """Return the run with the paths of the unpacked files."""
         plan = self.plan
         same = {each.name: getattr(plan, each.name) for each in fields(plan)}
         places = {name: value and inside.moved(value) for name, value in same.items() if name in _FILES}
@@ -146,7 +145,7 @@ class Shipment:
         return PlanElsewhere(**{**same, **places, "words": words}, root=str(inside.root))
 
     def environ_in(self, inside: Unpacked) -> dict[str, str]:
-        """The variables, with the files where they were unpacked."""
+        """Return the variables with the paths of the unpacked files."""
         return moved_environ(self.environ, str(inside.root))
 
 
@@ -163,12 +162,12 @@ class Unpacked:
     folder: Path
 
     def moved(self, text: str) -> str:
-        """Where a file is now, if a text is the absolute path of one; otherwise the text."""
+        """Return the new path of a file if a text is the absolute path of one; otherwise return the text."""
         here = f"{self.root}{text}"
         return here if text.startswith("/") and os.path.exists(here) else text
 
     def told(self, verdict: Verdict) -> Verdict:
-        """A verdict in which files have the names of the computer that they come from."""
+        """Return a verdict in which files have the names of their original computer."""
         root = str(self.root)
 
         def told(failure: Failure) -> Failure:
@@ -179,14 +178,14 @@ class Unpacked:
 
 
 def ship(plan: RunPlan, files: Sequence[str]) -> Shipment:
-    """Pack what a run needs.
+    """Pack the inputs of a run.
 
     Args:
         plan: the run.
-        files: that it reads; see `cfepy.extra.exploration.mission_transfer`.
+        files: the files that it reads; see `cfepy.extra.exploration.mission_transfer`.
 
     Raises:
-        UsageError: these are too many.
+        UsageError: the files are too large.
     """
     size = sum(os.path.getsize(path) for path in files)
     if size > LIMIT:
@@ -199,7 +198,7 @@ def ship(plan: RunPlan, files: Sequence[str]) -> Shipment:
 
 
 def _absolute(plan: RunPlan) -> tuple[str, ...]:
-    """The words of a plan, with the file that they mean in front."""
+    """Return the words of a plan, with the absolute path of its file first."""
     if plan.command == LAUNCH:
         file, args = launch_file(plan.words)
         return (str(file), *(f"{name}:={value}" for name, value in args.items()))

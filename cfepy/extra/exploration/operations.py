@@ -1,7 +1,7 @@
-"""What tasks do to things that they share: locks, events, pipes, topics, parameters, counters.
+"""The operations (deeds) of tasks on shared objects: locks, events, pipes, topics, parameters, counters.
 
-Two runs are compared by their deeds. A deed is known again in another run by its task, what it does to which thing, and
-how often the task has done that before.
+Two runs are compared by their deeds. A deed is recognized in another run by its task, its verb, its object, and the
+number of times that the task has done it before.
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ ALL = "*"
 
 
 class Deed(NamedTuple):
-    """What a task did to a thing.
+    """An operation of a task on an object.
 
     Attributes:
         at_ns: virtual time.
-        task: its name.
-        app: that of its application.
+        task: name of the task.
+        app: name of its application.
         verb: HAS, SENDS and so on.
-        thing: `self.lock (bank.py:12)`, `/odom`, `pipe HK_PIPE`.
+        thing: name of the object: `self.lock (bank.py:12)`, `/odom`, `pipe HK_PIPE`.
         place: the line of the mission's own code, `bank.py:14`; empty where it runs none.
-        note: more of it: the depth of a pipe, how many tasks were notified, in whose pipe, the file of an access.
-        ident: number of the object that was read or written, 0 where the thing has its name alone.
-        key: of what was accessed in it, an attribute or an item; ALL for all of a container.
+        note: a detail: the depth of a pipe, the number of notified tasks, the owner of a pipe, the file of an access.
+        ident: number of the object that was read or written; 0 if the object has only a name.
+        key: the accessed attribute or item; ALL for all of a container.
     """
 
     at_ns: int
@@ -55,14 +55,14 @@ class Deed(NamedTuple):
     key: str = ""
 
     def is_of_same(self, other: Deed) -> bool:
-        """Whether two accesses are of the same variable, or one is of all of a container."""
+        """Return True if two accesses are of the same variable, or one is of a whole container."""
         if self.ident or other.ident:
             return self.ident == other.ident and (self.key == other.key or ALL in (self.key, other.key))
         return self.thing == other.thing
 
 
 class DeedKey(NamedTuple):
-    """What a deed has in common with that of another run; `number` counts those of the same kind from 0."""
+    """The key that a deed shares with its counterpart in another run; `number` counts deeds of the same kind from 0."""
 
     task: str
     verb: str
@@ -72,7 +72,7 @@ class DeedKey(NamedTuple):
 
 
 def keys_of(deeds: Iterable[Deed]) -> Iterator[DeedKey]:
-    """The key of each deed of a run."""
+    """Yield the key of each deed of a run."""
     seen: Counter[tuple[str, str, str, str]] = Counter()
     for deed in deeds:
         kind = (plain_name(deed.task), deed.verb, deed.thing, deed.note if deed.verb in (GETS, LOSES) else "")

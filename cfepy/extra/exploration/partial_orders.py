@@ -1,12 +1,12 @@
 """All orders that differ in something, each flown once: dynamic partial-order reduction.
 
-Two runs are of one order when each step has the same steps before it that it depends on
-(`cfepy.extra.exploration.steps`): then they differ in nothing but who waited a little longer. From each order that was
-flown the search goes on to its
-neighbours: where two steps follow each other that depend on each other, and nothing else orders them, the later one
-goes first, and what depends on the other is left out. Such a beginning is flown unless an order is known that has it.
-Every order is reached like that, and hardly one is flown twice (the idea is that of Flanagan and Godefroid, POPL 2005;
-that of looking for beginnings among the orders seen, instead of keeping a stack, lets many processes fly at once).
+Two runs have the same order when each step has the same earlier steps that it depends on
+(`cfepy.extra.exploration.steps`). Such runs differ only in how long tasks waited. From each flown order the search goes
+on to its neighbours. A neighbour swaps two successive steps that depend on each other and that nothing else orders. The
+later step goes first, and steps that depend on the earlier one are left out. Such a beginning is flown unless a known
+order has it. Every order is reached in this way, and few are flown twice. The method follows Flanagan and Godefroid
+(POPL 2005). The search looks for beginnings among the orders seen, and keeps no stack, so many processes can fly at
+once.
 """
 
 from __future__ import annotations
@@ -34,23 +34,23 @@ from cfepy.extra.exploration.verdict import Verdict
 from cfepy.rtos import PLACE
 from cfepy.schedules import Schedule
 
-BATCH = 8  # schedules that are handed out at a time; what is known of orders changes only between
+BATCH = 8  # schedules handed out at a time; new orders count only between batches
 
 
 Key = tuple[str, int, int]
-"""A step of any order: its task, which place of it, and which of the steps there that touch something."""
+"""A step of any order: its task, its place, and its number among the steps there that access something."""
 
 
 @dataclass(frozen=True, slots=True)
 class Beginning:
-    """How runs may begin.
+    """The beginning of a run.
 
     Attributes:
-        runs: who runs until when, as of `cfepy.rtos.InOrder`.
-        names: of its steps but the last one.
-        last: the last step, which goes earlier here than in the order that this was made from: its task and place. What
-            it does there, such as to wait, and so its name, is not known.
-        is_pending: the last step is any that its task makes from there on.
+        runs: the tasks in their turns, each with the end of its turn, as of `cfepy.rtos.InOrder`.
+        names: names of its steps except the last one.
+        last: the last step (task and place), which goes earlier here than in the order that this was made from. Its
+            operation, such as a wait, and so its name, is not known.
+        is_pending: the last step is any step that its task makes from there on.
     """
 
     runs: tuple[tuple[str, int], ...]
@@ -60,29 +60,29 @@ class Beginning:
 
 
 class Order:
-    """The order of a run: what each step depends on.
+    """The order of a run: the dependences of its steps.
 
     Args:
         steps: of the run.
 
     Attributes:
         steps: of the run.
-        names: of the steps that touch something, each with all that it depends on; two runs with the same names are
-            of one order.
+        names: of the steps that access something, each with all that it depends on; two runs with the same names have
+            the same order.
         places: numbers of these steps.
-        timed: how many pairs have their order by the time alone that others used, as far as `neighbours` has come.
+        timed: number of pairs that are ordered only by the time that other tasks used, as far as `neighbours` has come.
         has_ends: whether a task has ended another one.
     """
 
     def __init__(self, steps: Sequence[TaskStep]) -> None:
         self.steps = steps
         self._direct: list[_Dependences] = []
-        self._past: list[int] = []  # of each step as bits: all on which it depends, and itself
-        self._floor: list[int] = []  # none of those before can come later, since time goes on between
-        self._names: list[frozenset[int]] = []  # its own; of one that touches nothing, those of the ones before it
-        self._touches: defaultdict[str, list[tuple[int, str]]] = defaultdict(list)  # by thing: who, and how
+        self._past: list[int] = []  # of each step as bits: its dependences and itself
+        self._floor: list[int] = []  # earlier steps cannot come later, because virtual time advances between
+        self._names: list[frozenset[int]] = []  # its own name; if it accesses nothing, the names of its dependences
+        self._touches: defaultdict[str, list[tuple[int, str]]] = defaultdict(list)  # by object: step, access
         self._before: list[int | None] = []  # the step before of the same task
-        self._head: list[int] = []  # the first of those between which nobody could get in
+        self._head: list[int] = []  # the first step of each uninterruptible block
         self._keys: list[Key] = []
         self._hasty = {step.ready for step in steps if step.waker == OVERTAKING}
         self.timed = 0
@@ -109,7 +109,7 @@ class Order:
         self.places = {self._keys[at]: at for at in touching}
 
     def _dependences(self, at: int) -> _Dependences:
-        """On which steps one depends directly."""
+        """Return the steps on which a step depends directly."""
         step, before = self.steps[at], self._before[at]
         conflicts: defaultdict[int, set[str]] = defaultdict(set)
         gives: dict[int, str] = {}
@@ -127,7 +127,7 @@ class Order:
                         break
             elif how == PENDS:
                 conflicts[self._touches[thing][-1][0]].add(thing)
-            elif how == ENDS and thing in self._latest:  # it might have been ended earlier
+            elif how == ENDS and thing in self._latest:  # the task might have been ended earlier
                 conflicts[self._latest[thing]].add(thing)
         gives = {each: lock for each, lock in gives.items() if (state_of(lock), WRITES) not in step.touched}
         ordered = set() if before is None else {before}
@@ -143,11 +143,11 @@ class Order:
     def _after_lock(
         thing: str, before: Iterable[tuple[int, str]], conflicts: defaultdict[int, set[str]], gives: dict[int, str]
     ) -> None:
-        """A lock is taken after whoever took it last, and gave it back."""
+        """Record that taking a lock depends on the task that took it last, and on its release."""
         for other, how in before:
             if how == TAKES:
                 conflicts[other].add(thing)
-                if gives.get(other) == thing:  # taken and given back with nobody in between
+                if gives.get(other) == thing:  # taken and released with no preemption point between
                     del gives[other]
                 return
             if how == GIVES and thing not in gives.values():
@@ -156,7 +156,7 @@ class Order:
     def _section(
         self, at: int, thing: str, conflicts: Mapping[int, set[str]], gives: Mapping[int, str]
     ) -> dict[int, frozenset[int]]:
-        """By the step that took a lock last: those that its task made since, until it gave it back."""
+        """Return, by the step that took a lock last, the steps of its task since then until it released the lock."""
         taken = next((each for each, things in conflicts.items() if thing in things), None)
         if taken is None:
             return {}
@@ -182,7 +182,7 @@ class Order:
         return step.task, place, self._keys[before][2] + _matters(self.steps[before])
 
     def without(self, apps: Collection[str]) -> frozenset[tuple[Key, frozenset[Key]]]:
-        """The order of the other applications: which of their steps come before which."""
+        """Return the order of the other applications' steps: for each step, the earlier steps that it depends on."""
         others = [at for at in self.places.values() if self.steps[at].app not in apps]
         return frozenset(
             (self._keys[at], frozenset(self._keys[each] for each in others if self._past[at] >> each & 1))
@@ -190,7 +190,7 @@ class Order:
         )
 
     def begins(self, beginning: Beginning) -> bool:
-        """Whether it has all steps of a beginning, and all that comes before the last one there is among them."""
+        """Return True if the order has all steps of a beginning, and they include all dependences of its last step."""
         at = self._place_of(beginning)
         if at is None or not beginning.names <= self.names:
             return False
@@ -202,7 +202,7 @@ class Order:
         )
 
     def _place_of(self, beginning: Beginning) -> int | None:
-        """The number of the last step of a beginning."""
+        """Return the number of the last step of a beginning."""
         if not beginning.is_pending:
             return self.places.get(beginning.last)
         task, place, number = beginning.last
@@ -216,10 +216,10 @@ class Order:
         )
 
     def neighbours(self, left: Collection[str] = ()) -> Iterator[Beginning]:
-        """How runs begin in which two steps go the other way round.
+        """Yield the beginnings of runs in which two steps are swapped.
 
         Args:
-            left: applications whose tasks keep the order among themselves that they have.
+            left: applications whose tasks keep their order among themselves.
         """
         for later, direct in enumerate(self._direct):
             whole: set[int] = set()
@@ -238,22 +238,22 @@ class Order:
                         yield found
 
     def _is_head(self, at: int) -> bool:
-        """Whether another step follows with nobody in between."""
+        """Return True if another step follows and no task could run in between."""
         return at + 1 < len(self.steps) and self.steps[at + 1].joined
 
     def _block(self, head: int) -> set[int]:
-        """A step, and those of its task that follow it with nobody in between."""
+        """Return a step, and the later steps of its task with no preemption point in between."""
         end = head + 1
         while end < len(self.steps) and self._head[end] == head:
             end += 1
         return set(range(head, end))
 
     def _is_open(self, earlier: set[int], later: int) -> bool:
-        """Whether nothing else has steps come before another: no task, no wake-up, no time.
+        """Return True if nothing else orders steps before another step: no task, no wake-up, no time.
 
         Args:
-            earlier: one step, or several between which nobody can get in.
-            later: the other one.
+            earlier: one step, or several with no preemption point between them.
+            later: the other step.
         """
         step, direct, first = self.steps[later], self._direct[later], min(earlier)
         if self.steps[first].task == step.task or earlier & direct.ordered:
@@ -274,9 +274,9 @@ class Order:
         return not hard
 
     def _reversed(self, earlier: int, later: int) -> Beginning | None:
-        """The beginning in which the later of two steps goes first; what depends on the earlier one is left out.
+        """Return the beginning in which the later of two steps goes first; None if no task can run there.
 
-        None when nobody can get in there.
+        The steps that depend on the earlier one are left out.
         """
         bit = 1 << earlier
         kept = [at for at in range(later) if not self._past[at] & bit]
@@ -287,10 +287,10 @@ class Order:
         )
 
     def _turns(self, kept: list[int], earlier: int, later: int) -> list[tuple[str, int]] | None:
-        """Who runs until when, for the steps to be kept, and then the later one.
+        """Return the turns of tasks for the steps to keep, and then for the later step.
 
-        Where a step is kept and the one after it is not, with nobody in between, the other tasks go first, those that
-        wait for a lock that is given back there, too: then somebody may get in after all.
+        A kept step may be followed by a step that is not kept, with no preemption point between. Then the other tasks
+        go first, including tasks that wait for a lock that is released there. This may open a preemption point.
         """
         stays = set(kept)
         cut = {
@@ -308,7 +308,7 @@ class Order:
         begun = [at for at in (*now, later) if self._may_wait(at, cut, after)]
         rest = {each for at in self._block(self._head[later]) if at > later for each in self._direct[at].all}
         if any(self._head[each] == self._head[earlier] and each < earlier for each in rest):
-            return None  # what follows the later one with nobody in between
+            return None  # a later step of the same block depends on it
         if self._head[earlier] in cut and needed >> self._head[earlier] & 1 and not begun:
             return None
         turns = [self._turn(at) for at in kept if at not in after]
@@ -316,25 +316,25 @@ class Order:
         return turns + [self._turn(at) for at in (*now, later, *then)]
 
     def _may_wait(self, at: int, cut: set[int], after: set[int]) -> bool:
-        """Whether a step may wait already for a lock that is given back in what is cut."""
+        """Return True if a step may already wait for a lock that is released in the cut block."""
         direct = self._direct[at]
         is_given = any(self._head[each] in cut for each in direct.gives)
         return is_given and not after & (direct.ordered | set(direct.conflicts))
 
     def _turn(self, at: int) -> tuple[str, int]:
-        """Whose turn a step is, and until when: it is over when the next place is passed."""
+        """Return the task of a step, and the end of its turn: it is over when the task passes the next place."""
         return self.steps[at].task, self.steps[at].number + 1
 
 
 @dataclass(frozen=True, slots=True)
 class _Dependences:
-    """The steps on which one depends directly.
+    """The steps on which a step depends directly.
 
     Attributes:
-        conflicts: those that touched what it touches, with these things.
-        gives: those that gave back a lock that it takes, with the lock.
-        ordered: the one before of its task, and the one that woke it.
-        sections: by the step that took a lock last which it takes, those that the other task made with it.
+        conflicts: steps that accessed the same objects, with these objects.
+        gives: steps that released a lock that it takes, with the lock.
+        ordered: the previous step of its task, and the step that woke it.
+        sections: by the step that took one of its locks last, the steps that the other task made with the lock.
     """
 
     conflicts: dict[int, set[str]]
@@ -344,22 +344,22 @@ class _Dependences:
 
     @property
     def all(self) -> set[int]:
-        """All of them."""
+        """The numbers of all these steps."""
         return {*self.conflicts, *self.gives, *self.ordered}
 
 
 def _is_pending(step: TaskStep) -> bool:
-    """Whether a step was not made, since its task was ended before."""
+    """Return True if a step was not made because its task was ended before."""
     return any(how == PENDS for _, how in step.touched)
 
 
 def _matters(step: TaskStep) -> bool:
-    """Whether a step touches anything."""
+    """Return True if a step accesses anything."""
     return bool(step.touched) and not _is_pending(step)
 
 
 def _runs(turns: Iterable[tuple[str, int]]) -> tuple[tuple[str, int], ...]:
-    """Turns, with those of one task in a row as one."""
+    """Return turns, with successive turns of one task merged."""
     found: list[tuple[str, int]] = []
     for turn in turns:
         if found and found[-1][0] == turn[0]:
@@ -369,12 +369,12 @@ def _runs(turns: Iterable[tuple[str, int]]) -> tuple[tuple[str, int], ...]:
 
 
 class OrdersSeen(NamedTuple):
-    """How far a search of orders came.
+    """The extent of a search of orders.
 
     Attributes:
-        orders: how many different ones were seen.
-        is_complete: whether it found no others.
-        depth: how many steps of a run might come in another order; None for all of them.
+        orders: number of different orders seen.
+        is_complete: whether there are no others.
+        depth: number of steps of a run that may come in another order; None for all of them.
         astray: see `OrderSearch`.
         timed: see `OrderSearch`.
         has_ends: see `OrderSearch`.
@@ -388,7 +388,7 @@ class OrdersSeen(NamedTuple):
     has_ends: bool = False
 
     def lines(self) -> list[str]:
-        """A few lines for a person, the first one as a part of a sentence."""
+        """Return a few lines of text. The first one is part of a sentence."""
         told = f"{self.orders} of them in what tasks touch"
         if self.is_complete:
             told += (
@@ -405,18 +405,18 @@ class OrdersSeen(NamedTuple):
 
 
 class OrderSearch:
-    """Schedules of orders that differ, those that are closer to fifo first.
+    """Schedules of orders that differ, closest to fifo first.
 
     Args:
-        options: a schedule whose options all have.
-        left: applications whose tasks keep the order among themselves that they have.
-        depth: how many steps of a run may come in another order, from the instant on at which schedules part; None for
-            all of them.
+        options: a schedule with the options that all schedules have.
+        left: applications whose tasks keep their order among themselves.
+        depth: number of steps of a run that may come in another order, counted from the instant at which schedules
+            begin to differ; None for all of them.
 
     Attributes:
-        astray: how many schedules did not go as they were to begin, since time or a priority was against it.
-        timed: how many pairs of steps have their order by the time alone that others used.
-        has_ends: whether tasks were ended by others.
+        astray: number of schedules that did not begin as planned, because time or a priority prevented it.
+        timed: number of pairs of steps that are ordered only by the time that other tasks used.
+        has_ends: whether tasks were ended by other tasks.
     """
 
     def __init__(self, options: Schedule, left: Collection[str] = (), depth: int | None = None) -> None:
@@ -435,7 +435,7 @@ class OrderSearch:
 
     @property
     def orders(self) -> int:
-        """How many different ones were seen."""
+        """The number of different orders seen."""
         return len(self._seen)
 
     @property
@@ -445,7 +445,7 @@ class OrderSearch:
 
     @property
     def seen(self) -> OrdersSeen:
-        """How far it came."""
+        """The extent of the search so far."""
         is_complete = self.exhausted and not self.astray
         return OrdersSeen(self.orders, is_complete, self._depth, self.astray, self.timed, self.has_ends)
 
@@ -459,7 +459,7 @@ class OrderSearch:
         return self._options.in_order(() if beginning is None else beginning.runs)
 
     def tell(self, number: int, verdict: Verdict) -> None:
-        """What is new counts when all that were handed out are back."""
+        """Take a verdict. New orders count only when all schedules that were handed out have a verdict."""
         order = Order(verdict.steps[: self._depth])
         self._told.append(order)
         if len(self._told) < len(self._away) or self._ready:
@@ -482,7 +482,7 @@ class OrderSearch:
         self.has_ends |= order.has_ends
 
     def _fill(self) -> None:
-        """The next ones to fly: beginnings that no order seen has."""
+        """Prepare the next schedules: beginnings that no seen order has."""
         while self._open and len(self._ready) < BATCH:
             beginning = self._open.popleft()
             if not self._is_seen(beginning):

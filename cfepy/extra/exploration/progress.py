@@ -1,4 +1,4 @@
-"""The progress of a campaign: counts, rate and the time that is left, for a person or for a log."""
+"""The progress of a campaign: counts, rate and remaining time, for a terminal or for a log."""
 
 from __future__ import annotations
 
@@ -10,37 +10,37 @@ from cfepy.units import NS_PER_S
 from cfepy.writing.escapes import keep_output_safe, rich_console
 
 EVERY_NS = 10 * NS_PER_S  # wall time between two lines in a log
-SETTLE_NS = NS_PER_S  # wall time after which a rate means something
+SETTLE_NS = NS_PER_S  # wall time after which a rate is meaningful
 
 
 class Progress(Protocol):
-    """Is told what a campaign does."""
+    """Shows the progress of a campaign."""
 
     def arrived(self, failed: bool) -> None:
-        """A verdict came in, in whatever order."""
+        """Count a verdict, in any order."""
 
     def close(self) -> None:
-        """The campaign is over: nothing but finished lines may stay on the screen."""
+        """End the display when the campaign is over. Only finished lines may stay on the screen."""
 
 
 class NoProgress:
     """Shows nothing."""
 
     def arrived(self, failed: bool) -> None:
-        """Nothing is shown."""
+        """Do nothing."""
 
     def close(self) -> None:
-        """Nothing is shown."""
+        """Do nothing."""
 
 
 class CampaignMeter:
     """Counts verdicts against the wall clock.
 
     Args:
-        total: schedules that there are, at most; None for any number.
-        resumed: how many of them an earlier run has done; these do not count for the rate.
+        total: the most schedules; None for any number.
+        resumed: schedules that an earlier run has done; these do not count for the rate.
         elapsed_ns: wall time since the start, in ns.
-        budget_s: wall time after which no further one begins; None for no limit.
+        budget_s: wall time after which no further schedule begins; None for no limit.
 
     Attributes:
         done, failed: so far.
@@ -66,26 +66,26 @@ class CampaignMeter:
 
     @property
     def rate(self) -> float:
-        """Schedules per second of wall time; 0 as long as that cannot be told."""
+        """Schedules per second of wall time; 0 until it can be estimated."""
         fresh, elapsed = self.done - self._resumed, self.elapsed_ns()
         return fresh * NS_PER_S / elapsed if fresh > 0 and elapsed >= SETTLE_NS else 0.0
 
     @property
     def left_s(self) -> float | None:
-        """Seconds of wall time until all schedules are done, or no more begin; None as long as that cannot be told."""
+        """Seconds of wall time until all schedules are done, or no more begin; None until it can be estimated."""
         budget_s = None if self._budget_s is None else max(0.0, self._budget_s - self.elapsed_ns() / NS_PER_S)
         by_rate_s = (self.total - self.done) / self.rate if self.rate and self.total is not None else None
         return min((each for each in (budget_s, by_rate_s) if each is not None), default=None)
 
     @property
     def share(self) -> float:
-        """How much of it is done, of 1: of the schedules or of the wall time, whichever is nearer to its end."""
+        """The finished share, 0 to 1: of the schedules or of the wall time, whichever is nearer to its end."""
         by_count = 0.0 if not self.total else self.done / self.total
         by_time = 0.0 if not self._budget_s else self.elapsed_ns() / NS_PER_S / self._budget_s
         return min(1.0, max(by_count, by_time))
 
     def text(self) -> str:
-        """All of it in a line: `1200 of 5000 schedules, 3 failed, 85.0/s, 0:00:44 left`."""
+        """Return the progress in a line: `1200 of 5000 schedules, 3 failed, 85.0/s, 0:00:44 left`."""
         count = f"{self.done}" if self.total is None else f"{self.done} of {self.total}"
         parts = [f"{count} schedules", f"{self.failed} failed"]
         if self.rate:
@@ -96,7 +96,7 @@ class CampaignMeter:
 
 
 def duration(seconds: float) -> str:
-    """Hours, minutes and seconds: `0:01:30`."""
+    """Return hours, minutes and seconds: `0:01:30`."""
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes // 60}:{minutes % 60:02}:{rest:02}"
 
@@ -106,7 +106,7 @@ class PlainProgress:
 
     Args:
         meter: counts.
-        stream: where to.
+        stream: the output.
     """
 
     def __init__(self, meter: CampaignMeter, stream: TextIO) -> None:
@@ -121,7 +121,7 @@ class PlainProgress:
             self._due_ns = self._meter.elapsed_ns() + EVERY_NS
 
     def close(self) -> None:
-        """It has written nothing but finished lines."""
+        """Do nothing: all written lines are finished."""
 
 
 class BarProgress:
@@ -154,13 +154,13 @@ class BarProgress:
 def make_progress(
     stream: TextIO | None, total: int | None, resumed: int = 0, budget_s: float | None = None
 ) -> Progress:
-    """A bar where there is a terminal, lines elsewhere.
+    """Return a bar for a terminal, lines for other streams.
 
     Args:
-        stream: where it is shown; None shows nothing.
-        total: schedules that there are, at most; None for any number.
-        resumed: how many of them an earlier run has done.
-        budget_s: wall time after which no further one begins.
+        stream: the output; None shows nothing.
+        total: the most schedules; None for any number.
+        resumed: schedules that an earlier run has done.
+        budget_s: wall time after which no further schedule begins.
     """
     if stream is None:
         return NoProgress()

@@ -1,4 +1,4 @@
-"""What `cfepy.explore` returns, out of the report of an expedition."""
+"""The result of `cfepy.explore`, made from the report of an expedition."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def explore(plan: RunPlan, **settings: Any) -> Explored:
 
     Args:
         plan: of the runs.
-        settings: as of `Expedition`.
+        settings: attributes of `Expedition`.
     """
     report = Expedition(plan, **settings).run()
     leak = () if report.unsteady is None else (f"not deterministic: two runs under {report.unsteady} differ",)

@@ -1,7 +1,7 @@
-"""The failures of a results file, flown again in the mission as it now is: which are gone, and which are still there.
+"""The failures of a results file, flown again in the current mission: some are gone, and some are still there.
 
-Each is flown under the shortest schedule that the campaign found for it. A failure is the same when its text is, but
-for numbers, since an edit moves lines.
+Each is flown under the shortest schedule that the campaign found for it. Two failures are the same when their texts
+differ only in numbers, because an edit moves lines.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ _DIGITS = re.compile(r"\d+")
 
 @dataclass(frozen=True, slots=True)
 class ReplayedFailure:
-    """A failure that was looked for again.
+    """A failure that was flown again.
 
     Attributes:
-        title: as it was told.
-        verdict: on the mission as it now is, under the schedule that showed the failure.
-        same: the failure, when it is still there.
-        trial: what was flown.
+        title: its title in the results file.
+        verdict: on the current mission, under the schedule that showed the failure.
+        same: the failure if it is still there.
+        trial: the trial that was flown.
     """
 
     title: str
@@ -53,7 +53,7 @@ class ReplayedFailure:
 
     @property
     def others(self) -> tuple[str, ...]:
-        """What else failed under the schedule."""
+        """Titles of the other failures under the schedule."""
         return tuple(each.title for each in self.verdict.failures if each is not self.same)
 
     @property
@@ -62,7 +62,7 @@ class ReplayedFailure:
         return self.trial.command(self.verdict.schedule)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data."""
         found = {"title": self.title, "state": self.state, "schedule": self.verdict.schedule.text()}
         return found | {"command": self.command, "not_possible": list(self.verdict.missed), "others": list(self.others)}
 
@@ -74,12 +74,12 @@ def replay_all(
 
     Args:
         path: of the file.
-        word: the mission, where it is another one than that of the file; None for that.
+        word: another mission than the file's; None for the file's mission.
         jobs: processes; None for one on each CPU.
         longest_s: wall time in s that a flight may take.
 
     Raises:
-        UsageError: it is no results file, or the mission cannot be flown.
+        UsageError: the file is not a results file, or the mission cannot be flown.
     """
     plan, search = _campaign(path)
     if word is not None:
@@ -106,7 +106,7 @@ def replay_all(
 
 
 def _campaign(path: str) -> tuple[RunPlan, dict[str, Any]]:
-    """The run of a results file, and what counted as a failure."""
+    """Return the run of a results file, and its search options."""
     campaign, _ = read_results(path)
     search = campaign.get("search")
     try:

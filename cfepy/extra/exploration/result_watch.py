@@ -1,6 +1,6 @@
 """The results of a run that must not depend on the schedule, as the mission file selects them.
 
-A result is kept as a digest and a short text; the reference travels with each trial, so it has to be small.
+A result is kept as a digest and a short text, because the reference travels with each trial and must be small.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ NONE = "none"
 
 
 class Result(NamedTuple):
-    """A result: what it is of, a digest of all of it, and what a person is told of it."""
+    """A result: its name, a digest of all of it, and a short text."""
 
     name: str
     digest: str
@@ -44,7 +44,7 @@ class ResultWatch(Attachment):
         spec: the mission.
 
     Raises:
-        UsageError: it has no such packet.
+        UsageError: the mission has no such packet.
     """
 
     def __init__(self, spec: MissionSpec) -> None:
@@ -68,11 +68,11 @@ class ResultWatch(Attachment):
         self._watch.begin(mission)
 
     def conclude(self) -> None:
-        """What the shutdown of the nodes adds does not count."""
+        """Collect the results. Messages during the shutdown of the nodes do not count."""
         self._found = [result for each in self._selected for result in self._results_of(each)]
 
     def results(self) -> tuple[Result, ...]:
-        """All of them, in the order of the mission file; of a pattern, by topic."""
+        """Return all results in the order of the mission file; the results of a pattern by topic."""
         return tuple(self._found)
 
     def _take(self, heard: Heard) -> None:
@@ -103,7 +103,7 @@ class ResultWatch(Attachment):
         return [NONE] if node is None else [bytes(node.data).decode("latin-1")]
 
     def _output(self, app: str) -> list[str]:
-        """The lines that a node wrote; they begin with its name."""
+        """Return the lines that a node wrote; they begin with its name."""
         assert self._mission is not None
         config = self._mission.spec.ros.nodes.get(app)
         prefix = f"[{config.name if config is not None and config.name else app}] "
@@ -111,12 +111,12 @@ class ResultWatch(Attachment):
 
 
 def digest_of(results: Sequence[Result]) -> str:
-    """One digest of all; empty when there are none."""
+    """Return one digest of all results; empty when there are none."""
     return _digest([f"{each.name}={each.digest}" for each in results]) if results else ""
 
 
 def differences(reference: Sequence[Result], found: Sequence[Result]) -> Iterator[tuple[str, str]]:
-    """(name, text) of each result that is not that of the reference."""
+    """Yield (name, text) of each result that differs from the reference."""
     expected = {each.name: each for each in reference}
     for each in found:
         other = expected.pop(each.name, None)
@@ -146,12 +146,12 @@ def _result(name: str, texts: list[str]) -> Result:
 
 
 def short_text(text: str) -> str:
-    """A text cut off when it is long."""
+    """Return a text, cut off if it is long."""
     return short(_Bare(text))
 
 
 class _Bare(str):
-    """A text that shows without quotes."""
+    """A text whose `repr` has no quotes."""
 
     def __repr__(self) -> str:
         return str(self)
@@ -162,7 +162,7 @@ def _digest(texts: Sequence[str]) -> str:
 
 
 def _message_text(heard: Heard, ignore: tuple[str, ...]) -> str:
-    """A message as text, without the fields that may differ."""
+    """Return a message as text, without the ignored fields."""
     try:
         values = plain(heard.msg)
     except UsageError as error:
@@ -187,5 +187,5 @@ def _nested(value: Any, ignore: tuple[str, ...], path: str) -> str:
 
 
 def _ignored(path: str, ignore: tuple[str, ...]) -> bool:
-    """Whether a field is left out: its path, or the end of it."""
+    """Return True if a field is ignored, by its path or the end of its path."""
     return any(path == each or path.endswith(f".{each}") for each in ignore)

@@ -1,9 +1,8 @@
-"""The results of a campaign in a file: JSON, a line a verdict behind a line that says which campaign it is.
+"""The results of a campaign in a file: JSON lines, the first with the campaign's identity, then one for each verdict.
 
-Behind the verdicts there is a line for each distinct failure, with the shortest schedule that is known to show it.
-
-Lines are only ever added, each in one write, as verdicts come in. Whatever ends the process in the middle of a write
-leaves half a line at the end, which the next run cuts off; then it goes on with what is missing.
+After the verdicts there is a line for each distinct failure, with the shortest schedule that is known to show it. Lines
+are only added, each in one write, as verdicts arrive. If the process ends in the middle of a write, half a line is left
+at the end. The next run cuts it off and goes on with the missing verdicts.
 """
 
 from __future__ import annotations
@@ -29,14 +28,14 @@ _MISSING = 0  # no verdict starts where the first line is
 
 
 class ResultsFile:
-    """A results file that this process writes; no other process can until it is closed.
+    """A results file that this process writes. No other process can write it until it is closed.
 
     Args:
-        path: of the file; it is made when it is not there.
-        identity: what makes the campaign, as plain data. A file of another one is refused.
+        path: of the file; it is made if it does not exist.
+        identity: the campaign's identity, as plain data. A file of another campaign is refused.
 
     Raises:
-        UsageError: the file is no results file, belongs to another campaign, is in use, or cannot be written.
+        UsageError: the file is not a results file, belongs to another campaign, is in use, or cannot be written.
     """
 
     def __init__(self, path: str | Path, identity: Mapping[str, Any]) -> None:
@@ -52,11 +51,11 @@ class ResultsFile:
             raise
 
     def __len__(self) -> int:
-        """How many verdicts there are."""
+        """Return the number of verdicts."""
         return len(self._starts) - self._starts.count(_MISSING)
 
     def verdict(self, number: int) -> dict[str, Any] | None:
-        """The verdict on the schedule of this number, as plain data; None when there is none yet."""
+        """Return the verdict on the schedule of this number, as plain data; None if there is none yet."""
         start = self._starts[number] if number < len(self._starts) else _MISSING
         if start == _MISSING:
             return None
@@ -65,22 +64,22 @@ class ResultsFile:
         return found
 
     def append(self, number: int, verdict: Mapping[str, Any]) -> None:
-        """Keep a verdict.
+        """Write a verdict.
 
         Args:
             number: of the schedule in the campaign, from 0.
             verdict: as plain data.
 
         Raises:
-            UsageError: it cannot be written any more, since the disk is full.
+            UsageError: it cannot be written, for example because the disk is full.
         """
         start = self._end
         self._write({"number": number, "verdict": verdict})
         self._remember(number, start)
 
     def close(self) -> None:
-        """Let others write the file."""
-        with suppress(OSError):  # what could not be written was told then
+        """Close the file, so that other processes can write it."""
+        with suppress(OSError):  # a failed write has already raised an error
             self._file.close()
 
     def _open(self) -> Any:
@@ -133,7 +132,7 @@ class ResultsFile:
 
 
 def whole_lines(file: Any, path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
-    """The records of a results file, each with where it starts; half a line at the end is left out.
+    """Yield the records of a results file, each with its position; half a line at the end is left out.
 
     Args:
         file: open for reading bytes.
@@ -159,18 +158,18 @@ def whole_lines(file: Any, path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
 
 
 def is_failure(record: Mapping[str, Any]) -> bool:
-    """Whether a line is about a distinct failure."""
+    """Return True if a line is about a distinct failure."""
     return isinstance(record.get("failure"), dict) and "number" not in record
 
 
 def keep_failure(path: str | Path, group: str, title: str, schedule: Schedule) -> None:
-    """Add a distinct failure to a results file that is whole; the last line about a group counts.
+    """Add a distinct failure to a complete results file. The last line about a group counts.
 
     Args:
         path: of the file.
-        group: what failures of this cause have in common.
-        title: of the failure, for a person.
-        schedule: the shortest one that is known to show it.
+        group: the group that failures of this cause share.
+        title: of the failure, for the user.
+        schedule: the shortest schedule that is known to show it.
 
     Raises:
         UsageError: it cannot be written.
@@ -184,13 +183,13 @@ def keep_failure(path: str | Path, group: str, title: str, schedule: Schedule) -
 
 
 def read_failures(path: str | Path) -> dict[str, tuple[str, Schedule]]:
-    """The distinct failures of a results file: by group the title, and a schedule that shows it.
+    """Return the distinct failures of a results file: by group the title, and a schedule that shows it.
 
-    These are those that the campaign told, with the shortest schedule, or, where it did not come to that, those of its
-    verdicts.
+    These are the failures that the campaign reported, with the shortest schedule. If it did not get that far, they are
+    the failures of its verdicts.
 
     Raises:
-        UsageError: it is no results file, or cannot be read.
+        UsageError: the file is not a results file, or cannot be read.
     """
     path = Path(path)
     told: dict[str, tuple[str, Schedule]] = {}
@@ -215,13 +214,13 @@ def _told_failure(plain: dict[str, Any], path: Path, line: int) -> dict[str, tup
 
 
 def read_results(path: str | Path) -> tuple[dict[str, Any], Iterator[tuple[int, dict[str, Any]]]]:
-    """Read a results file, also one that is being written.
+    """Read a results file, also while it is being written.
 
     Returns:
-        What makes the campaign, and (number, verdict) for all verdicts in the order in which they came in.
+        The campaign's identity, and (number, verdict) for all verdicts in the order in which they arrived.
 
     Raises:
-        UsageError: it is no results file, or cannot be read.
+        UsageError: the file is not a results file, or cannot be read.
     """
     path = Path(path)
     lines = whole_lines(_opened(path), path)
@@ -270,7 +269,7 @@ def _check(head: dict[str, Any], identity: dict[str, Any], path: Path) -> None:
 
 
 def _flat(value: Any, name: str = "") -> Iterator[tuple[str, str]]:
-    """Every plain value in nested mappings under its path: plan.seed, 3."""
+    """Yield every plain value in nested mappings under its path: plan.seed, 3."""
     if isinstance(value, dict) and value:
         for key, inner in value.items():
             yield from _flat(inner, f"{name}.{key}" if name else key)

@@ -1,4 +1,4 @@
-"""Who had the processor when, for what comes too late: a `RunTimes` watches a run and is asked for a span of it."""
+"""The CPU times of tasks, to explain a missed deadline: a `RunTimes` watches a run and answers for a span of it."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import NamedTuple
 from cfepy.monitors import Observer
 from cfepy.rtos import Task
 
-LEAST_SHARE = 0.1  # of a span: a task that ran for less of it more than usual is not named
+LEAST_SHARE = 0.1  # of a span: a task with less extra run time is not named
 
 
 class Turn(NamedTuple):
-    """A task had the processor: its name, from when until when in virtual ns."""
+    """A turn of a task on the processor: its name, its start and its end in virtual ns."""
 
     task: str
     from_ns: int
@@ -20,10 +20,10 @@ class Turn(NamedTuple):
 
 
 class RunTimes(Observer):
-    """Notes the turns of a run in which time went by.
+    """Records the turns of a run that took time.
 
     Attributes:
-        turns: in their order; the running one is not among them.
+        turns: in their order, without the current one.
     """
 
     def __init__(self) -> None:
@@ -39,7 +39,7 @@ class RunTimes(Observer):
             self.turns.append(Turn(task.name, self._since_ns, at_ns))
 
     def between(self, from_ns: int, to_ns: int) -> Counter[str]:
-        """For how many ns each task ran in a span of virtual time, by name."""
+        """Return for how many ns each task ran in a span of virtual time, by name."""
         found: Counter[str] = Counter()
         for turn in self.turns:
             found[turn.task] += max(0, min(turn.to_ns, to_ns) - max(turn.from_ns, from_ns))
@@ -47,12 +47,12 @@ class RunTimes(Observer):
 
 
 def longest_more(ran: Counter[str], usual: Counter[str], span_ns: int) -> str:
-    """The task that ran for longest beyond what is usual; empty when none did for a good part of the span.
+    """Return the task with the longest extra run time; empty if that is a small part of the span.
 
     Args:
-        ran: by task, for how long it ran in the span.
+        ran: by task, its run time in the span.
         usual: the same in another run.
-        span_ns: how long the span is.
+        span_ns: length of the span.
     """
     more = {task: time_ns - usual[task] for task, time_ns in ran.items()}
     task = max(more, key=lambda each: more[each], default="")

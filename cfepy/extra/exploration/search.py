@@ -1,10 +1,10 @@
-"""Which schedules are flown: from seeds, one policy after the other, or systematically, depth first.
+"""The choice of schedules: from seeds, one policy after the other, or systematically.
 
-A search gives the same schedules in the same order however many processes fly them. The systematic one lets the depth
-grow by one deviation from fifo at a time: every schedule is a list of deviations, and its children deviate once more,
-after its last deviation; so none comes twice. How many choices a decision has is only known from a run, so the
-next schedules are made from each run. Bounding preemptions rather than steps is the idea of CHESS (Musuvathi, Qadeer:
-PLDI 2007).
+A search gives the same schedules in the same order for any number of processes. The systematic search lets the depth
+grow by one deviation from fifo at a time. Every schedule is a list of deviations. Its children deviate once more, after
+its last deviation, so no schedule comes twice. The number of choices of a decision is only known from a run, so the
+next schedules are made from each run. The search bounds preemptions and not steps, which is the idea of CHESS
+(Musuvathi, Qadeer: PLDI 2007).
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from cfepy.schedules import Schedule
 POLICIES = ("all", "random", "pct", "abreast", "dfs", "orders")
 PCT_DEPTH, DFS_DEPTH = 3, 2
 PORTFOLIO_DEPTHS = (2, 3, 1)
-"""Of PCT in the policy `all`: most races need two ordered events, some three, and starvation one."""
+"""Depths of PCT in the policy `all`: most races need two ordered events, some three, and starvation one."""
 PORTFOLIO_HOLD_NS = 1_000_000
-"""In the policy `all`, for one schedule in six, with points for two, unless the board's tick is longer: a race with a
-timer, or with a more urgent task that waits for one, is seen only when code takes time. More would break what a mission
-rightly expects of its own sleeps; less than a tick would reach no timer."""
+"""Delay in the policy `all`, for one schedule in six (with points: for two), unless the board's tick is longer.
+A race with a timer, or with a more urgent task that waits for one, shows only when code takes time. A longer delay
+would break a mission's justified assumptions about its own sleeps; less than a tick would reach no timer."""
 
 
 class SeededSearch:
-    """Schedules from seeds, each with one of its own: of one kind, or of several by turns.
+    """Schedules from seeds, each with its own seed: of one kind, or of several in turn.
 
-    PCT has to know about how many decisions a run has, and fifo, which interrupts no task, has far fewer of them than
-    other schedules. So it waits for the verdict on the first schedule, and reckons with as many as that one had.
+    PCT needs an estimate of the number of decisions of a run. Fifo interrupts no task, so it has far fewer decisions
+    than other schedules. So the search waits for the verdict on the first schedule, and uses its number.
 
     Args:
         kinds: schedules whose seed is replaced.
@@ -46,7 +46,7 @@ class SeededSearch:
         self._is_measured = False
 
     def next(self) -> Schedule | None:
-        """See `cfepy.extra.exploration.campaign.Search`: without end, but for the one wait."""
+        """Return the next schedule; see `cfepy.extra.exploration.campaign.Search`. It never ends."""
         number = self._number
         kind = self._kinds[number % len(self._kinds)]
         if number and kind.kind == "pct" and not self._is_measured:
@@ -55,12 +55,12 @@ class SeededSearch:
         return kind.with_seed(self._first_seed + number)
 
     def tell(self, number: int, verdict: Verdict) -> None:
-        """See `cfepy.extra.exploration.campaign.Search`: from the first one it learns how long a run is."""
+        """Learn the length of a run from the first verdict; see `cfepy.extra.exploration.campaign.Search`."""
         if number == 0:
             self.reckon_with(verdict.decisions)
 
     def reckon_with(self, decisions: int) -> None:
-        """PCT reckons with so many decisions of a run, or with more."""
+        """Let PCT expect this number of decisions of a run, or more."""
         self._is_measured = True
         self._kinds = tuple(
             replace(each, steps=max(each.steps, decisions)) if each.kind == "pct" else each for each in self._kinds
@@ -68,11 +68,11 @@ class SeededSearch:
 
 
 class SystematicSearch:
-    """All schedules with few deviations from fifo, those with fewer first.
+    """All schedules with few deviations from fifo, fewest first.
 
     Args:
-        depth: how many preemptions, and how many other changes of order, there are at most.
-        options: a schedule whose options all have.
+        depth: the most preemptions, and the most other changes of order.
+        options: a schedule with the options that all schedules have.
     """
 
     def __init__(self, depth: int, options: Schedule) -> None:
@@ -99,18 +99,18 @@ def make_search(
     *,
     holds: bool = True,
 ) -> AnySearch:
-    """The search that a command asks for.
+    """Return the search for the options of a command.
 
     Args:
         policy: one of POLICIES.
-        depth: of the bugs that PCT looks for, and the most preemptions of a systematic search; None takes 3 and 2,
-            and for `all` PCT of depths 1 to 3, with points of 3 alone. Of a search of orders it is how many steps may
-            come in another order.
-        steps: decisions of a run, at least, as the reference run had them.
-        options: a schedule whose options all have.
+        depth: of the bugs that PCT looks for, and the most preemptions of a systematic search; None takes 3 and 2, and
+            for `all` PCT of depths 1 to 3, with points of 3 alone. For a search of orders it is the number of steps
+            that may come in another order.
+        steps: decisions of a run, at least, from the reference run.
+        options: a schedule with the options that all schedules have.
         first_seed: of the first schedule.
         tick_ns: of the board's clock; 0 for none.
-        holds: in `all`, running tasks may also be held up in some schedules if `options` have nothing of it.
+        holds: in `all`, running tasks may also be delayed in some schedules if `options` do not set a delay.
     """
     if policy == "dfs":
         return SystematicSearch(DFS_DEPTH if depth is None else depth, options)
@@ -122,11 +122,11 @@ def make_search(
 def seeded_kinds(
     policy: str, depth: int | None, steps: int, options: Schedule, tick_ns: int = 0, *, holds: bool = True
 ) -> tuple[Schedule, ...]:
-    """The schedules of a policy that comes from seeds, which take turns; the arguments are those of `make_search`.
+    """Return the schedules of a seeded policy, which take turns. The arguments are the same as in `make_search`.
 
-    With points between calls there are so many decisions that PCT hits those of a bug rarely: of 13 programs that need
-    points random finds 10 more often than PCT of any of these depths, PCT of depth 3 two, and neither finds one in 200.
-    So PCT has one turn in six there.
+    With points between calls there are many decisions, so PCT rarely hits the ones of a bug. In 13 programs that need
+    points, random finds 10 more often than PCT of any of these depths. PCT of depth 3 finds two more often, and neither
+    finds one in 200 schedules. So PCT has one turn in six there.
     """
     random, abreast = replace(options, kind="random"), replace(options, kind="abreast")
     is_mixed = policy == "all"
@@ -144,12 +144,12 @@ def seeded_kinds(
 
 
 class DepthFirst:
-    """All schedules of at most so many deviations, those with fewer first.
+    """All schedules with a limited number of deviations, fewest first.
 
     Args:
-        preemptions: how many times a task that could go on is taken off the CPU, or held up, in one run, at most.
-        reorderings: how many times another than the first of the waiting tasks goes on, in one run, at most.
-        options: a schedule whose options (`any`, `hold`) all have.
+        preemptions: the most times in a run that a task that could continue is preempted or delayed.
+        reorderings: the most times in a run that another waiting task than the first one continues.
+        options: a schedule with the options (`any`, `hold`) that all schedules have.
     """
 
     def __init__(self, preemptions: int = 2, reorderings: int = 2, options: Schedule | None = None) -> None:
@@ -161,11 +161,11 @@ class DepthFirst:
 
     @property
     def exhausted(self) -> bool:
-        """Whether all schedules have been given out, and the results of all of them are known."""
+        """Whether all schedules have been given out, and all their results are known."""
         return self._first is None and not self._open and not self._away
 
     def next(self) -> Schedule | None:
-        """The next schedule to run; None when all have been given out, as far as results are known by now."""
+        """Return the next schedule; None when all schedules that follow from the known results have been given out."""
         first, self._first = self._first, None
         found = first or self._next_child()
         if found is not None:
@@ -181,16 +181,16 @@ class DepthFirst:
         return None
 
     def learn(self, schedule: Schedule, widths: Sequence[int], running: Sequence[bool]) -> None:
-        """A schedule was run.
+        """Take the result of a schedule.
 
         Args:
-            schedule: as `next` gave it.
+            schedule: a schedule from `next`.
             widths: of the decisions in the run, as `NotingPolicy` keeps them.
             running: as `NotingPolicy` keeps it.
         """
         del self._away[schedule]
         if schedule.deviations and schedule.deviations[-1][0] >= len(widths):
-            return  # the run was broken off, or its process died, before it came to that
+            return  # the run was aborted, or its process died, before that decision
         preemptions = sum(running[decision] for decision, _ in schedule.deviations)
         reorderings = len(schedule.deviations) - preemptions
         may_preempt = preemptions < self._preemptions
@@ -202,7 +202,7 @@ class DepthFirst:
 def _children(
     parent: Schedule, widths: Sequence[int], running: Sequence[bool], may_preempt: bool, may_reorder: bool
 ) -> Iterator[Schedule]:
-    """The schedules that deviate once more, later."""
+    """Yield the schedules that deviate once more, later."""
     made = dict(parent.deviations)
     start = parent.deviations[-1][0] + 1 if parent.deviations else 0
     for decision in range(start, len(widths)):

@@ -1,7 +1,7 @@
-"""What locks, events, queues and the like of a node are called: by the variable and the line that they were made at.
+"""The names of a node's locks, events, queues and similar objects: the variable and the line at which they were made.
 
-An object is known from its making on: the line of the mission's own code that called `threading.Lock()` says which
-variable it goes into. One that was not seen to be made is looked for among the variables of the code that uses it.
+An object is known from its creation: the line of the mission's own code that called `threading.Lock()` shows its
+variable. If the creation was not seen, the name is looked up among the variables of the code that uses it.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from cfepy.reading.input_limits import PYTHON_BYTES
 
 _MAKING = "__init__"
 _SELF = "self"
-ITEM = "[]"  # behind the name of a list, of whose items a comprehension makes one after the other
+ITEM = "[]"  # after the name of a list that a comprehension makes
 
 
 class Use(NamedTuple):
-    """A call of the mission's code, or a library of ROS, that comes to a lock, by itself or through Python's library.
+    """A call of the mission's code or of a ROS library that reaches a lock, directly or through Python's library.
 
     Attributes:
         subject: the object whose method is called: a lock, or an Event, Condition, Queue, Thread around it.
         call: the method's name.
-        inner: the frame of the method of Python's library; None where the lock itself is called.
+        inner: the frame of the method of Python's library; None for a direct call of the lock.
         frame: of the code that calls it.
     """
 
@@ -40,7 +40,7 @@ class Use(NamedTuple):
 
 
 def use_of(subject: Any, call: str, frame: FrameType | None) -> Use | None:
-    """Who uses a lock, and through what; None when that is Python's library for itself.
+    """Return the call that uses a lock; None for a use inside Python's library.
 
     Args:
         subject: the lock.
@@ -58,35 +58,35 @@ def use_of(subject: Any, call: str, frame: FrameType | None) -> Use | None:
 
 
 class Things:
-    """The names of objects; each is kept, so that its address stands for it."""
+    """The names of objects. Each object is kept alive, so that its address identifies it."""
 
     def __init__(self) -> None:
         self._names: dict[int, tuple[Any, str]] = {}
         self._made: Counter[str] = Counter()
 
     def made(self, lock: Any, frame: FrameType | None) -> None:
-        """A lock was made.
+        """Record the creation of a lock.
 
         Args:
-            lock: itself.
+            lock: the lock.
             frame: of the code that called its class.
         """
         makers = [lock]
         while frame is not None and is_standard(frame.f_code.co_filename):
             maker = frame.f_locals.get(_SELF)
             if maker is not None and frame.f_code.co_name != _MAKING:
-                return  # a lock of a wait or the like, which nobody else sees
+                return  # a lock of a wait or similar, which no other code sees
             makers += [] if maker is None else [maker]
             frame = frame.f_back
         if frame is None or not is_own_code(frame.f_code.co_filename):
             return
-        known = self._names.get(id(makers[-1]))  # of another lock of the same object
+        known = self._names.get(id(makers[-1]))  # from another lock of the same object
         name = self._new_name(frame) if known is None else known[1]
         for each in makers:
             self._names.setdefault(id(each), (each, name))
 
     def name(self, subject: Any, frame: FrameType | None = None) -> str:
-        """What it is called, `self.lock (bank.py:12)`; empty when that is not known.
+        """Return the name of an object, `self.lock (bank.py:12)`; empty if it is not known.
 
         Args:
             subject: the object.
@@ -110,16 +110,16 @@ class Things:
         return f"{variable}#{number + 1} {place}" if number else f"{variable} {place}"
 
 
-_DEPTH = 100  # what is nested more deeply is not looked into
+_DEPTH = 100  # more deeply nested source is not examined
 
 
 def is_made_of(file: str, read: str, written: str, variable: str) -> bool:
-    """Whether what a statement writes into a variable is made of what another one has read from it.
+    """Return True if the value that a statement writes into a variable comes from an earlier read of it.
 
     Args:
         file: the source of both.
-        read: where it is read, `bank.py:12`.
-        written: where it is written.
+        read: place of the read, `bank.py:12`.
+        written: place of the write.
         variable: name of an attribute or of a variable that several functions share.
     """
     read_at, written_at = (int(place.rpartition(":")[2]) for place in (read, written))
@@ -140,7 +140,7 @@ def is_made_of(file: str, read: str, written: str, variable: str) -> bool:
 
 
 def _comes_from(values: list[ast.AST], sources: dict[str, list[ast.AST]], variable: str) -> bool:
-    """Whether values, or what the local variables in them were set to, have a variable in them."""
+    """Return True if values, or the sources of the local variables in them, contain a variable."""
     known: set[str] = set()
     while values:
         for node in ast.walk(values.pop()):
@@ -164,7 +164,7 @@ def _variables(frame: FrameType | None) -> Iterator[tuple[str, Any]]:
 
 
 def _variable_of(frame: FrameType) -> str:
-    """What the call that a frame makes is assigned to; `lock` where it is not assigned to a variable."""
+    """Return the variable to which the current call of a frame is assigned; `lock` if there is none."""
     try:
         tree = parsed_input(read_limited(frame.f_code.co_filename, PYTHON_BYTES), depth=_DEPTH)
     except (OSError, SyntaxError, ValueError):
@@ -182,7 +182,7 @@ def _place(node: ast.AST) -> tuple[int | None, ...]:
 
 
 def _assigned(tree: ast.AST) -> Iterator[tuple[str, ast.Call]]:
-    """The calls of a module whose results go into variables, and what those are called."""
+    """Yield the calls of a module whose results are assigned to variables, with the variables' names."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Assign):
             yield from _pairs(node.targets[0], node.value)

@@ -1,12 +1,11 @@
-"""Shrinking: the shortest schedule that still gives the same failure, found by flying shorter ones.
+"""Shrinking: find the shortest schedule that still gives the same failure, by flying shorter ones.
 
-First moves are left out, in halves, quarters, and one by one (Zeller's delta debugging), of each of the shortest
-failing schedules that are known. With the best of them, one move is tried in the place of all and of several, also one
-to another task, and those that are left are moved towards the failure; connections that must be slow get the shortest
-delay. In the end each subset of what is left is flown, if it is few. The result is a schedule of moves.
+First, moves are left out, in halves, quarters, and one by one (Zeller's delta debugging), from each of the shortest
+known failing schedules. In the best of them, one move is tried in place of all and of several, also a move to another
+task. The remaining moves are shifted towards the failure. Connections that must be slow get the shortest delay. In the
+end each subset of the moves is flown, if they are few. The result is a schedule of moves.
 
-A run is flown only when what is known of others does not tell how it ends (`KnownRuns`), and goes no further than the
-failure.
+A run is flown only if known runs do not predict its end (`KnownRuns`), and it goes no further than the failure.
 """
 
 from __future__ import annotations
@@ -26,38 +25,38 @@ from cfepy.units import NS_PER_MS, NS_PER_S
 LEAST_PROBES, MOST_PROBES = 300, 800
 STARTS = 3  # failing schedules that are shrunk, the shortest ones
 SUBSETS_OF = 6  # moves of which all subsets are flown
-REACH = 64  # how many decisions a move is tried later
-FEW, SINGLES = 10, 200  # how many single moves are tried, at first and in the end
-MERGED = (3, 2)  # how many moves are replaced by one
-AROUND = 30  # how many decisions before and after them that is looked for
-CANDIDATES = 15  # how many such moves are tried
+REACH = 64  # the most decisions by which a move is shifted
+FEW, SINGLES = 10, 200  # single moves that are tried, at first and in the end
+MERGED = (3, 2)  # numbers of moves that are replaced by one
+AROUND = 30  # decisions before and after them that are searched
+CANDIDATES = 15  # such moves that are tried
 TENTH_NS = NS_PER_S // 10
 
 Moves = tuple[Move, ...]
 
 
 def budget_of(schedules: int) -> int:
-    """How many runs it may take to shrink a failure, where nobody says: as many as the search took.
+    """Return the default number of runs for shrinking a failure: the number that the search took, within limits.
 
     Args:
-        schedules: how many were flown in search of failures.
+        schedules: schedules that were flown in search of failures.
     """
     return min(max(schedules, LEAST_PROBES), MOST_PROBES)
 
 
 class Shrinkable(Protocol):
-    """What is flown again and again, such as a `Trial`."""
+    """An experiment that is flown repeatedly, such as a `Trial`."""
 
     def fly(self, schedule: Schedule, *, policy: Policy | None = None) -> Tried:
         """Fly it.
 
         Args:
-            schedule: who runs when.
-            policy: decides in the place of the schedule's own.
+            schedule: decides which task runs when.
+            policy: decides in place of the schedule's own.
         """
 
     def until(self, end_ns: int) -> Self | None:
-        """The same in a run that ends at this virtual time; None where its length cannot be chosen."""
+        """Return the same in a run that ends at this virtual time; None if its length cannot be chosen."""
 
 
 T = TypeVar("T", bound=Shrinkable)
@@ -67,7 +66,7 @@ class NotedFlight(NamedTuple):
     """A flight with its moves.
 
     Attributes:
-        verdict: what became of it.
+        verdict: the verdict on it.
         made: the moves that it made.
         choices: all its decisions.
     """
@@ -78,25 +77,25 @@ class NotedFlight(NamedTuple):
 
     @classmethod
     def of(cls, verdict: Verdict, recorder: MoveNotingPolicy) -> Self:
-        """What a policy has noted of a flight."""
+        """Return the flight that a policy has recorded."""
         return cls(verdict, recorder.made, tuple(recorder.choices))
 
 
 def fly_noting(trial: Shrinkable, schedule: Schedule) -> NotedFlight:
-    """Fly something in this process, and note its moves."""
+    """Fly a trial in this process, and record its moves."""
     recorder = MoveNotingPolicy(schedule.policy() or Policy())
     return NotedFlight.of(trial.fly(schedule, policy=recorder).verdict, recorder)
 
 
 @dataclass(frozen=True, slots=True)
 class Shrunk(Generic[T]):
-    """The end of it.
+    """The result of shrinking.
 
     Attributes:
         trial: with a shorter run, if that still fails.
-        verdict: of the shortest schedule, one of moves.
-        moves: what that does.
-        probes: how many runs it took.
+        verdict: of the shortest schedule, which consists of moves.
+        moves: its moves.
+        probes: number of runs that it took.
     """
 
     trial: T
@@ -107,7 +106,7 @@ class Shrunk(Generic[T]):
 
 @dataclass(frozen=True, slots=True)
 class _Flight:
-    """A run; `fails` says that it failed in the way that is looked for, `options` is a schedule with its options."""
+    """A run. `fails` is True if it shows the failure; `options` is a schedule with its options."""
 
     options: Schedule
     fails: bool
@@ -117,12 +116,12 @@ class _Flight:
 
     @property
     def moves(self) -> Moves:
-        """The moves that it made, which give it again."""
+        """The moves that it made, which reproduce it."""
         return tuple(each.move for each in self.made)
 
     @property
     def cost(self) -> tuple[int, int, int]:
-        """What is to become small: preemptions first, then other moves."""
+        """The cost to minimize: preemptions first, then other moves."""
         preemptions = sum(each.preempts for each in self.made)
         return preemptions, len(self.made), sum(each.choice for each in self.made)
 
@@ -131,11 +130,11 @@ class Shrinker(Generic[T]):
     """Shrinks one failure.
 
     Args:
-        trial: what is flown.
-        schedules: under which it fails, the shortest first.
+        trial: the trial.
+        schedules: schedules under which it fails, the shortest first.
         group: of the failure.
-        most_probes: how many runs it may take; that none of what is left can be left out is looked at in any case.
-        fly: how; `fly_noting` gives the same.
+        most_probes: the most runs; the final check that no move can be left out is made in any case.
+        fly: flies a trial under a schedule and records its moves, as `fly_noting` does.
     """
 
     def __init__(
@@ -156,7 +155,7 @@ class Shrinker(Generic[T]):
         self.probes = 0
 
     def run(self) -> Shrunk[T] | None:
-        """Shrink; None when the first schedule does not fail in this way."""
+        """Shrink; None if the first schedule does not show the failure."""
         first = self._fly(self._schedules[0])
         if not first.fails:
             return None
@@ -176,7 +175,7 @@ class Shrinker(Generic[T]):
     # -- steps -------------------------------------------------------------------------------------------------------
 
     def _cut(self, first: _Flight) -> _Flight:
-        """Let all runs end behind the failure, if it comes in one that does; what was known is of longer ones."""
+        """Shorten all runs to the failure if a shorter run shows it too, and forget the longer known runs."""
         failure = first.verdict.failure(self._group)
         assert failure is not None
         if failure.at_ns is None or failure.kind == RESULTS:
@@ -193,7 +192,7 @@ class Shrinker(Generic[T]):
         return first
 
     def _without_tail(self, best: _Flight) -> _Flight:
-        """Leave out what comes after the failure: the shortest beginning that fails, by bisection."""
+        """Leave out the moves after the failure: find the shortest beginning that fails, by bisection."""
         least, most = 0, len(best.moves)
         while least < most:
             middle = (least + most) // 2
@@ -205,7 +204,7 @@ class Shrinker(Generic[T]):
         return best
 
     def _with_less(self, best: _Flight) -> _Flight:
-        """Leave out pieces, smaller and smaller ones, until no single move can be left out."""
+        """Leave out ever smaller groups of moves, until no single move can be left out."""
         size = max(len(best.moves) // 2, 1)
         while best.moves:
             found = next(self._tries(_without_pieces(best.moves, size), best), None)
@@ -219,7 +218,7 @@ class Shrinker(Generic[T]):
         return best
 
     def _with_one(self, best: _Flight, count: int) -> _Flight:
-        """One move in the place of all, tried in the run of fifo: at like places, closest to the failure first."""
+        """Try one move in place of all, in the run of fifo: similar places and moves closest to the failure first."""
         if len(best.made) < 2 or self.probes >= self._limit:
             return best
         fifo = self._flight((), best.options)
@@ -228,7 +227,7 @@ class Shrinker(Generic[T]):
         return next(self._tries(((move,) for move in ones), best), best)
 
     def _merged(self, best: _Flight) -> _Flight:
-        """One move in the place of three or two that follow each other."""
+        """Try one move in place of three or two successive moves."""
         pieces = [(at, size) for size in MERGED for at in range(len(best.made) - size + 1)]
         for at, size in pieces:
             kept = (*best.moves[:at], *best.moves[at + size :])
@@ -243,9 +242,9 @@ class Shrinker(Generic[T]):
         return best
 
     def _redirected(self, best: _Flight) -> _Flight:
-        """A move to another task in the place of one and its neighbours, which got there by a detour.
+        """Try a move to another task in place of a move and its neighbours, which reached that task indirectly.
 
-        Without these the same place in the task's own work may be a decision earlier or later.
+        Without these neighbours, the same place in the task's own work may be a decision earlier or later.
         """
         if len(best.made) < 2:
             return best
@@ -267,7 +266,7 @@ class Shrinker(Generic[T]):
         return best
 
     def _later(self, best: _Flight) -> _Flight:
-        """Move each towards the failure, as far as it still fails: what is left happens close together."""
+        """Shift each move towards the failure as far as it still fails, so that the moves are close together."""
         for at in range(len(best.made)):
             step = 1
             while step <= REACH and at < len(best.made) and not best.made[at].question:
@@ -281,7 +280,7 @@ class Shrinker(Generic[T]):
         return best
 
     def _sooner(self, best: _Flight) -> _Flight:
-        """Of what has answers in an order, such as how long a connection takes, the first one with which it fails."""
+        """Use the first answer that fails for questions with ordered answers, such as the time of a connection."""
         for at, made in enumerate(best.made):
             if not made.question:
                 continue
@@ -293,7 +292,7 @@ class Shrinker(Generic[T]):
         return best
 
     def _fewest(self, best: _Flight) -> _Flight:
-        """The smallest subset of the moves that fails, or, of many moves, one of which none can be left out."""
+        """Return the smallest subset of the moves that fails; with many moves, one without a removable move."""
         self._limit = self.probes + 2**SUBSETS_OF
         count = len(best.made)
         if count > SUBSETS_OF:
@@ -302,7 +301,7 @@ class Shrinker(Generic[T]):
         return next(self._tries(subsets, best), best)
 
     def _finish(self, best: _Flight) -> Shrunk[T] | None:
-        """The result as a schedule of moves; flown once more to be sure."""
+        """Return the result as a schedule of moves, flown once more to be sure."""
         self.probes += 1
         verdict = self._trial.fly(best.options.by_moves(best.moves)).verdict
         return None if verdict.failure(self._group) is None else Shrunk(self._trial, verdict, best.made, self.probes)
@@ -310,14 +309,14 @@ class Shrinker(Generic[T]):
     # -- probes ------------------------------------------------------------------------------------------------------
 
     def _tries(self, candidates: Iterable[Moves], best: _Flight) -> Iterator[_Flight]:
-        """Those that fail and cost less than the best so far."""
+        """Yield the flights that fail and cost less than the best so far."""
         for moves in candidates:
             found = self._try(moves, best)
             if found is not None and found.cost < best.cost:
                 yield found
 
     def _try(self, moves: Moves, like: _Flight) -> _Flight | None:
-        """A flight with the options of another, if it fails and there may be one."""
+        """Return a flight with the options of another, if it fails and the budget allows it."""
         found = self._runs(like.options).find(moves)
         if found is None:
             if self.probes >= self._limit:
@@ -326,7 +325,7 @@ class Shrinker(Generic[T]):
         return found if found.fails else None
 
     def _flight(self, moves: Moves, options: Schedule) -> _Flight:
-        """A flight, whether it fails or not."""
+        """Return a flight, failing or not."""
         return self._runs(options).find(moves) or self._fly(options.by_moves(moves))
 
     def _runs(self, options: Schedule) -> KnownRuns[_Flight]:
@@ -342,13 +341,13 @@ class Shrinker(Generic[T]):
 
 
 def _without_pieces(moves: Moves, size: int) -> Iterator[Moves]:
-    """All but so many moves in a row; the last ones are left out first."""
+    """Yield the moves without one group of `size` successive moves; the last groups are left out first."""
     for start in reversed(range(0, len(moves), size)):
         yield (*moves[:start], *moves[start + size :])
 
 
 def _single_moves(best: _Flight, fifo: _Flight, at_ns: int | None) -> list[Move]:
-    """All that there are between the tasks that matter, before the failure: those at like places and the last first."""
+    """Return all moves between the tasks that matter, before the failure: similar places first, then the last ones."""
     like = _places(best)
     choices = [choice for choice in reversed(fifo.choices) if at_ns is None or choice.now <= at_ns]
     moves = [move for choice in choices for move in _among(choice, _names(best))]
@@ -356,7 +355,7 @@ def _single_moves(best: _Flight, fifo: _Flight, at_ns: int | None) -> list[Move]
 
 
 def _between(best: _Flight, without: _Flight, at: int, size: int) -> list[Move]:
-    """Moves that might do what some do, near their places, in a run without these; those at like places first."""
+    """Return candidates to replace some moves, near their places in a run without them, similar places first."""
     least = 0 if not at else best.made[at - 1].decision + 1
     replaced = [made.decision for made in best.made[at : at + size]]
     places = range(max(least, replaced[0] - AROUND), min(replaced[-1] + AROUND, len(without.choices)))
@@ -371,12 +370,12 @@ def _between(best: _Flight, without: _Flight, at: int, size: int) -> list[Move]:
 
 
 def _among(choice: Choice, names: set[str]) -> Iterator[Move]:
-    """The moves that a decision offers between some tasks."""
+    """Yield the moves that a decision offers between the given tasks."""
     return (move for move in choice.moves if move.subject in names and move.chosen in names)
 
 
 def _near(best: _Flight, made: MadeMove) -> Iterator[Choice]:
-    """The decision of a move, and those before and after it that are about the same task."""
+    """Yield the decision of a move, and the decisions before and after it about the same task."""
     same = [choice for choice in best.choices if choice.moves and choice.moves[0].subject == made.move.subject]
     at = same.index(best.choices[made.decision])
     for each in (at, at + 1, at - 1, at + 2):
@@ -385,7 +384,7 @@ def _near(best: _Flight, made: MadeMove) -> Iterator[Choice]:
 
 
 def _same_later(best: _Flight, made: MadeMove) -> Iterator[Move]:
-    """The moves that are between the same tasks, later in the same millisecond."""
+    """Yield the moves between the same tasks, later in the same millisecond."""
     for choice in best.choices[made.decision + 1 :]:
         if choice.now // NS_PER_MS > made.move.from_ms:
             return
@@ -398,15 +397,15 @@ def _same_later(best: _Flight, made: MadeMove) -> Iterator[Move]:
 
 
 def _places(best: _Flight) -> set[tuple[str, str]]:
-    """Where the moves are made."""
+    """Return the places of the moves."""
     return {(move.subject, move.place) for move in best.moves}
 
 
 def _names(best: _Flight) -> set[str]:
-    """The tasks that matter."""
+    """Return the tasks that matter."""
     return {name for made in best.made for name in (made.move.subject, made.move.chosen)}
 
 
 def _end_of(at_ns: int) -> int:
-    """A round time at which a failure has happened."""
+    """Return a round time by which a failure has happened."""
     return (at_ns // TENTH_NS + 1) * TENTH_NS

@@ -1,9 +1,9 @@
-"""What the steps of a mission touch, as far as cfepy sees it: an attachment that keeps a run's steps.
+"""The accesses of a mission's steps, as far as cfepy observes them: an attachment that keeps a run's steps.
 
-Seen are pipes and messages, locks, semaphores and queues, what tasks wait for, tables, parameters, the ROS graph, and
-in code of the mission attributes, items of containers, and variables that functions share. Where it is not known what a
-call touches, it is all of its service. Two things are not seen: the time of day, which differs by microseconds from
-one order to the next, and files.
+cfepy observes pipes and messages, locks, semaphores and queues, waits, tables, parameters and the ROS graph. In code of
+the mission it also observes attributes, items of containers, and variables that functions share. If the accesses of a
+call are not known, it counts as an access to all of its service. Two things are not observed: the time of day, which
+differs by microseconds from one order to the next, and files.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _OWN = frozenset(
         *("run_loop", "task_delay", "task_get_id", "wait_for_startup_sync", "write_to_sys_log"),
     }
 )
-"""Calls that concern the caller alone, or that are seen where they wait or send."""
+"""Calls that concern the caller alone, or that are recorded where they wait or send."""
 _TAKING = frozenset({"acquire", "acquire_lock", "__enter__", "_acquire_restore", "mut_sem_take"})
 _GIVING = frozenset({"release", "release_lock", "__exit__", "_release_save", "mut_sem_give"})
 _GRAPH_CHANGES = ("topic", "register_node", "forget_node", "register_service", "forget_service", "caller")
@@ -42,10 +42,10 @@ _TREE_LOOKS = ("find", "search", "names")
 
 
 def check_visible(spec: MissionSpec) -> None:
-    """Check that it is seen what a mission touches.
+    """Check that all accesses of a mission can be observed.
 
     Raises:
-        UsageError: it has compiled code, whose memory is not seen.
+        UsageError: it has compiled code, whose memory accesses are not observed.
     """
     compiled = [entry.name for entry in spec.entries if find_compiled(entry.path, spec.folder) is not None]
     compiled += spec.ros.compiled
@@ -58,21 +58,21 @@ def check_visible(spec: MissionSpec) -> None:
 
 
 class Footprints(Attachment):
-    """Keeps the steps of a run, and what they touch.
+    """Keeps the steps of a run, and their accesses.
 
     Args:
-        from_ns: virtual time from which on.
+        from_ns: virtual time from which steps are kept.
     """
 
     def __init__(self, from_ns: int = 0) -> None:
         self._log = StepLog(from_ns)
         self._services: dict[int, Any] = {}  # of the processor, by identity
-        self._numbers: dict[int, tuple[int, Any]] = {}  # by identity: of locks, which are kept for that
+        self._numbers: dict[int, tuple[int, Any]] = {}  # by identity: number of a lock, and the lock
         self._pipes = _Pipes(self)
 
     @property
     def steps(self) -> tuple[TaskStep, ...]:
-        """In the order in which they were made."""
+        """The steps in the order in which they were made."""
         return self._log.steps
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
@@ -106,26 +106,26 @@ class Footprints(Attachment):
                 _also(graph.params, name, lambda *args, **options: self.touch(PARAMETERS, READS))
 
     def conclude(self) -> None:
-        """What nodes do when they are ended is no part of it."""
+        """Stop recording: operations of nodes during their shutdown do not count."""
         self._log.close()
 
     def touch(self, thing: str, how: str = WRITES) -> None:
-        """The current task touches something; see `StepLog.touch`."""
+        """Record an access of the current task; see `StepLog.touch`."""
         self._log.touch(thing, how)
 
     def leave(self, task: Task) -> None:
-        """What a task does from now on is no part of it; see `StepLog.leave`."""
+        """Stop recording a task; see `StepLog.leave`."""
         self._log.leave(task)
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
-        """See `CallObserver.called`: a service of cFE, or a lock of a node."""
+        """Record a call of a cFE service or of a node's lock; see `CallObserver.called`."""
         if self._is_of_calls(subject):
             wanted = self._name(subject, args) if call in _TAKING else ""
             self._log.begin(self._things(subject, call, args), wanted)
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
-        """A lock is taken when a call comes back with it."""
-        if call == "is_set" or not self._is_of_calls(subject):  # told of without a call
+        """Record the end of a call; a lock is taken when its call returns with it."""
+        if call == "is_set" or not self._is_of_calls(subject):  # reported without a call
             return
         if not self._log.end():
             return
@@ -141,7 +141,7 @@ class Footprints(Attachment):
             self._log.part()
 
     def _change(self, table: Any) -> None:
-        """The memory of a table is about to change, or that to which the next load goes."""
+        """Record a change of a table's memory, or of the buffer for its next load."""
         self.touch(f"table {table.name}")
         self.touch(f"memory of table {table.name}")
 
@@ -153,7 +153,7 @@ class Footprints(Attachment):
         self._log.fail()
 
     def _is_of_calls(self, subject: Any) -> bool:
-        """Whether calls of its methods are told of with their ends: it is a service, or a lock of Python's."""
+        """Return True for a service or a Python lock: the ends of calls of its methods are reported too."""
         return id(subject) in self._services or hasattr(subject, "_at_fork_reinit")
 
     def _things(self, subject: Any, call: str, args: tuple[Any, ...]) -> list[Touched]:
@@ -165,7 +165,7 @@ class Footprints(Attachment):
             how = READS if call.startswith(_LOOKING) and call not in _ADDRESSES else WRITES
             return [(self._table(subject, args[0]), how), (TABLES, READS)]
         name = self._name(subject, args)
-        if call in _TAKING:  # one that need not wait finds out whether somebody has the lock
+        if call in _TAKING:  # a try without a wait reads whether another task has the lock
             may_wait = id(subject) in self._services or all(each is True or each == -1 for each in args)
             return [] if may_wait or not call.startswith("acquire") else [(state_of(name), WRITES)]
         if call in _GIVING:
@@ -173,14 +173,14 @@ class Footprints(Attachment):
         return [(name, READS if call.startswith(_LOOKING) else WRITES)]
 
     def _name(self, subject: Any, args: tuple[Any, ...]) -> str:
-        """A lock by its number; what a service has by its id; else all of the service."""
+        """Return a lock's name with its number, a service object's name with its id, or the name of the service."""
         kind = type(subject).__name__
         if id(subject) not in self._services:
             return f"{kind} {self._numbers.setdefault(id(subject), (len(self._numbers), subject))[0]}"
         return f"{kind} {args[0]}" if args and isinstance(args[0], int) else kind
 
     def _take(self, touch: Touch) -> None:
-        """Code of the mission is about to touch something; all of a container is whatever is in it, too."""
+        """Record an access by code of the mission. An access to a whole container includes its items."""
         how = WRITES if touch.is_write else READS
         if touch.key == WHOLE:
             self.touch(f"all in {touch.thing}", how)
@@ -205,19 +205,19 @@ class Footprints(Attachment):
         return call
 
     def _calls(self) -> None:
-        """A node calls something of ROS or Python, which may look at the ROS graph before and after others got in."""
+        """Record that a node's call of ROS or Python may read the ROS graph before and after other tasks run."""
         if not self._log.is_in_a_call:
             self.touch(GRAPH, READS)
 
     def _waits(self, waits: WaitList) -> None:
-        """Waits within calls are those of what these are about."""
+        """Record a wait. A wait within a call belongs to the object of the call."""
         self._pipes.wakes(waits)
         if not self._pipes.waits() and not self._log.is_in_a_call:
             self.touch(f"wait for {waits.what}")
 
 
 class _Pipes:
-    """What becomes of pipes. Where one is neither empty nor full, whoever puts and whoever gets are in no one's way."""
+    """Model of the pipes. While a pipe is neither empty nor full, writers and readers do not conflict."""
 
     kernel: Kernel
     bus: SoftwareBus
@@ -225,10 +225,10 @@ class _Pipes:
     def __init__(self, footprints: Footprints) -> None:
         self.touch = footprints.touch
         self._leave = footprints.leave
-        self._getting: dict[Task, tuple[Pipe, bool]] = {}  # who gets from which, and whether it had to wait
+        self._getting: dict[Task, tuple[Pipe, bool]] = {}  # the pipe of each receiving task, and whether it waited
 
     def puts(self, destination: Destination, limit: int) -> None:
-        """The current task puts a message into a pipe, in this instant."""
+        """Record that the current task puts a message into a pipe now."""
         pipe, waiting = destination.pipe, len(destination.pipe.items)
         self.touch(f"pipe {pipe.pipe_id}", READS)
         self.touch(f"tail of {pipe.name}")
@@ -238,23 +238,23 @@ class _Pipes:
             self.touch(f"room of {pipe.name}")
 
     def gets(self, pipe: Pipe) -> None:
-        """The current task is about to get one; its subscription may have been told to end before that."""
+        """Record that the current task is about to get a message; its subscription may already be about to end."""
         self.touch(f"wait for {pipe.waits.what}", READS)
         self._getting[self.kernel.current] = pipe, False
 
     def wakes(self, waits: WaitList) -> None:
-        """Tasks are woken, or one waits; those of subscriptions that are no more have only to clear up."""
+        """Record wake-ups. Tasks of subscriptions that no longer exist only clean up, so they are left out."""
         for task in waits:
             pipe = self._getting.get(task, (None, False))[0]
             if pipe is not None and pipe.waits is waits and not self.routes_to(pipe):
                 self._leave(task)
 
     def routes_to(self, pipe: Pipe) -> list[int]:
-        """The MsgIds that are let into a pipe."""
+        """Return the MsgIds that are routed to a pipe."""
         return [msg_id for msg_id, route in self.bus.routes.items() if route.find(pipe) is not None]
 
     def waits(self) -> bool:
-        """Whether the current task waits for one."""
+        """Record that the current task waits for a message. Returns False if it does not wait for a pipe."""
         task = self.kernel.current
         if task not in self._getting:
             return False
@@ -264,7 +264,7 @@ class _Pipes:
         return True
 
     def got(self, packet: bytes | None) -> None:
-        """It has got it; None where there was none."""
+        """Record that the current task received a message; None if there was none."""
         pipe, has_waited = self._getting.pop(self.kernel.current)
         if packet is None:
             self.touch(f"emptiness of {pipe.name}", READS)
@@ -281,9 +281,9 @@ _SMALL_LIMIT = 4  # messages of one kind that a pipe takes by default
 
 
 def _things_of_bus(bus: SoftwareBus, call: str, args: tuple[Any, ...]) -> list[Touched]:
-    """What a call of Software Bus touches, besides what is seen as it happens.
+    """Return the accesses of a Software Bus call, except those that are recorded as they happen.
 
-    The task of a subscription looks for its pipe when it has been told to end, and did not wait.
+    A subscription's task looks up its pipe if it is about to end and did not wait.
     """
     if call == "set_pipe_opts":
         return [(f"pipe {args[0]}", WRITES)]
@@ -294,7 +294,7 @@ def _things_of_bus(bus: SoftwareBus, call: str, args: tuple[Any, ...]) -> list[T
 
 
 def _also(subject: Any, name: str, before: Callable[..., object]) -> None:
-    """Have something called before a method of an object."""
+    """Wrap a method of an object, so that a function is called before it."""
     original = getattr(subject, name)
 
     def both(*args: Any, **options: Any) -> Any:
@@ -305,29 +305,29 @@ def _also(subject: Any, name: str, before: Callable[..., object]) -> None:
 
 
 class _Touching(PutHook):
-    """Tells which pipes are put into."""
+    """Reports the pipes that messages are put into."""
 
     def __init__(self, pipes: _Pipes, inner: PutHook | None) -> None:
         super().__init__(inner)
         self._pipes = pipes
 
     def limit(self, destination: Destination) -> int:
-        """The limit stays as it is."""
+        """Report the pipe. The limit does not change."""
         limit = super().limit(destination)
         self._pipes.puts(destination, limit)
         return limit
 
 
 def _touching(base: type[SoftwareBus], pipes: _Pipes) -> type[SoftwareBus]:
-    """A class of Software Bus that tells which pipes are touched.
+    """Return a Software Bus class that reports accesses to pipes.
 
     Args:
         base: the class to start from.
-        pipes: is told.
+        pipes: receives the accesses.
     """
 
     class TouchingBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
-        """A Software Bus that tells of its pipes."""
+        """A Software Bus that reports accesses to its pipes."""
 
         put_hook: PutHook | None
 
@@ -365,7 +365,7 @@ def _touching(base: type[SoftwareBus], pipes: _Pipes) -> type[SoftwareBus]:
         def _touch_route(self, msg_id: int, pipe_id: int) -> None:
             pipes.touch(f"route {msg_id}")
             pipes.touch(f"pipe {pipe_id}", READS)
-            pipes.touch(GRAPH)  # a node publishes nothing where nobody listens
+            pipes.touch(GRAPH)  # a node does not publish without subscribers
 
         def create_pipe(self, *args: Any) -> int:
             pipes.touch(PIPES)

@@ -1,12 +1,12 @@
-"""The steps of a run: what each task did between two places where others could have got in, and what it touched.
+"""The steps of a run: the operations of a task between two preemption points, with their accesses.
 
-A step has a name that does not depend on the order of the others: the path of its task (which child of which task it
-is), how many places the task had passed, and which step it is between two of them. A place is where code calls
-something, or uses CPU time; within a call a step ends where it makes another task ready, or waits.
+The name of a step does not depend on the order of the others. It has the path of its task (which child of which task it
+is) and the number of places that the task had passed. It also has the number of the step between two places. A place is
+a call in the code, or a use of CPU time. Within a call, a step ends where it makes another task ready, or waits.
 
-Two steps depend on each other when they touch one thing and one of them changes it, or when both take one lock; a step
-depends on the one that woke its task. All else may be swapped without any difference. Where two things share a name,
-more steps depend on each other than need to: that costs flights, and misses nothing.
+Two steps depend on each other when both access one object and one of them changes it, or when both take one lock. A
+step depends on the step that woke its task. All other steps may be swapped without any difference. If two objects share
+a name, more steps depend on each other than necessary. That costs flights, but misses nothing.
 """
 
 from __future__ import annotations
@@ -23,30 +23,30 @@ TIMER, OVERTAKING = -1, -2
 READS, WRITES, TAKES, GIVES, TRIES = "reads", "writes", "takes", "gives", "tries"
 HANDED, ENDS, PENDS = "handed", "ends", "pends"
 Touched = tuple[str, str]
-"""The name of a thing, and what becomes of it: READS and WRITES of data, TAKES and GIVES of locks, TRIES in vain.
+"""The name of an object, and the access: READS and WRITES of data, TAKES and GIVES of locks, TRIES in vain.
 
-Of a lock that the step was HANDED by who woke it, it is who had taken it last that counts. The thing that a step ENDS
-is a task, by its path; a last step of that task, which it might have made before, PENDS.
+If the waking task HANDED a lock to the step, the step depends on the task that had taken the lock last. The object that
+a step ENDS is a task, by its path. A last step of that task, which it might have made before, PENDS.
 """
 
 
 def state_of(lock: str) -> str:
-    """The thing that is whether somebody has a lock; whoever need not wait for it finds that out, and WRITES it."""
+    """Return the name of a lock's state (free or taken). A task that tries a lock without a wait WRITES the state."""
     return f"state of {lock}"
 
 
 class TaskStep(NamedTuple):
-    """A step, or several of one task in a row of which only the last one touches anything.
+    """A step, or several successive steps of one task of which only the last one accesses anything.
 
     Attributes:
         task: the path of its task.
-        number: what the task had passed (`cfepy.rtos.Task`).
+        number: the task's count of passed places (`cfepy.rtos.Task`).
         touched: in order.
-        ready: how many steps of the run were over when its task became ready; 0 where it never waited.
-        waker: number of the step in the run that woke the task; TIMER for none, OVERTAKING where its time came while
-            others had something to do: then it is the time that they use which decides who comes first.
-        app: whose task it is.
-        joined: whether nobody could get in between the step before it and this one.
+        ready: number of finished steps of the run when its task became ready; 0 if it never waited.
+        waker: number of the step in the run that woke the task; TIMER for none, OVERTAKING if its time came while other
+            tasks had work: then the time that they use decides which comes first.
+        app: application of the task.
+        joined: whether no task could run between the previous step and this one.
     """
 
     task: str
@@ -59,7 +59,7 @@ class TaskStep(NamedTuple):
 
     @classmethod
     def of(cls, plain: Sequence[Any]) -> TaskStep:
-        """A step from plain data."""
+        """Return a step from plain data."""
         task, number, touched, ready, waker, app, joined = plain
         pairs = tuple((str(thing), str(how)) for thing, how in touched)
         return cls(str(task), int(number), pairs, int(ready), int(waker), str(app), bool(joined))
@@ -67,16 +67,16 @@ class TaskStep(NamedTuple):
 
 @dataclass(slots=True)
 class _Call:
-    """What a task is in the middle of.
+    """A call that a task is in.
 
     Attributes:
-        things: what it touches.
-        wanted: a lock that it is to get; empty for none.
-        began: what the step in which it began has touched.
+        things: the objects that it accesses.
+        wanted: a lock that it waits for; empty for none.
+        began: the accesses of the step in which it began.
         has_waited: whether it had to wait.
-        is_noted: whether its steps since have touched the things.
-        noted: what the last step has touched that did.
-        depth: how many calls it is, each within the one before.
+        is_noted: whether its steps since then include the accesses.
+        noted: the accesses of the last step that includes them.
+        depth: number of nested calls.
     """
 
     things: list[Touched]
@@ -89,14 +89,14 @@ class _Call:
 
 
 _Entry = tuple[Task, int, dict[Touched, None], int, int, bool]
-"""A step as it is being made; see `TaskStep`."""
+"""A step under construction; see `TaskStep`."""
 
 
 class StepLog:
-    """Keeps the steps of a run, of a kernel of the class that it derives.
+    """Keeps the steps of a run, for the kernel class that `kernel` derives.
 
     Args:
-        from_ns: virtual time from which on steps are kept; before it places are only counted.
+        from_ns: virtual time from which steps are kept; before it places are only counted.
     """
 
     def __init__(self, from_ns: int = 0) -> None:
@@ -104,16 +104,16 @@ class StepLog:
         self._kernel: ExploringKernel
         self._from_ns = from_ns
         self._log: list[_Entry] = []
-        self._idle = 0  # how many steps were over when nobody had anything to do the last time
+        self._idle = 0  # number of steps when no task was ready the last time
         self._gone: set[Task] = set()
-        self._lasting: dict[Task, dict[Touched, None]] = {}  # what a task touches in each step
-        self._shut: Task | None = None  # the one that made the last step, if nobody could get in since
+        self._lasting: dict[Task, dict[Touched, None]] = {}  # accesses of a task in each step
+        self._shut: Task | None = None  # task of the last step, if no task could run since
         self._ready: dict[Task, tuple[int, int]] = {}  # when and by which step it was woken, until its next step
         self._calls: dict[Task, _Call] = {}
-        self._quiet: dict[Task, int] = {}  # in the middle of what makes others ready, if somebody waits
+        self._quiet: dict[Task, int] = {}  # depth of kernel calls that wake tasks
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """A class of kernel that tells of its steps.
+        """Return a kernel class that reports its steps.
 
         Args:
             base: the class to start from.
@@ -134,13 +134,13 @@ class StepLog:
         )
 
     def begin_with(self, kernel: ExploringKernel) -> None:
-        """This is the kernel; nothing of it has run, and what was made with it before is no step."""
+        """Set the kernel before it runs. Operations before this call are not steps."""
         self._kernel = kernel
         self._is_open = True
 
     @property
     def steps(self) -> tuple[TaskStep, ...]:
-        """In the order in which they were made."""
+        """The steps in the order in which they were made."""
         self._try()
         return tuple(
             TaskStep(task.path, number, tuple(touched), ready, waker, getattr(task.owner, "name", ""), joined)
@@ -148,29 +148,29 @@ class StepLog:
         )
 
     def touch(self, thing: str, how: str = WRITES) -> None:
-        """The current task touches something.
+        """Record an access of the current task.
 
         Args:
-            thing: its name.
+            thing: name of the object.
             how: READS, WRITES, TAKES or GIVES.
         """
         step = self._step()
         if step is not None:
-            if how in (TAKES, GIVES):  # of several in one step it is the last one that counts
+            if how in (TAKES, GIVES):  # of several in one step the last one counts
                 step[2].pop((thing, how), None)
             step[2][thing, how] = None
 
     def touch_from_now_on(self, thing: str) -> None:
-        """The current task may read something in any step from now on."""
+        """Record that the current task may read an object in any step from now on."""
         self._lasting.setdefault(self._kernel.current, {})[thing, READS] = None
         self.touch(thing, READS)
 
     def begin(self, things: Iterable[Touched], wanted: str = "") -> None:
-        """The current task begins something that touches these things, in this step and in those after other places.
+        """Begin a call of the current task that has these accesses, in this step and in later ones.
 
         Args:
-            things: what it touches.
-            wanted: a lock that it takes, if it comes to its end; empty for none.
+            things: the accesses.
+            wanted: a lock that it takes if it completes; empty for none.
         """
         task = self._kernel.current
         outer = self._calls.get(task)
@@ -184,7 +184,7 @@ class StepLog:
         self._note(call)
 
     def end(self) -> bool:
-        """The current task has come to the end of it; whether it is not in the middle of another one now."""
+        """End the call of the current task. Returns False if it is still in an outer call."""
         call = self._calls.get(self._kernel.current)
         if call is None:
             return True
@@ -199,36 +199,36 @@ class StepLog:
         return True
 
     def part(self) -> None:
-        """The current task begins another step, also where nobody was woken in the one before."""
+        """Begin another step of the current task, even if the last one woke no task."""
         self._kernel.current.passed += 1
 
     def close(self) -> None:
-        """What comes from now on is no part of it."""
+        """Stop recording."""
         self._try()
         self._is_open = False
 
     def _try(self) -> None:
-        """Calls that are not over have tried what they were to get."""
+        """Record that unfinished calls have tried to take their locks."""
         for call in self._calls.values():
             _has_tried(call)
 
     def leave(self, task: Task) -> None:
-        """What a task does from now on matters to nobody."""
+        """Stop recording a task, because its later operations do not matter."""
         self._gone.add(task)
 
     def fail(self) -> None:
-        """As `end`, without what it wanted."""
+        """End a call as `end` does, without the wanted lock."""
         call = self._calls.get(self._kernel.current)
         if self.end() and call is not None:
             _has_tried(call)
 
     @property
     def is_in_a_call(self) -> bool:
-        """Whether the current task is in the middle of something."""
+        """Whether the current task is in a call."""
         return self._kernel.current in self._calls
 
     def _note(self, call: _Call) -> None:
-        """Its step touches the things; a lock is given back in the last one, whatever comes between."""
+        """Add the accesses of a call to its step. A release of a lock belongs to the last step of the call."""
         call.is_noted = True
         step = self._step()
         if step is None:
@@ -244,14 +244,14 @@ class StepLog:
 
     @property
     def _runner(self) -> Task:
-        """The current task; the one that ends it, if it is being ended: nobody gets in until it has."""
+        """The current task; if another task is ending it, that task: no task can run until it has ended."""
         task = self._kernel.current
         while task.dying and task.killer is not None:
             task = task.killer
         return task
 
     def _step(self) -> _Entry | None:
-        """The step that the current task makes; None where none are kept."""
+        """Return the current task's step, or None if steps are not kept."""
         if not self._is_open:
             return None
         kernel, log = self._kernel, self._log
@@ -262,14 +262,14 @@ class StepLog:
         if log and log[-1][0] is task:
             if log[-1][1] == task.passed:
                 return log[-1]
-            if not log[-1][2]:  # it touched nothing: this one goes on where that began
+            if not log[-1][2]:  # it accessed nothing, so this step continues it
                 log[-1] = (task, task.passed, *log[-1][2:5], log[-1][5] and is_shut)
                 return log[-1]
         touched = dict(self._lasting.get(task, {}))
         log.append((task, task.passed, touched, *self._ready.pop(task, (0, TIMER)), is_shut))
         return log[-1]
 
-    # -- what the kernel does ------------------------------------------------------------------------------------------
+    # -- kernel methods ------------------------------------------------------------------------------------------------
 
     def _passing(self, original: Callable[..., Any]) -> Callable[..., Any]:
         def passing(kernel: ExploringKernel, *args: Any) -> Any:
@@ -297,7 +297,7 @@ class StepLog:
         def quietly(kernel: Kernel, *args: Any) -> Any:
             task = kernel.current
             self._quiet[task] = self._quiet.get(task, 0) + 1
-            task.passed += parts  # whether somebody waited or not
+            task.passed += parts  # even if no task waited
             try:
                 return original(kernel, *args)
             finally:
@@ -359,6 +359,6 @@ class StepLog:
 
 
 def _has_tried(call: _Call) -> None:
-    """It never came to its end: what it wanted somebody else had, and might have had later."""
+    """Record that an unfinished call tried a lock of another task, which it might have taken later."""
     if call.wanted and call.began is not None:
         call.began[call.wanted, TRIES] = None

@@ -1,8 +1,8 @@
-"""A sweep: a mission flown at many points, which differ in board, rate, parameters and seed, and what each came to.
+"""A sweep: a mission flown at many points, which differ in board, rate, parameters and seed, with the results of each.
 
-A point is a change of a `RunPlan`, so each has a command that flies it alone. What it came to is virtual time and
-counts, so a sweep gives the same numbers on any number of processes. The knee is the highest rate up to which all that
-was sent came, as often as it was asked for.
+A point is a change of a `RunPlan`, so each has a command that flies it alone. The results are virtual times and counts,
+so a sweep gives the same numbers on any number of processes. The knee is the highest rate up to which all sent messages
+arrived, at the requested rate.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from cfepy.pilot import BootError, Results, RunPlan, SentNames, fly
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
-RATE_TOLERANCE = 0.01  # of the rate asked for: what a run of some seconds can tell
+RATE_TOLERANCE = 0.01  # of the requested rate: the precision of a run of some seconds
 _US = 1000.0  # ns
 
 
@@ -28,10 +28,10 @@ class Point(NamedTuple):
 
     Attributes:
         board: name or file; None for the mission's own.
-        rate_hz: that `--rate` asks for; None without it.
-        settings: parameters and their values, those of the rate among them.
+        rate_hz: the rate of `--rate`; None without it.
+        settings: parameters and their values, including the parameters of the rate.
         launch_args: arguments of the launch file.
-        seed: of everything random.
+        seed: seed of all random values.
     """
 
     board: str | None = None
@@ -41,7 +41,7 @@ class Point(NamedTuple):
     seed: int = 0
 
     def plan(self, base: RunPlan) -> RunPlan:
-        """The run."""
+        """Return the run of this point."""
         board = self.board
         if board is not None and board.startswith("/") and isinstance(base, PlanElsewhere):
             board = base.root + board
@@ -56,16 +56,16 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class TopicNumbers:
-    """What became of the messages of a topic; of several subscribers, the worst off.
+    """Delivery figures of one topic. With several subscribers, the figures of the slowest one.
 
     Attributes:
         name: of the topic or packet.
-        sent, lost, received: messages, from half a second after the mission was OPERATIONAL; `lost` did not get into a
-            pipe, or had to leave it for a newer one.
+        sent, lost, received: messages, from half a second after the mission was OPERATIONAL; a `lost` message was
+            refused by a pipe, or was dropped for a newer one.
         held_back: messages that a publisher could send only later, over the whole run.
-        delivered_hz: at which rate it took those.
+        delivered_hz: rate at which the subscriber took them.
         latency_mean_us, latency_max_us: virtual time from the sending of a message to its taking.
-        hint: the end of a sentence that says that no message came.
+        hint: the end of a sentence about a topic without messages.
     """
 
     name: str
@@ -81,16 +81,16 @@ class TopicNumbers:
 
 @dataclass(frozen=True, slots=True)
 class PointNumbers:
-    """What a point came to.
+    """The results of a point.
 
     Attributes:
         board: the board's name.
         cpu: share of the virtual time that applications used, 0 to 1.
-        ram_peak, ram: bytes that were in use at most, and that there are; None without a limit.
-        topics: those that are measured, in their order.
-        problem: what went wrong in the run first; empty when nothing did.
+        ram_peak, ram: peak use and size of the RAM in bytes; None without a limit.
+        topics: the measured topics, in their order.
+        problem: the first problem of the run; empty for none.
         trace: digest of the run.
-        trouble: traceback of an error of cfepy itself, which says nothing about the mission.
+        trouble: traceback of an error of cfepy itself, which is not an error of the mission.
     """
 
     board: str = ""
@@ -103,10 +103,10 @@ class PointNumbers:
     trouble: str = ""
 
     def why_not_clean(self, rate_hz: float | None) -> str:
-        """What keeps a rate from being carried: empty when nothing does.
+        """Return why a rate is not clean; empty if it is.
 
         Args:
-            rate_hz: that was asked for; None when there was none, and only losses count.
+            rate_hz: the requested rate; None if there is none, and only losses count.
         """
         if self.problem or self.trouble:
             return self.problem or self.trouble.splitlines()[-1]
@@ -126,8 +126,8 @@ class Sweep(Lot[Point, PointNumbers]):
     """Flies points.
 
     Attributes:
-        plan: what all of them have in common.
-        topics: names of the topics that are measured; none for all of ROS that came.
+        plan: the settings that all points share.
+        topics: names of the topics that are measured; empty for all ROS topics with messages.
     """
 
     plan: RunPlan
@@ -185,14 +185,14 @@ def _first_problem(results: Results) -> str:
 
 
 class Knee(NamedTuple):
-    """Up to which rate a board carries a mission.
+    """The highest rate at which a board carries a mission.
 
     Attributes:
         board: its name.
-        varied: what else distinguishes the points, such as a parameter's value.
-        clean_hz: the highest rate with all lower ones clean; None when not even the lowest is.
-        broken_hz: the first rate that is not clean; None when all are.
-        why: what is wrong there.
+        varied: other values that distinguish the points, such as a parameter.
+        clean_hz: the highest rate with all lower ones clean; None if not even the lowest is.
+        broken_hz: the first rate that is not clean; None if all are.
+        why: the problem at that rate.
     """
 
     board: str
@@ -203,7 +203,7 @@ class Knee(NamedTuple):
 
     @property
     def text(self) -> str:
-        """A sentence."""
+        """A sentence about the knee."""
         where = ", ".join([self.board, *(f"{name}={value}" for name, value in self.varied)])
         clean = "not clean at any rate" if self.clean_hz is None else f"clean up to {self.clean_hz:g} Hz"
         if self.broken_hz is None:
@@ -212,7 +212,7 @@ class Knee(NamedTuple):
 
 
 class SweepRow(NamedTuple):
-    """A point, what it came to, and what else was varied than board, rate and seed."""
+    """A point, its results, and the varied values other than board, rate and seed."""
 
     point: Point
     numbers: PointNumbers
@@ -220,15 +220,15 @@ class SweepRow(NamedTuple):
 
     @property
     def why_not_clean(self) -> str:
-        """See `PointNumbers.why_not_clean`."""
+        """Why the point is not clean; see `PointNumbers.why_not_clean`."""
         return self.numbers.why_not_clean(self.point.rate_hz)
 
 
 def knees(rows: Sequence[SweepRow]) -> list[Knee]:
-    """The knee of each board and each value of what else was varied; a rate is clean when it is under all seeds.
+    """Return the knee of each board and each varied value. A rate is clean if it is clean under all seeds.
 
     Args:
-        rows: of a sweep; those without a rate have no knee.
+        rows: of a sweep; rows without a rate have no knee.
     """
     groups: dict[tuple[str, tuple[tuple[str, str], ...]], dict[float, str]] = {}
     for row in rows:
@@ -251,11 +251,11 @@ COLUMNS = (
     *("board", "rate_hz", "seed", "topic", "sent", "received", "lost", "held_back", "delivered_hz"),
     *("latency_mean_us", "latency_max_us", "cpu", "ram_peak_bytes", "clean", "problem", "trace"),
 )
-"""The columns of a table of points, a row for each topic of each; what else was varied comes after `seed`."""
+"""The columns of a table of points, with a row for each topic of each point; other varied values follow `seed`."""
 
 
 def sweep_table(rows: Sequence[SweepRow]) -> tuple[list[str], list[list[Any]]]:
-    """A sweep as a table: heads, and a row for each topic of each point, in the order of the points."""
+    """Return a sweep as a table: heads, and a row for each topic of each point, in the order of the points."""
     names = list(dict.fromkeys(name for row in rows for name, _ in row.varied))
     heads = [*COLUMNS[:3], *names, *COLUMNS[3:]]
     return heads, [_cells(row, topic, names) for row in rows for topic in row.numbers.topics or (None,)]
@@ -274,5 +274,5 @@ def _cells(row: SweepRow, topic: TopicNumbers | None, names: Sequence[str]) -> l
 
 
 def seconds_text(time_us: float) -> str:
-    """A time for a person: in us, or in ms from 1 ms on."""
+    """Return a time as text: in us, or in ms from 1 ms on."""
     return f"{time_us:.0f} us" if time_us < _US else f"{time_us * _US / NS_PER_S * 1000:.2f} ms"

@@ -1,4 +1,4 @@
-"""A sweep as a picture: what came of the rate that was asked for, how long messages took, and the CPU."""
+"""A sweep as a picture: the delivered rate over the requested rate, the latency of messages, and the CPU."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ SIZE = (8.0, 8.0)  # inches
 
 @dataclass(slots=True)
 class SweepLine:
-    """A board, or a value of what is varied; its points may come in any order.
+    """A line of the picture: a board, or a varied value. Its points may come in any order.
 
     Attributes:
         name: in the legend.
-        knee_hz: the highest rate that it carries; None when it carries none or all.
-        points: asked for and delivered (Hz), longest latency (ms), CPU (%).
+        knee_hz: the highest clean rate; None if no rate or every rate is clean.
+        points: requested and delivered rate (Hz), longest latency (ms), CPU (%).
     """
 
     name: str
@@ -30,15 +30,15 @@ class SweepLine:
     points: list[tuple[float, float, float, float]] = field(default_factory=list)
 
     def add(self, rate_hz: float, came_hz: float, longest_ms: float, cpu_percent: float) -> None:
-        """One more point."""
+        """Add a point."""
         self.points.append((rate_hz, came_hz, longest_ms, cpu_percent))
 
 
 def picture_of_sweep(lines: Sequence[SweepLine], title: str = "") -> Figure:
-    """A `matplotlib.figure.Figure`: three axes over the rate that is asked for.
+    """Return a `matplotlib.figure.Figure`: three axes over the requested rate.
 
     Args:
-        lines: one for each board or value, with a point at least.
+        lines: one for each board or value, with at least one point.
         title: above it.
 
     Raises:

@@ -1,4 +1,4 @@
-"""The points of a sweep, from what a command line says: ranges of rates, boards, seeds, values of parameters.
+"""The points of a sweep, from the command line: ranges of rates, boards, seeds, values of parameters.
 
 10..1000        the preferred numbers of ISO 3, ten to the decade: 10 12.5 16 20 25 31.5 40 50 63 80 100 ...
 10..50:10       10 20 30 40 50
@@ -22,14 +22,14 @@ _RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})(?::({_NUMBER}))?", re.ASCII | 
 
 
 def values_of(text: str, option: str) -> list[str]:
-    """The values that a text means, in its order, each once.
+    """Return the values of a text, in its order, each once.
 
     Args:
         text: values and ranges, with commas between.
-        option: that has it.
+        option: the option with the text, for errors.
 
     Raises:
-        UsageError: a range without end or in the wrong direction, or none at all.
+        UsageError: a range is endless or falls, or a value is empty.
     """
     found: list[str] = []
     for part in text.split(","):
@@ -62,7 +62,7 @@ def _range(part: str, match: re.Match[str], option: str) -> list[str]:
 
 
 def _preferred(first: float, last: float) -> list[float]:
-    """The ends, and the preferred numbers between them."""
+    """Return the ends, and the preferred numbers between them."""
     found = [first]
     decade = 10.0**-12
     while decade <= last:
@@ -72,10 +72,10 @@ def _preferred(first: float, last: float) -> list[float]:
 
 
 def numbers_of(text: str, option: str) -> list[float]:
-    """As `values_of`, of rates in Hz.
+    """Return rates in Hz, as `values_of` does.
 
     Raises:
-        UsageError: one is no number above 0.
+        UsageError: a value is not a number above 0.
     """
     found = []
     for value in values_of(text, option):
@@ -90,10 +90,10 @@ def numbers_of(text: str, option: str) -> list[float]:
 
 
 def seeds_of(text: str, option: str) -> list[int]:
-    """Seeds: whole numbers, of a range all of them.
+    """Return seeds: whole numbers, and all whole numbers of a range.
 
     Raises:
-        UsageError: one is no whole number.
+        UsageError: a value is not a whole number.
     """
     steps = ",".join(f"{part}:1" if ".." in part and ":" not in part else part for part in text.split(","))
     values = values_of(steps, option)
@@ -110,18 +110,18 @@ def points_of(
     varied: Sequence[tuple[str, Sequence[str]]],
     seeds: Sequence[int],
 ) -> list[tuple[Point, tuple[tuple[str, str], ...]]]:
-    """All points, boards outermost and seeds innermost, each with what is varied besides.
+    """Return all points, boards outermost and seeds innermost, each with its varied values.
 
     Args:
         spec: the mission.
         boards: names or files; None is the mission's own.
-        rates: in Hz; none flies the mission at its own.
+        rates: in Hz; an empty list flies the mission at its own rate.
         varied: names of parameters (with a slash) and arguments of the launch file, each with its values.
-        seeds: of everything random.
+        seeds: seeds of all random values.
 
     Raises:
-        UsageError: the mission does not say what a rate sets, or that is to be varied as well, or there are too many
-            points.
+        UsageError: the mission does not define the target of a rate, a varied parameter is also that target, or there
+            are too many points.
     """
     sets = spec.sweep.rate
     if rates and not sets:

@@ -1,6 +1,6 @@
-"""A look at what the tasks of a mission do: where they are when others could get in, what they do to shared things.
+"""Observes the tasks of a mission: their places at preemption points, and their operations on shared objects.
 
-It changes nothing, so the run is that of its schedule. Rows are for a timeline (`cfepy.extra.exploration.timeline`),
+It changes nothing, so the run is the one of its schedule. Rows are for a timeline (`cfepy.extra.exploration.timeline`),
 deeds are for a comparison with another run (`cfepy.extra.exploration.cause`).
 """
 
@@ -46,20 +46,21 @@ EVENT = "CFE_EVS_LONG_EVENT_MSG"
 _OF_COUNTERS = {"get_gen_count": do.READS, "set_gen_count": do.WRITES}
 
 Tell = Callable[[str, int | None, Pipe | None], object]
-"""Gets what is done (a verb of `operations`), and the MsgId and the pipe that it is about, if any."""
+"""Gets the operation (a verb of `operations`), and its MsgId and pipe, if any."""
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """Something that a task did.
+    """An event of a task.
 
     Attributes:
         at_ns: virtual time.
         task: its name.
-        kind: AT a line of source, WAITS for something, SENDS a message, DOES something to a lock or the like, TOUCHES
+        kind: AT a line of source, WAITS for an object, SENDS a message, DOES an operation on a lock or similar, TOUCHES
             a variable, is PREEMPTED by `text`, or `text` is ORDERED before it, or it ANSWERS a question as the schedule
-            has it.
-        text: what; of TOUCHES first the line of source, then what it does in a line of its own.
+            decides.
+        text: the line, object, message or operation; for TOUCHES first the line of source, then the operation in a
+            second line.
     """
 
     at_ns: int
@@ -69,18 +70,18 @@ class Row:
 
 
 class TaskLook(Attachment):
-    """Keeps what the tasks of a mission's applications do, up to a failure.
+    """Records the operations of the tasks of a mission's applications, up to a failure.
 
     Args:
         spec: the mission.
         first: rows are kept from this decision on.
-        is_over: whether the failure has been seen, and nothing is kept any more.
+        is_over: returns True once the failure has been seen; then recording stops.
 
     Attributes:
-        rows: in the order in which it happened.
+        rows: in the order in which they happened.
         deeds: from the beginning of the run on.
-        wanting: by task, the deed of each that asks for a lock and has not got it yet.
-        names: what the locks are called that are told of by numbers, by what they are told as: "lock 6 of MAPPER".
+        wanting: by task, the deed that requests a lock that it has not got yet.
+        names: names of the locks that reports identify by numbers, by that text: "lock 6 of MAPPER".
     """
 
     def __init__(self, spec: MissionSpec, first: int = 0, is_over: Callable[[], bool] = lambda: False) -> None:
@@ -101,13 +102,13 @@ class TaskLook(Attachment):
         }
         self._messages = MessageWatch(spec, self._take_message, ("*",), names)
         self._mission: Mission | None = None
-        self._ros: Any = None  # of the processor whose parameters are looked at
+        self._ros: Any = None  # of the processor whose parameters are observed
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         return _told(self._messages.bus(base), self._take_bus)
 
     def kernel(self, base: type[Kernel]) -> type[Kernel]:
-        """Every wait goes through `block`."""
+        """Wrap `block`, which every wait uses."""
         return wrapping(base, {"block": self._blocking})
 
     def begin(self, mission: Mission) -> None:
@@ -118,15 +119,15 @@ class TaskLook(Attachment):
             mission.accesses.observers.append(self._take_touch)
 
     def conclude(self) -> None:
-        """How tasks are ended is no part of it."""
+        """Stop recording: the end of tasks does not count."""
         self._closed = True
 
     def policy(self, inner: Policy) -> Policy:
-        """A policy that decides as another does, and notes the place of each task when it is asked."""
+        """Return a policy that decides as another does, and records the place of each task at its decisions."""
         return _LookingPolicy(inner, self)
 
     def reached(self, decision: int) -> None:
-        """So many decisions are behind."""
+        """Record the number of decisions so far."""
         self.is_on = self.is_on or decision >= self._first
 
     def add(self, task: str, kind: str, text: str) -> None:
@@ -135,18 +136,18 @@ class TaskLook(Attachment):
             self._keep(task, kind, text)
 
     def gives_way(self, task: Task, kind: str, chosen: str) -> None:
-        """Keep that a task does not go on where fifo would let it."""
+        """Record that a task does not continue although fifo would let it."""
         self.add(task.name, kind, chosen)
         if not self._closed and task.owner is not None:
             self._done(task, do.GIVES_WAY, chosen, None)
 
     def answers(self, text: str) -> None:
-        """Keep what became of a question; the running task may be of a node that only just begins."""
+        """Record the answer to a question. The running task may belong to a node that is just starting."""
         if self._mission is not None:
             self.add(self._mission.kernel.current.name, ANSWERS, text)
 
     def look(self, frame: FrameType | None) -> None:
-        """Keep where the running task is."""
+        """Record the place of the running task."""
         task = self._watched()
         if task is not None and self.is_on and self._goes_on():
             self._keep_place(task, frame)
@@ -158,7 +159,7 @@ class TaskLook(Attachment):
         return not self._closed
 
     def _watched(self) -> Task | None:
-        """The running task, if it is one of the mission's applications."""
+        """Return the running task, if it belongs to one of the mission's applications."""
         if self._mission is None:
             return None
         if self._mission.ros is not self._ros:
@@ -178,7 +179,7 @@ class TaskLook(Attachment):
             self.rows.append(row)
 
     def _done(self, task: Task, verb: str, thing: str, frame: FrameType | None, note: str = "") -> Deed:
-        """Keep a deed."""
+        """Record a deed."""
         assert self._mission is not None
         place = ":".join(place_text(frame).split(":")[:2])
         deed = Deed(self._mission.kernel.now, task.name, task.owner.name, verb, thing, place, note)
@@ -186,7 +187,7 @@ class TaskLook(Attachment):
         return deed
 
     def _shown(self, task: Task, deed: Deed, frame: FrameType | None, more: str = "") -> None:
-        """Keep a row for a deed."""
+        """Record a row for a deed."""
         if self.is_on:
             self._keep_place(task, frame)
             self._keep(task.name, DOES, f"{deed.verb} {deed.thing}{more}")
@@ -214,7 +215,7 @@ class TaskLook(Attachment):
             self._lock_taken(task, use_of(subject, call, frame), result)
 
     def failed(self, subject: Any, call: str) -> None:
-        """Nothing was done."""
+        """Do nothing: a failed call has no effect."""
 
     def _call_of_app(
         self, task: Task, service: Any, call: str, args: tuple[Any, ...], frame: FrameType | None, ended: bool
@@ -227,7 +228,7 @@ class TaskLook(Attachment):
         verb, kind = _OF_OSAL[call]
         try:
             thing = f"{kind} {service.get_resource_name(args[0])}"
-        except (CfeError, IndexError):  # an id of nothing: the call has failed, or is about to
+        except (CfeError, IndexError):  # an invalid id: the call has failed, or is about to
             return
         takes = verb in (do.HAS, do.TAKES)
         if takes and not ended:
@@ -260,7 +261,7 @@ class TaskLook(Attachment):
             self._shown(task, self._done(task, do.HAS, deed.thing, use.frame), use.frame)
 
     def _call_of_library(self, task: Task, use: Use) -> None:
-        """A method of an Event, Condition, Queue: told once, at its first use of a lock."""
+        """Record a method call of an Event, Condition or Queue once, at its first use of a lock."""
         assert use.inner is not None
         if self._calls.get(task) is use.inner:
             return
@@ -301,7 +302,7 @@ class TaskLook(Attachment):
         return wait
 
     def _begins_to_wait(self, task: Task, frame: FrameType | None) -> Deed | None:
-        """Keep what a task waits for; the deed, when it waits for an event or the like, not for a lock."""
+        """Record the awaited object. Returns the deed of a wait for an event or similar; None for a lock."""
         if self.is_on:
             self._keep_place(task, frame)
         waits = task.waits
@@ -323,7 +324,7 @@ class TaskLook(Attachment):
         return deed
 
     def _awaited(self, use: Use) -> str:
-        """What a call of the standard library waits for; empty when that has no name."""
+        """Return the object that a call of the standard library waits for; empty if it has no name."""
         assert self._mission is not None
         if use.inner is None or use.subject is None:
             return ""
@@ -336,7 +337,7 @@ class TaskLook(Attachment):
         return self._things.name(use.subject, use.frame)
 
     def _of_pipe(self, what: str) -> str:
-        """A pipe in short: of a node it is the topic whose messages come there."""
+        """Return a short name of a pipe. For a node's pipe it is the topic of its messages."""
         name = what.removeprefix("a message on pipe ")
         if self._mission is None or name == what:
             return what
@@ -354,7 +355,7 @@ class TaskLook(Attachment):
         if pipe is None:
             assert msg_id is not None
             name = self._message_name(msg_id)
-            if name == _number(msg_id):  # of those that have a name all is told by `_take_message`
+            if name == _number(msg_id):  # `_take_message` records messages with a name
                 self._shown(task, self._done(task, verb, name, frame), frame)
             return
         if msg_id is None:
@@ -372,7 +373,7 @@ class TaskLook(Attachment):
         return next(found, self._packets.get(msg_id, _number(msg_id)))
 
     def _take_message(self, heard: Heard) -> None:
-        """The message may be the failure itself, so it is kept when that has just been seen."""
+        """Record a message. It may be the failure itself, so it is also kept if the failure has just been seen."""
         task = self._watched()
         if task is None or self._closed:
             return
@@ -388,7 +389,7 @@ class TaskLook(Attachment):
         self._keep(task.name, SENDS, _sending(heard.topic, values))
 
     def _take_touch(self, touch: Touch) -> None:
-        """A variable is accessed; there are many of these, so none are kept that come long before the first move."""
+        """Record an access to a variable. Accesses long before the first move are not kept, because they are many."""
         task = self._watched()
         if task is None or not self.is_on or not self._goes_on():
             return
@@ -402,7 +403,7 @@ class TaskLook(Attachment):
         self._keep(task.name, TOUCHES, f"{place_text(_outside(sys._getframe(1)))}\n{verb} {touch.name}")
 
     def _look_at_parameters(self, ros: Any) -> None:
-        """ROS has just begun, on a processor that may not be the first."""
+        """Watch the parameters of ROS, which has just started on a processor that may not be the first."""
         self._ros = ros
         if ros is not None:
             tree = ros.graph.params
@@ -410,7 +411,7 @@ class TaskLook(Attachment):
             tree.set = self._of_parameter(tree.set, do.WRITES)
 
     def _of_parameter(self, method: Callable[..., Any], verb: str) -> Callable[..., Any]:
-        """The method of a parameter tree, with a note of the parameter that a node asks for."""
+        """Return the method of a parameter tree, wrapped to record the parameter that a node accesses."""
 
         def call(name: str, *args: Any) -> Any:
             task = self._watched()
@@ -429,7 +430,7 @@ class _LookingPolicy(AskingPolicy):
         self._look = look
 
     def choose(self, decision: Decision) -> int:
-        """It is asked in the task that gives the processor away."""
+        """Decide, and record. It is called in the task that gives up the processor."""
         choice = self._inner.choose(decision)
         self._look.reached(decision.number)
         self._look.look(sys._getframe(1))
@@ -442,15 +443,15 @@ class _LookingPolicy(AskingPolicy):
 
 
 def _told(base: type[SoftwareBus], tell: Tell) -> type[SoftwareBus]:
-    """A class of Software Bus that tells what is done with its pipes.
+    """Return a Software Bus class that reports operations on its pipes.
 
     Args:
         base: the class to start from.
-        tell: called inside the simulation, in the task that does it; it must not wait.
+        tell: called inside the simulation, in the task of the operation; it must not wait.
     """
 
     class ToldBus(base):  # type: ignore[misc, valid-type]  # mypy does not follow a class that is an argument
-        """A Software Bus that is looked at."""
+        """A Software Bus that reports operations on its pipes."""
 
         def __init__(self, *args: object) -> None:
             super().__init__(*args)
@@ -497,7 +498,7 @@ def _number(msg_id: int) -> str:
 
 
 def _sending(topic: str, values: Any) -> str:
-    """A message that is sent, in a line; of an event what it says."""
+    """Return a sent message in a line; the text of an event."""
     if topic == EVENT and isinstance(values.get("PacketID"), dict):
         about = values["PacketID"]
         return f"event {about.get('AppName')} {about.get('EventID')}: {values.get('Message')}"
@@ -505,22 +506,22 @@ def _sending(topic: str, values: Any) -> str:
 
 
 def _outside(frame: FrameType | None) -> FrameType | None:
-    """The innermost frame that is not the simulator's."""
+    """Return the innermost frame that is not the simulator's."""
     while frame is not None and not is_shown(frame.f_code.co_filename):
         frame = frame.f_back
     return frame
 
 
 def _is_nested(lock: Any, frame: FrameType) -> bool:
-    """Whether a method of a lock calls another one, as `__exit__` calls `release`."""
+    """Return True if a method of a lock calls another one, as `__exit__` calls `release`."""
     return frame.f_code.co_name in (*_TAKING, *_GIVING) and frame.f_locals.get("self") is lock
 
 
 def _owns(lock: Any, task: Task) -> bool:
-    """Whether a recursive lock is the task's already."""
+    """Return True if the task already owns a recursive lock."""
     return getattr(lock, "_owner", None) is task
 
 
 def _keeps(lock: Any) -> bool:
-    """Whether a recursive lock stays its owner's when it is released once."""
+    """Return True if a recursive lock stays with its owner after one release."""
     return getattr(lock, "_count", 1) > 1

@@ -1,8 +1,8 @@
-"""A failing run as a story: its cause in a sentence, and a column for each task that matters, up to the failure.
+"""The story of a failing run: its cause in a sentence, and a column for each task that matters, up to the failure.
 
-The run is flown once more with a `TaskLook`, which notes where in its source each task was whenever another could
-have got in, and what it did to locks, messages and the like. So is the run under fifo, for what was otherwise there.
-What was noted is drawn as plain text.
+The run is flown once more with a `TaskLook`. It records the place of each task in its source at every preemption point,
+and its operations on locks, messages and similar. The run under fifo is recorded too, for comparison. The records are
+drawn as plain text.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from cfepy.rtos import HOLD, Policy
 from cfepy.units import NS_PER_S
 
 WIDTH = 100
-"""Of a story in a file, a pipe, a test: always the same, so that it can be compared."""
+"""Width of a story in a file, a pipe, a test: always the same, so that stories can be compared."""
 
 TIME_WIDTH = 12
 LEAST_COLUMN = 26  # characters: there are as many columns as fit
@@ -44,24 +44,24 @@ LAST = 10  # rows that are shown before the failure
 BEFORE = 50  # decisions before the first move, from which on rows are kept
 GAP = 2
 MOST_ROWS = 16  # rows of a group
-FEW = 2  # rows: a group of so few is folded only when it comes three times
-BETWEEN = " ... "  # stands between the first and the last message of those that are told once
+FEW = 2  # rows: a group of this size is folded only when it comes three times
+BETWEEN = " ... "  # between the first and the last of merged messages
 CAUSE = "cause: "
-MOST_OF_A_PAGE = 6  # tasks that have a column where there is as much room as one wants
+MOST_OF_A_PAGE = 6  # tasks that have a column on a page of any width
 MOVES = (PREEMPTED, ORDERED, ANSWERS)
-_MADE_AT = re.compile(r" \((?:line |[\w.]+:)\d+\)")  # behind the name of a lock; the first to go where there is no room
+_MADE_AT = re.compile(r" \((?:line |[\w.]+:)\d+\)")  # after the name of a lock; left out first without room
 
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """What happened in a run, to be drawn.
+    """The events of a run, to be drawn.
 
     Attributes:
-        rows: what the tasks did.
-        tasks: those that matter, the most important first.
-        cause: of the failure, a sentence; empty where it is not known.
-        end: what failed, a line; empty for nothing.
-        end_ns: virtual time at which it failed; None for the end of the run.
+        rows: the events of the tasks.
+        tasks: the tasks that matter, the most important first.
+        cause: of the failure, a sentence; empty if it is not known.
+        end: the failure, a line; empty for none.
+        end_ns: virtual time of the failure; None for the end of the run.
     """
 
     rows: tuple[Row, ...] = ()
@@ -71,7 +71,7 @@ class Story:
     end_ns: int | None = None
 
     def lines(self, width: int = WIDTH) -> list[str]:
-        """It as text.
+        """Return the story as text.
 
         Args:
             width: characters of a line.
@@ -82,10 +82,10 @@ class Story:
         return [*cause, *([""] if cause else []), *drawn(self.rows, tasks, width), *self._last_lines(width)]
 
     def table(self) -> tuple[tuple[str, ...], list[tuple[int | None, str, str, bool]]]:
-        """It as a table: the tasks that have a column, and the rows.
+        """Return the story as a table: the tasks that have a column, and the rows.
 
-        A row has its virtual time in ns, its task, what it did, and whether the schedule did that; time and task are
-        None and empty where it stands for others.
+        A row has its virtual time in ns, its task, its text, and whether it is a move of the schedule. Time and task
+        are None and empty if the row stands for others.
         """
         tasks = self._tasks(MOST_OF_A_PAGE)
         groups = _folded(_moving([row for row in self.rows if row.task in tasks]))
@@ -99,7 +99,7 @@ class Story:
         return tasks, rows
 
     def _tasks(self, most: int) -> tuple[str, ...]:
-        """Those that have a column, in the order in which they appear."""
+        """Return the tasks that have a column, in the order in which they appear."""
         chosen = set(self.tasks[:most])
         named = (row.task for row in self.rows if row.task in chosen)
         return tuple(dict.fromkeys([*named, *(task for task in self.tasks if task in chosen)]))
@@ -113,13 +113,13 @@ class Story:
 
 
 def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[MadeMove]) -> Story:
-    """What happened; the run is flown once more, and the one under fifo.
+    """Fly the run once more, and the run under fifo. Returns the story of the failure.
 
     Args:
-        trial: what is flown.
+        trial: the trial.
         verdict: of the shrunk schedule.
-        failure: the one that it is about.
-        moves: what the schedule does.
+        failure: the failure.
+        moves: moves of the schedule.
     """
     schedule = verdict.schedule
     first = min((decision for decision, _ in verdict.deviations), default=0)
@@ -146,13 +146,13 @@ def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[M
 
 
 def story_of_run(plan: RunPlan) -> Story | None:
-    """What happened in a run under a schedule with some deviations from fifo.
+    """Return the story of a run under a schedule with some deviations from fifo.
 
     Args:
-        plan: the run; it is flown again, and the one under fifo.
+        plan: the run; it is flown again, and the run under fifo.
 
     Returns:
-        The story of the first failure that the run under fifo does not have; None when there is none.
+        The story of the first failure that the run under fifo does not have; None if there is none.
     """
     fifo = Trial(plan).fly(plan.schedule.at({}))
     trial = Trial(plan).against(fifo.results)
@@ -163,23 +163,23 @@ def story_of_run(plan: RunPlan) -> Story | None:
 
 
 def _named(text: str, names: Mapping[str, str]) -> str:
-    """A text with the names of locks in the place of their numbers."""
+    """Return a text with the names of locks instead of their numbers."""
     for told, name in names.items():
         text = text.replace(told, name)
     return text
 
 
 def important(rows: Sequence[Row], moves: Sequence[MadeMove], culprit: str = "", text: str = "") -> tuple[str, ...]:
-    """The tasks that may have a column, those that matter most first.
+    """Return the tasks that may have a column, the most important first.
 
-    These are the one in which the failure showed, those of the moves, the last one first, those that a question was
-    about, and those that the failure and its cause name. When these are not two, or a task was held up and others ran
-    in the meantime, it is also who did something last.
+    These are the task of the failure, the tasks of the moves (the last move first), and the tasks of questions. Tasks
+    that the failure and its cause name also count. If these are fewer than two, or a task was delayed and others ran in
+    the meantime, the last active tasks are added.
 
     Args:
-        rows: what all tasks did.
-        moves: what the schedule does.
-        culprit: the task in which the failure showed; empty when that is not known.
+        rows: the events of all tasks.
+        moves: moves of the schedule.
+        culprit: the task in which the failure showed; empty if it is not known.
         text: of the failure and its cause.
     """
     words = set(text.replace(",", " ").replace(";", " ").replace("'", " ").split())
@@ -194,7 +194,7 @@ def important(rows: Sequence[Row], moves: Sequence[MadeMove], culprit: str = "",
 
 
 def drawn(rows: Sequence[Row], tasks: Sequence[str], width: int = WIDTH) -> list[str]:
-    """A line a row, in the column of its task; rows that are far from every move and from the end are left out."""
+    """Return a line for each row, in its task's column; rows far from every move and from the end are left out."""
     if not tasks:
         return []
     file, rows = _without_file(_moving([row for row in rows if row.task in tasks]))
@@ -216,7 +216,7 @@ def drawn(rows: Sequence[Row], tasks: Sequence[str], width: int = WIDTH) -> list
 
 
 def _without_touches(rows: Sequence[Row], but: Collection[str]) -> Iterator[Row]:
-    """The rows without accesses to variables, but for those to some."""
+    """Yield the rows without accesses to variables, except accesses to the given ones."""
     for row in rows:
         place, _, text = row.text.partition("\n")
         if row.kind != TOUCHES:
@@ -232,7 +232,7 @@ def _until(group: _Group) -> str:
 
 
 def _moving(rows: Sequence[Row]) -> list[Row]:
-    """The rows without lines at which a task was already, and went on with only what other rows tell."""
+    """Return the rows without repeated places of a task that only performs operations of other rows there."""
     kept: list[Row] = []
     at: dict[str, str] = {}
     for row in rows:
@@ -246,7 +246,7 @@ def _moving(rows: Sequence[Row]) -> list[Row]:
 
 
 def _without_file(rows: Sequence[Row]) -> tuple[str, Sequence[Row]]:
-    """The name of the file that all places are in, and the rows without it; "" when there are several, or none."""
+    """Return the file of all places, and the rows without its name; "" if there are several files, or none."""
     files = {row.text.partition(":")[0] for row in rows if row.kind == AT}
     if len(files) != 1:
         return "", rows
@@ -261,20 +261,20 @@ def _short(row: Row, file: str) -> str:
 
 
 def _shown(groups: Sequence[_Group]) -> list[int]:
-    """The groups of rows that are shown."""
+    """Return the groups of rows that are shown."""
     moves = [at for at, group in enumerate(groups) if any(row.kind in MOVES for row in group.rows)]
     near = {each for at in moves for each in range(at - AROUND, at + AROUND + 1)}
     return [at for at in range(len(groups)) if at in near or at >= len(groups) - LAST]
 
 
 def _need(task: str, groups: Sequence[_Group]) -> int:
-    """How wide a column must be for all that is in it."""
+    """Return the width of a column that fits all its texts."""
     texts = (_forms(row)[0] for group in groups for row in group.rows if row.task == task)
     return max(len(task), *map(len, texts), LEAST_COLUMN)
 
 
 def _widths(needs: Sequence[int], width: int) -> list[int]:
-    """How wide each column is: what it needs, while there is room; the room is shared out evenly among the others."""
+    """Return the column widths: the needed width while there is room; the rest is shared evenly among the others."""
     widths = [0] * len(needs)
     left = width - GAP * len(needs)
     for place, at in enumerate(sorted(range(len(needs)), key=lambda at: needs[at])):
@@ -294,7 +294,7 @@ def _cell(row: Row, width: int) -> str:
 
 
 def _forms(row: Row) -> tuple[str, ...]:
-    """What a row says, the longest form first."""
+    """Return the texts of a row, the longest form first."""
     if row.kind == ANSWERS:
         return (f"=== {row.text} ===",)
     if row.kind not in (PREEMPTED, ORDERED):
@@ -316,11 +316,11 @@ def _cut(text: str, width: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Group:
-    """Rows that come one after the other.
+    """A group of successive rows.
 
     Attributes:
-        rows: as they came the first time.
-        times: how often they came.
+        rows: the rows of the first time.
+        times: number of repetitions.
         until_ns: virtual time at which they were over.
     """
 
@@ -330,7 +330,7 @@ class _Group:
 
 
 def _folded(rows: Sequence[Row]) -> list[_Group]:
-    """The same rows, in which what comes again at once is told once; most groups are a single row."""
+    """Return the rows in groups, with immediate repetitions merged. Most groups are a single row."""
     groups: list[_Group] = []
     kinds = [_kind(row) for row in rows]
     at = 0
@@ -347,13 +347,13 @@ def _folded(rows: Sequence[Row]) -> list[_Group]:
 
 
 def _kind(row: Row) -> tuple[str, str, str]:
-    """What rows that are told once have in common: of messages the topic, of all others everything but the time."""
+    """Return the key by which rows are merged: for messages the topic, for others everything except the time."""
     text = row.text.partition(":")[0] if row.kind == SENDS else row.text
     return row.task, row.kind, text
 
 
 def _times(kinds: Sequence[tuple[str, str, str]], at: int, length: int) -> int:
-    """How often so many rows come one after the other."""
+    """Return how often a group of rows repeats."""
     group, times = kinds[at : at + length], 1
     while len(group) == length and kinds[at + times * length : at + (times + 1) * length] == group:
         times += 1
@@ -361,7 +361,7 @@ def _times(kinds: Sequence[tuple[str, str, str]], at: int, length: int) -> int:
 
 
 def _saved(folding: tuple[int, int]) -> int:
-    """How many rows it saves to fold; 0 where that is not worth a line that says so."""
+    """Return the number of rows that folding saves; 0 if that is not worth a line about it."""
     length, times = folding
     return length * (times - 1) if times > 2 or (times == 2 and length > FEW) else 0
 

@@ -24,15 +24,15 @@ from cfepy.schedules import ORDER, Schedule
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
-MOST_INVERSIONS = 3  # that are told of one failure
-PROBE_S = 1.0  # wall time that a task gets at least, which is known to spin
+MOST_INVERSIONS = 3  # inversions in the report of one failure
+PROBE_S = 1.0  # minimum wall time for a task that is known to spin
 
 
 FOR_EVER = Limits()
 
 
 def told_as(schedule: Schedule, deviations: Mapping[int, int]) -> Schedule:
-    """A schedule that a command can be given: for one that is made as a run goes on, what that run did."""
+    """Return a schedule for a command: one that develops during a run becomes the deviations of that run."""
     return schedule.at(deviations) if schedule.kind == ORDER else schedule
 
 
@@ -40,12 +40,12 @@ class Tried(NamedTuple):
     """A trial that was flown.
 
     Attributes:
-        verdict: what became of it.
+        verdict: the verdict on it.
         results: the results themselves.
-        notes: what the user of the plan should know.
-        booted_ns: virtual time at which the mission became OPERATIONAL; None when it did not.
+        notes: notes for the user of the plan.
+        booted_ns: virtual time at which the mission became OPERATIONAL; None if it did not.
         tick_ns: of the board's clock; 0 for none.
-        tasks: how many there have been.
+        tasks: number of tasks that the run had.
     """
 
     verdict: Verdict
@@ -58,18 +58,18 @@ class Tried(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """What is flown, and what counts as a failure.
+    """A run, and its criteria of a failure.
 
     Attributes:
         plan: the run; its own schedule does not matter.
-        events: which events are failures: "error" (ERROR and CRITICAL), "critical" or "none".
-        reference: the results of the run that others are held against; None holds them against nothing.
+        events: the events that are failures: "error" (ERROR and CRITICAL), "critical" or "none".
+        reference: the results of the reference run, with which results are compared; None compares nothing.
         keep_widths: verdicts have the widths of decisions, which a systematic search needs.
         steps_from_ns: verdicts have the steps of the run from this virtual time on, as a search of orders needs; None
             keeps none.
-        waits: of the default schedule (`cfepy.extra.exploration.deadlock`), against which tasks that wait for ever are
+        waits: of the default schedule (`cfepy.extra.exploration.deadlock`), against which tasks that wait forever are
             found; None lets them wait.
-        liveness: how long a task may be ready without running, and an application run without a message.
+        liveness: limits for a ready task without running, and for an application without a message.
     """
 
     plan: RunPlan
@@ -85,10 +85,10 @@ class Trial:
 
         Args:
             schedule: which task runs when.
-            attachments: what else watches the run.
+            attachments: other observers of the run.
 
         Returns:
-            What became of it. An error of cfepy itself is told as `trouble` and is no failure of the mission.
+            The verdict. An error of cfepy itself is its `trouble`, and not a failure of the mission.
 
         Raises:
             UsageError: the mission, its script or its faults cannot be read.
@@ -97,12 +97,12 @@ class Trial:
         return self.fly(schedule, attachments).verdict
 
     def fly(self, schedule: Schedule, attachments: Sequence[Attachment] = (), policy: Policy | None = None) -> Tried:
-        """As `run`, with what else is known of the flight.
+        """Fly as `run` does. Returns also the results and other data of the flight.
 
         Args:
             schedule: which task runs when.
-            attachments: what else watches the run.
-            policy: decides in the place of the schedule's own, of which the options count nevertheless.
+            attachments: other observers of the run.
+            policy: decides in place of the schedule's own, whose options still apply.
         """
         recorded = NotingPolicy(schedule.policy() if policy is None else policy)
         watch = FailureWatch(self.events)
@@ -123,7 +123,7 @@ class Trial:
             return Tried(replace(self._verdict(schedule, recorded, ()), trouble=traceback.format_exc()))
         if flown.stall is not None:
             told = self._verdict(schedule, recorded, watch.failures(flown.problems))
-            return Tried(replace(told, end_ns=watch.end_ns), (), flown.notes)  # results and digest there are none
+            return Tried(replace(told, end_ns=watch.end_ns), (), flown.notes)  # a stalled run has no results
         found = results.results()
         failed = (*watch.failures(flown.problems), *self._differences(found))
         failed += tuple(_lack(each) for watched in alive for each in watched.found)
@@ -143,24 +143,24 @@ class Trial:
         return stuck_for_good(found, self.waits, self.plan, end_ns, schedule.at(policy.deviations).policy)
 
     def against(self, reference: tuple[Result, ...]) -> Trial:
-        """The same trial, in which results that differ from these are failures."""
+        """Return the same trial, in which results that differ from these are failures."""
         return replace(self, reference=reference)
 
     def probe(self) -> Trial:
-        """The same trial for a stall that is known: a task that spins there again is not watched for as long."""
+        """Return the same trial for a known stall, with a shorter limit for a task that spins again."""
         limit = self.plan.stall
         return replace(self, plan=replace(self.plan, stall=min(limit, max(PROBE_S, limit / 10))))
 
     def inversions_before(self, schedule: Schedule, at_ns: int | None, task: str = "") -> list[str]:
-        """The priority inversions that came before something went wrong: its run is flown once more.
+        """Fly a run once more. Returns the priority inversions before its failure.
 
         Args:
-            schedule: under which it went wrong.
-            at_ns: when, in virtual ns; None is the end.
-            task: in which task; if that was held up like this itself, only its own are told.
+            schedule: the schedule that fails.
+            at_ns: time of the failure, in virtual ns; None is the end.
+            task: the task that failed; if it has inversions, only these are returned.
 
         Returns:
-            A sentence for each, the longest first; of each victim and lock only the longest.
+            A sentence for each, the longest first; only the longest of each victim and lock.
         """
         watch = InversionWatch()
         self.fly(schedule, [watch])
@@ -170,13 +170,13 @@ class Trial:
         return [each.text for each in reversed(told)][:MOST_INVERSIONS]
 
     def until(self, end_ns: int) -> Self | None:
-        """The same trial in a run that ends at this virtual time; None for a run that ends with its script."""
+        """Return the same trial in a run that ends at this virtual time; None for a run that ends with its script."""
         if self.plan.script is not None:
             return None
         return replace(self, plan=replace(self.plan, seconds=end_ns / NS_PER_S))
 
     def command(self, schedule: Schedule) -> str:
-        """The command that flies this mission under a schedule."""
+        """Return the command that flies this mission under a schedule."""
         return self.plan.command_line(schedule=schedule)
 
     def _verdict(self, schedule: Schedule, policy: NotingPolicy, failed: tuple[Failure, ...]) -> Verdict:
@@ -203,6 +203,6 @@ class Trial:
 
 
 def _lack(found: Lack) -> Failure:
-    """A task that starved, or an application that got nowhere."""
+    """Return the failure for a starved task or an application in a livelock."""
     kind = verdict.LIVELOCK if found.is_livelock else verdict.STARVED
     return Failure(kind, found.app, found.text, found.at_ns, task=found.task, cause=found.task)

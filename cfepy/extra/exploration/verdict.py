@@ -1,8 +1,8 @@
 """The verdict on a mission under one schedule, and the findings from the verdicts on many.
 
-A verdict has the failures, and the digests that say what was computed: plain data that goes between processes and into
-files. A finding is a distinct failure, with how often it came and where it came first. The failures of a run follow
-from each other more often than not, so a run counts for the first of them that the reference run does not have.
+A verdict has the failures and the digests of the results: plain data that goes between processes and into files. A
+finding is a distinct failure, with its number of occurrences and its first one. The failures of a run usually follow
+from each other, so a run counts for the first of them that the reference run does not have.
 """
 
 from __future__ import annotations
@@ -65,24 +65,24 @@ SIMPLEST = 3  # runs that are kept of each finding, to be shrunk
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What became of one schedule.
+    """The verdict on one schedule.
 
     Attributes:
-        schedule: which one; in plain data its text.
-        failures: in the order of their times; none for a run that went well.
+        schedule: the schedule; in plain data its text.
+        failures: in the order of their times; empty for a run without failures.
         results: digest of the results that must not depend on the schedule; empty when none are selected.
         trace: digest of the whole run.
-        decisions: how often the policy had a choice: those that `from` leaves to fifo are none.
-        deviations: (decision, candidate) where it did not choose as fifo would; kept for runs with failures, and where
-            steps are.
-        preemptions: how many of them took the processor from a task that could have gone on.
-        widths: how many answers each decision had, negative where the running task could have gone on; kept only for a
-            systematic search.
-        steps: what the tasks did, and what they touched; kept only for a search of orders.
-        end_ns: virtual time at the end of the run, before the nodes were asked to shut down.
-        longest: of a run in which something was measured: how long it took at most, when that ended, in virtual ns, and
-            how many decisions there had been by then; empty when nothing was.
-        trouble: traceback of an error of cfepy itself, which says nothing about the mission; empty otherwise.
+        decisions: number of the policy's decisions, without those that `from` leaves to fifo.
+        deviations: (decision, candidate) where it did not choose as fifo would; kept for runs with failures, and with
+            steps.
+        preemptions: number of deviations that took the processor from a task that could have continued.
+        widths: number of answers of each decision, negative where the running task could have continued; kept only for
+            a systematic search.
+        steps: the steps of the tasks with their accesses; kept only for a search of orders.
+        end_ns: virtual time at the end of the run, before the shutdown of the nodes.
+        longest: for a run with a measure: its longest value, its end in virtual ns, and the number of decisions by
+            then; empty if there is none.
+        trouble: traceback of an error of cfepy itself, which is not an error of the mission; empty otherwise.
         missed: the moves of the schedule that were not possible, as text.
     """
 
@@ -111,20 +111,20 @@ class Verdict:
         return tuple(dict.fromkeys(failure.group for failure in self.failures))
 
     def failure(self, group: str) -> Failure | None:
-        """Its first failure of a group; None when it has none."""
+        """Return its first failure of a group; None if it has none."""
         return next((each for each in self.failures if each.group == group), None)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data, for JSON and msgpack."""
+        """Return plain data, for JSON and msgpack."""
         same = {each.name: getattr(self, each.name) for each in fields(self)}
         return same | {"schedule": self.schedule.text(), "failures": tuple(map(asdict, self.failures))}
 
     @classmethod
     def from_dict(cls, plain: dict[str, Any]) -> Verdict:
-        """The other way round.
+        """Return a verdict from the data of `to_dict`.
 
         Raises:
-            UsageError: it is no verdict.
+            UsageError: the data is not a verdict.
         """
         try:
             return cls._of(plain)
@@ -154,12 +154,12 @@ class Verdict:
 
 @dataclass(slots=True)
 class Finding:
-    """A failure.
+    """A distinct failure.
 
     Attributes:
-        failure: as it was the first time.
+        failure: its first occurrence.
         number: of the first schedule that showed it, from 0; None for the reference run.
-        verdict: on that.
+        verdict: on that schedule.
         numbers: of all schedules that showed it.
         others: titles of the other failures in the first run.
         simplest: the verdicts of the runs that showed it with the fewest preemptions: the best ones to shrink.
@@ -176,7 +176,7 @@ class Finding:
         self.simplest = [self.verdict]
 
     def again(self, number: int, verdict: Verdict) -> None:
-        """Another run showed it."""
+        """Add another run that showed it."""
         self.numbers.append(number)
         if verdict is not self.verdict:
             self.simplest = sorted([*self.simplest, verdict], key=_moves)[:SIMPLEST]
@@ -188,12 +188,12 @@ class Finding:
 
     @property
     def median_schedules(self) -> float | None:
-        """How many schedules it took to come, and to come again, in the median; None when none of them showed it."""
+        """The median number of schedules until it shows, and shows again; None if no schedule showed it."""
         starts = [-1, *self.numbers]
         return median(b - a for a, b in pairwise(starts)) if self.numbers else None
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data; times in ns."""
+        """Return plain data; times in ns."""
         return {
             "kind": self.failure.kind,
             "who": self.failure.who,
@@ -210,7 +210,7 @@ class Finding:
 
 
 def _moves(verdict: Verdict) -> tuple[int, int]:
-    """How much a schedule differs from the default one."""
+    """Return a measure of the difference between a schedule and the default one."""
     return verdict.preemptions, len(verdict.deviations)
 
 
@@ -232,7 +232,7 @@ class Findings:
             self._found.setdefault(failure.group, Finding(failure, None, reference))
 
     def take(self, number: int, verdict: Verdict) -> bool:
-        """Take a verdict; whether the mission failed in a way in which it does not fail by default."""
+        """Take a verdict. Returns True if the mission failed in a way in which it does not fail by default."""
         if verdict.trouble:
             self.troubles.append(verdict)
         if not verdict.failures:
@@ -245,5 +245,5 @@ class Findings:
         return bool(new)
 
     def all(self) -> list[Finding]:
-        """All of them: those of the reference run, then the others as they were found."""
+        """Return all findings: the ones of the reference run, then the others as they were found."""
         return list(self._found.values())

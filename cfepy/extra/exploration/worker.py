@@ -1,9 +1,9 @@
 """A worker process: flies batches of schedules for the process that started it.
 
-`python -m cfepy.extra.exploration.worker NUMBER FOLDER`, where NUMBER is that of its end of a connection and FOLDER the
-place for all that it needs for a while. First comes the trial, then batches; each is answered by its verdicts. A thread
-reads the connection, so that the worker ends at once, in the middle of a schedule too, when the process at the other
-end does.
+`python -m cfepy.extra.exploration.worker NUMBER FOLDER`, where NUMBER is the file descriptor or handle of its end of a
+connection and FOLDER the place for its temporary files. First comes the trial, then batches. Each batch is answered by
+its verdicts. A thread reads the connection, so the worker ends at once, even in the middle of a schedule, when the
+other process ends.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ READY = "ready"
 
 def main() -> None:
     """Serve until the other end closes the connection."""
-    faulthandler.enable()  # a worker that crashes, or is told to abort, says where it was
+    faulthandler.enable()  # a worker that crashes or aborts writes its stacks
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started it
     connection, tempfile.tempdir = connection_of(int(sys.argv[1])), sys.argv[2]
-    in_forked_process(connection.close)  # whose end means that of this process alone
+    in_forked_process(connection.close)  # its end means the end of this process alone
     inbox: SimpleQueue[bytes] = SimpleQueue()
     threading.Thread(target=_read, args=(connection, inbox), daemon=True).start()
     _serve(connection, inbox)

@@ -1,8 +1,8 @@
-"""The crew that a command asks for: worker processes of this computer, or a cluster of computers.
+"""The crew for the options of a command: worker processes of this computer, or a cluster of computers.
 
 A cluster is reached through dask.distributed, which comes with the extra `cluster` and is imported when one is asked
-for. It hands batches to its workers, and hands them out again when a worker is lost. `cluster_worker` tells what
-happens on a worker.
+for. It hands batches to its workers, and hands them out again when a worker is lost. `cluster_worker` is the worker's
+side.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ CONNECT_S = 15  # wall time until the scheduler of the cluster must answer
 FETCH_S = 5  # wall time until a worker that has done a batch must have sent its verdicts
 LOOK_S = 1.0  # wall time between two looks at the cluster while no results come
 PATIENCE_NS = 60 * NS_PER_S  # wall time for which a cluster may be without a worker
-BATCH_NS = NS_PER_S  # wall time that a batch should take: the way there and back takes some hundredths of a second
+BATCH_NS = NS_PER_S  # wall time that a batch should take; the transfer takes some hundredths of a second
 MOST = 256  # schedules in a batch
 QUEUED = 2  # batches for each thread of the cluster, so that the next one is there when one is done
 _KEPT = "a results file keeps the findings so far; run the same command again to continue"
@@ -44,17 +44,17 @@ def make_crew(
     shipment: Callable[[], Shipment] | None = None,
     longest_s: float = LONGEST_S,
 ) -> Crew:
-    """Worker processes of this computer, or a cluster.
+    """Return worker processes of this computer, or a cluster.
 
     Args:
-        count: how many schedules there are at most.
+        count: the most schedules.
         jobs: `--jobs`: processes on this computer; None for one on each CPU.
         cluster: `--cluster`: address of a dask scheduler, or local:N; None for none.
         shipment: packs the mission's files; called for a cluster only.
         longest_s: wall time in seconds that a schedule may take.
 
     Raises:
-        UsageError: the options make no sense, or there is no such cluster.
+        UsageError: the options are invalid, or there is no such cluster.
     """
     if jobs is not None and jobs < 1:
         raise UsageError(f"must be 1 or more, not {jobs}", field="--jobs")
@@ -69,7 +69,7 @@ def make_crew(
 
 @contextmanager
 def _own_environment() -> Iterator[None]:
-    """Around what dask's nannies do: they write the variables of their workers into the environment of this process."""
+    """Restore the environment of this process: dask's nannies write the variables of their workers into it."""
     before = dict(os.environ)
     try:
         yield
@@ -100,7 +100,7 @@ class Cluster:
         self._client = self._connected()
         self._threads = 0
         self._looked: Stopwatch | None = None
-        self._deserted: Stopwatch | None = None  # since when there has been no worker
+        self._deserted: Stopwatch | None = None  # time since the last worker was lost
         self._batch = 1
         self._given: dict[Any, tuple[list[Job], Stopwatch]] = {}  # by future
         self._again: list[Job] = []
@@ -125,7 +125,7 @@ class Cluster:
             if self._name and self._client.status == "running":
                 self._client.unregister_worker_plugin(self._name)
         except Exception:
-            pass  # the cluster went away; so did what this would have ended
+            pass  # the cluster has stopped, and its plugin with it
         self._client.close()
         if self._local is not None:
             with _own_environment():
@@ -136,7 +136,7 @@ class Cluster:
             target: Any = self._address
             if self._address.startswith(LOCAL):
                 target = self._local = self._started(self._address.removeprefix(LOCAL))
-            else:  # a client would start its threads first, and keep them when it then cannot read the address
+            else:  # check first: a client with an invalid address would leave its threads running
                 self._distributed.comm.get_address_host_port(self._address)
             client = self._distributed.Client(target, timeout=CONNECT_S, set_as_default=False)
         except (OSError, ValueError) as error:
@@ -162,7 +162,7 @@ class Cluster:
             return self._distributed.LocalCluster(n_workers=int(count), **options)
 
     def _set_up(self, trial: Experiment) -> None:
-        """Bring the trial and its files to all workers, and to those that come later."""
+        """Send the trial and its files to all workers, including later ones."""
         from cfepy.extra.exploration.cluster_worker import Desk
 
         name = f"cfepy-{self._client.id}"
@@ -189,7 +189,7 @@ class Cluster:
             future.add_done_callback(self._done.put)
 
     def _wait(self) -> list[NumberedVerdict]:
-        """Wait for a batch, with a look at the cluster now and then."""
+        """Wait for a batch, and check the cluster regularly."""
         try:
             future = self._done.get(timeout=LOOK_S)
         except Empty:
@@ -211,7 +211,7 @@ class Cluster:
         return results
 
     def _failed(self, jobs: list[Job], error: Any) -> list[NumberedVerdict]:
-        """Handle a batch without verdicts: its schedules are tried again one by one; a single one counts as died.
+        """Handle a batch without verdicts: try its schedules again one by one; a single schedule counts as died.
 
         Raises:
             UsageError: the workers cannot run the campaign at all.
@@ -227,17 +227,17 @@ class Cluster:
         return [(number, self._died(schedule, fate, str(error))) for number, schedule in jobs]
 
     def _give_up(self) -> None:
-        """Cancel the batches that are still out."""
+        """Cancel the unfinished batches."""
         try:
             if self._client.status == "running":
                 self._client.cancel(list(self._given), force=True)
         except (OSError, CancelledError):
-            pass  # the scheduler has gone, and with it all that was to be cancelled
+            pass  # the scheduler has stopped, so there is nothing to cancel
         self._given.clear()
         self._again.clear()
 
     def _adapt(self, size: int, elapsed_ns: int) -> None:
-        """Batches wait for their turn behind others of the same thread, which the time since they went out includes."""
+        """Adapt the batch size. The elapsed time includes the wait behind other batches of the same thread."""
         fitting = QUEUED * size * BATCH_NS // max(elapsed_ns, 1)
         self._batch = max(1, min(fitting, 2 * self._batch, MOST))
 
@@ -247,10 +247,10 @@ class Cluster:
         return self._threads
 
     def _check(self) -> None:
-        """Look whether there is still a scheduler with workers.
+        """Check that there is still a scheduler with workers.
 
         Raises:
-            UsageError: there is not.
+            UsageError: there is none.
         """
         if self._client.status != "running":
             raise self._lost()
@@ -271,7 +271,7 @@ class Cluster:
 
 
 def _distributed() -> Any:
-    """dask.distributed, which does not write pages of its own about what a `UsageError` tells in a line.
+    """Return dask.distributed, with its own long log messages turned off, because a `UsageError` reports the error.
 
     Raises:
         UsageError: it is not installed.

@@ -1,9 +1,9 @@
 """A crew of worker processes on this computer.
 
-Each worker is a Python interpreter of its own, started afresh: forking a process that has run missions would copy its
-threads' locks without the threads. It stays for the whole campaign, with all that it has imported and compiled. Work
-goes out in small batches, some tenth of a second each. When a worker dies or hangs, the schedules of its batch are
-tried again, each alone; one that ends its worker alone twice gets that as its verdict.
+Each worker is a new Python interpreter: forking a process that has run missions would copy its threads' locks without
+the threads. It stays for the whole campaign, with all that it has imported and compiled. Work goes out in small
+batches, some tenth of a second each. If a worker dies or hangs, the schedules of its batch are tried again, each alone.
+A schedule that ends its worker alone twice gets that as its verdict.
 """
 
 from __future__ import annotations
@@ -37,25 +37,25 @@ PROCESS_DIED = "process died"
 LONGEST_S = 120.0
 BATCH_NS = NS_PER_S // 10  # wall time that a batch should take
 MOST = 64  # schedules in a batch
-TRIES = 2  # deaths alone until a schedule is blamed; one may be the fault of the computer
-FALSE_STARTS = 3  # workers in a row that do not come up until there is no point in going on
-LAST_WORDS = 4000  # bytes of what a worker wrote to its standard error
-START_NS = 60 * NS_PER_S  # wall time that a worker may take to come up
+TRIES = 2  # deaths alone until a schedule is blamed; one death may be the computer's fault
+FALSE_STARTS = 3  # successive workers that do not start before the crew gives up
+LAST_WORDS = 4000  # bytes of a worker's standard error
+START_NS = 60 * NS_PER_S  # wall time that a worker may take to start
 ABORT_S = 5.0  # wall time to write down the stacks
 
 _GROUP: dict[str, Any] = {"process_group": 0}
-"""With what it forks; Ctrl-C on the terminal goes to this process alone."""
+"""A group of its own for the worker and its children; Ctrl-C on the terminal goes to this process alone."""
 if sys.platform == "win32":
     _GROUP = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
 
 
 def usable_cpus() -> int:
-    """How many CPUs this process may use."""
+    """Return the number of CPUs that this process may use."""
     return len(allowed_cpus())
 
 
 def _let_append(file: IO[bytes]) -> None:
-    """What any process writes to a file goes to its end; on Windows, after zeros in place of what was emptied."""
+    """Make all writes to a file append. On Windows, they continue after zeros if the file was emptied."""
     if os.name == "posix":
         import fcntl
 
@@ -63,17 +63,17 @@ def _let_append(file: IO[bytes]) -> None:
 
 
 class Worker:
-    """A worker process, seen from the one that started it.
+    """A worker process, as its parent process uses it.
 
     Args:
         trial: pickled.
-        folder: where it runs; None is where this process does.
+        folder: working directory; None for the one of this process.
         environ: its variables, without those that Python needs; None takes those of this process.
 
     Attributes:
         connection: to it; readable when it has answered or is dead.
         jobs: the batch that it works on, empty when it is idle.
-        ready: it is up and has the trial.
+        ready: it has started and has the trial.
     """
 
     def __init__(self, trial: bytes, folder: Path | None = None, environ: Mapping[str, str] | None = None) -> None:
@@ -81,8 +81,8 @@ class Worker:
         self.ready = False
         self._watch = Stopwatch()
         self._said = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115  # as long as the worker
-        self._scratch = tempfile.TemporaryDirectory(prefix="cfepy-worker-")  # it may be killed, and cannot tidy up then
-        _let_append(self._said)  # so that it can be emptied under the worker's hands
+        self._scratch = tempfile.TemporaryDirectory(prefix="cfepy-worker-")  # a killed worker cannot clean up
+        _let_append(self._said)  # so that it can be emptied while the worker writes
         self.connection, theirs = Pipe()
         with theirs:
             self._process = subprocess.Popen(
@@ -112,13 +112,13 @@ class Worker:
         return self._watch.elapsed_ns()
 
     def give(self, jobs: Sequence[Job]) -> None:
-        """Let it work on a batch."""
+        """Give it a batch."""
         self.jobs = list(jobs)
         self._watch = Stopwatch()
         self._send(pickle.dumps(self.jobs))
 
     def answer(self) -> list[NumberedVerdict]:
-        """What it found; nothing when it only tells that it is up.
+        """Return its verdicts; an empty list for its message that it has started.
 
         Raises:
             EOFError: it is dead.
@@ -140,7 +140,7 @@ class Worker:
         return found
 
     def fate(self) -> str:
-        """How it ended; called when it is about to."""
+        """Return how it ended. Call this only when it is about to end."""
         status = self._process.wait()
         if status >= 0:
             return f"ended with exit status {status}"
@@ -148,13 +148,13 @@ class Worker:
         return f"killed by {name}" + (" (no memory left?)" if name == "SIGKILL" else "")
 
     def last_words(self) -> str:
-        """The end of what it wrote to its standard error."""
+        """Return the end of its standard error output."""
         size = self._said.seek(0, os.SEEK_END)
         self._said.seek(max(0, size - LAST_WORDS))
         return self._said.read().decode("utf-8", "replace").strip("\0 \t\r\n")
 
     def abort(self) -> None:
-        """End it, with its stacks for last words."""
+        """Abort it, so that it writes its stacks before it ends."""
         self._end_with("SIGABRT")
         try:
             self._process.wait(ABORT_S)
@@ -162,7 +162,7 @@ class Worker:
             self._end_with("SIGKILL")
 
     def close(self) -> None:
-        """End it, and what it has forked."""
+        """End it and its child processes."""
         self._end_with("SIGKILL")
         self._process.wait()
         self.connection.close()
@@ -170,7 +170,7 @@ class Worker:
         self._scratch.cleanup()
 
     def _end_with(self, name: str) -> None:
-        """Give a signal to it and to what it has forked; on Windows, where there is neither, end it."""
+        """Send a signal to it and its child processes; on Windows, which has neither, end it."""
         if os.name == "nt":
             self._process.kill()
             return
@@ -183,16 +183,16 @@ class Worker:
         try:
             self.connection.send_bytes(data)
         except OSError:
-            pass  # it is dead; the caller sees that when it waits for the answer
+            pass  # it is dead; the caller notices when it waits for the answer
 
 
 class Processes:
     """A crew of worker processes.
 
     Args:
-        count: how many; None for one on each CPU.
+        count: number of processes; None for one on each CPU.
         longest_s: wall time in seconds that a schedule may take.
-        folder: where workers run; None is where this process does.
+        folder: working directory of workers; None for the one of this process.
         environ: variables of workers; None takes those of this process.
     """
 
@@ -251,7 +251,7 @@ class Processes:
         worker.close()
 
     def _wait(self) -> Iterator[NumberedVerdict]:
-        """Wait for an answer or the end of a worker, and return the verdicts."""
+        """Wait for an answer or the end of a worker. Yields the verdicts."""
         busy = {worker.connection: worker for worker in self.workers}
         left_ns = min(self._left_ns(worker) for worker in self.workers if worker.jobs)
         for connection in wait(list(busy), max(0, left_ns) / NS_PER_S):
@@ -278,10 +278,10 @@ class Processes:
         return results
 
     def _bury(self, worker: Worker, fate: str) -> list[NumberedVerdict]:
-        """Take leave of a dead worker: verdicts on schedules that are to blame, the others are tried again.
+        """Remove a dead worker. Returns verdicts on the schedules to blame; the others are tried again.
 
         Raises:
-            UsageError: workers do not even come up.
+            UsageError: workers do not start at all.
         """
         jobs, ready, words = worker.jobs, worker.ready, worker.last_words()
         self._drop(worker)
@@ -297,11 +297,11 @@ class Processes:
 
 
 def died(schedule: Schedule, fate: str, words: str) -> Verdict:
-    """The verdict on a schedule that ends the process in which it is flown.
+    """Return the verdict on a schedule that ended the process in which it was flown.
 
     Args:
-        schedule: which one.
+        schedule: the schedule.
         fate: how the process ended.
-        words: the last ones of the process, such as its stacks.
+        words: the last output of the process, such as its stacks.
     """
     return Verdict(schedule, (Failure(PROCESS_DIED, "", f"the process died: {fate}", detail=words),))

@@ -1,8 +1,8 @@
 """The public functions of OSAL, the PSP and cFE in C's terms: a module for each service.
 
-Each module has `declare(api, c)`, which adds its functions to the API: name, signature (`engine/calls.c` tells the
-letters), the Python function that answers, and the status for a NULL pointer where there must not be one. Functions
-raise `CfeError` or `OsalError` for a status, as the services do.
+Each module has `declare(api, c)`, which adds its functions to the API. A declaration has the name, the signature
+(`engine/calls.c` lists the letters), the Python function, and the status for a NULL pointer where it is not allowed.
+Functions raise `CfeError` or `OsalError` for a status, as the services do.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
     """Add all functions.
 
     Args:
-        api: where they are added.
+        api: receives the functions.
         c: the C side of the processor that answers.
     """
     for module in _MODULES:
@@ -70,7 +70,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
 
 class _Anything:
-    """Stands for a processor where only the names of functions are wanted."""
+    """A stand-in for a processor when only the names of functions are wanted."""
 
     def __getattr__(self, name: str) -> _Anything:
         return self
@@ -80,7 +80,7 @@ class _Anything:
 
 
 def function_names() -> set[str]:
-    """The functions that compiled code can call."""
+    """Return the names of the functions that compiled code can call."""
     from cfepy.extra.c.calls import Declarations
 
     api = Declarations()

@@ -1,4 +1,4 @@
-"""CFE_ES_*CDS*: the Critical Data Store for C. What tells names and ids of blocks is in `es`."""
+"""CFE_ES_*CDS*: the Critical Data Store for C. The functions for names and ids of blocks are in `es`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ BAD = CFE_ES_BAD_ARGUMENT
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """CFE_ES_DeleteCDS is not in cfe_es.h, but of the core for the core."""
+    """Add the functions. CFE_ES_DeleteCDS is not in cfe_es.h: it is an internal function of the core."""
     es, memory = c.handle.es, c.memory
 
     def register(out: int, size: int, name: str | None) -> int:

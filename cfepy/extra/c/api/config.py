@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    """Texts and arrays that the functions point to stay where they are."""
+    """Add the functions. The texts and arrays that they point to stay in place."""
     config, memory, constants = c.handle.config, c.memory, c.constants
 
     def get_object(config_id: int) -> int:

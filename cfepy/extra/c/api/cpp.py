@@ -1,7 +1,7 @@
-"""What the compilers' own libraries (libstdc++, libgcc) and the code of C++ need of libc and of the loader.
+"""The functions of libc and of the loader that the compilers' libraries (libstdc++, libgcc) and C++ code need.
 
-Destructors of static objects run when their object is unloaded, those of thread-local ones when their task returns.
-Exceptions are libgcc's: it asks here where the tables of a function are.
+Destructors of static objects run when their object is unloaded. Destructors of thread-local objects run when their task
+returns. Exceptions are libgcc's, which asks here for the tables of a function.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 FOUND_OBJECT = struct.Struct("<QQQQQ")
 """struct dl_find_object of glibc: flags, lowest and highest address, link map, address of the unwind table."""
 OBJECT_INFO = struct.Struct("<QQQHxxxxxxQQQQ")
-"""struct dl_phdr_info: base, name, headers, how many, loads, unloads, module and block of thread-local variables."""
+"""struct dl_phdr_info: base, name, headers, their number, loads, unloads, module and block of thread-locals."""
 NOT_FOUND = -1
 WAIT_MS = 1
-"""How long a task waits before it looks again whether another one has initialised a static variable."""
+"""Time until a task checks again whether another task has initialised a static variable."""
 
 THROWN_WITHOUT_EXCEPTIONS = {
     "_ZSt17__throw_bad_allocv": "std::bad_alloc",
@@ -59,7 +59,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_lives(api: Declarations, c: CRuntime) -> None:
-    """Thread-local variables, and what is called at an end."""
+    """Add functions for thread-local variables and for calls at an end."""
     memory, thread_locals = c.memory, c.thread_locals
 
     def tls_get_addr(index: int) -> int:
@@ -86,7 +86,7 @@ def _declare_lives(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_unwinding(api: Declarations, c: CRuntime) -> None:
-    """Where the tables of a function are by which exceptions find its frames."""
+    """Add functions that locate a function's tables, by which exceptions find its frames."""
     memory = c.memory
     rooms: list[int] = []
 

@@ -1,4 +1,4 @@
-"""CFE_ES_*: Executive Services for C, but for pools and the Critical Data Store (`memory_pools`)."""
+"""CFE_ES_*: Executive Services for C, except pools (`memory_pools`) and the Critical Data Store (`cds`)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 BAD = CFE_ES_BAD_ARGUMENT
 APP_RUN = 1
 APP_INFO = struct.Struct("<II20s20s64sQI4xQQQQQQQBxHII20sI4x")
-"""CFE_ES_AppInfo_t of a computer with 64 bits."""
+"""CFE_ES_AppInfo_t on a 64-bit computer."""
 TASK_INFO = struct.Struct("<II20sI20s4xQH6x")
 """CFE_ES_TaskInfo_t."""
 
@@ -34,7 +34,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
 
 def refuse(c: CRuntime, text: str) -> NoReturn:
-    """Say what a pointer is missing, and refuse the call.
+    """Log a missing pointer, and refuse the call.
 
     Raises:
         CfeError: CFE_ES_BAD_ARGUMENT.
@@ -44,7 +44,7 @@ def refuse(c: CRuntime, text: str) -> NoReturn:
 
 
 def _declare_lives(api: Declarations, c: CRuntime) -> None:
-    """The life of applications and of the processor."""
+    """Add functions for the life of applications and of the processor."""
     es, memory = c.handle.es, c.memory
 
     def run_loop(status: int) -> bool:
@@ -76,7 +76,7 @@ def _declare_lives(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_ids(api: Declarations, c: CRuntime) -> None:
-    """Ids and names."""
+    """Add functions for ids and names."""
     es = c.handle.es
     for what, to_index in (
         ("App", es.app_id_to_index),
@@ -102,12 +102,12 @@ def _declare_ids(api: Declarations, c: CRuntime) -> None:
         ("GenCounter", es.get_gen_counter_name),
         ("CDSBlock", es.get_cds_block_name),
     ):
-        too_long = BAD if what == "Task" else CFE_SUCCESS  # OSAL's names of tasks are told when they are cut
+        too_long = BAD if what == "Task" else CFE_SUCCESS  # OSAL reports a cut name of a task
         api.add(f"CFE_ES_Get{what}Name", "pIQ", name_into(c.memory, name_of, BAD, too_long))
 
 
 def _declare_info(api: Declarations, c: CRuntime) -> None:
-    """What is known of applications, libraries and tasks."""
+    """Add functions for information about applications, libraries and tasks."""
     es, memory = c.handle.es, c.memory
 
     def put_info(at: int, info: AppInfo) -> None:
@@ -181,7 +181,7 @@ def _declare_info(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_tasks(api: Declarations, c: CRuntime) -> None:
-    """Child tasks."""
+    """Add functions for child tasks."""
     es, memory = c.handle.es, c.memory
 
     def create(out: int, name: str | None, entry: int, stack: int, size: int, priority: int, flags: int) -> None:
@@ -204,7 +204,7 @@ def _declare_tasks(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_counters(api: Declarations, c: CRuntime) -> None:
-    """Generic counters."""
+    """Add functions for generic counters."""
     es = c.handle.es
     api.add("CFE_ES_RegisterGenCounter", "4S", es.register_gen_counter, BAD)
     api.add("CFE_ES_DeleteGenCounter", "I", es.delete_gen_counter)
@@ -214,7 +214,7 @@ def _declare_counters(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_rest(api: Declarations, c: CRuntime) -> None:
-    """The system log, performance, checksums, the background task."""
+    """Add functions for the system log, performance, checksums and the background task."""
     es, memory = c.handle.es, c.memory
 
     def calculate_crc(data: int, size: int, crc: int, kind: int) -> int:

@@ -39,7 +39,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
 
 def _set_type_enable(c: CRuntime, event_type: int, enabled: bool) -> None:
-    """Of the core for the core (cfe_evs_core_internal.h), but NASA's functional tests call it."""
+    """Enable or disable an event type. The function is internal (cfe_evs_core_internal.h), but NASA's tests call it."""
     owner = application_of(c.kernel.current.owner)
     app = c.cfe.evs.apps.get(owner.app_id) if owner is not None else None
     if app is not None and 0 < event_type <= CRITICAL:

@@ -81,7 +81,7 @@ def _declare_headers(api: Declarations, c: CRuntime) -> None:
             os.lseek(filedes, 0, OS_SEEK_SET)
         except OsalError as error:
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
-        _put_header(memory, at, c.cfe.fs.stamp_header(header))  # the caller sees it, also when it cannot be written
+        _put_header(memory, at, c.cfe.fs.stamp_header(header))  # the caller sees it even if the write fails
         return fs.write_header(filedes, header)
 
     api.add("CFE_FS_InitHeader", "psI", init_header)
@@ -135,7 +135,7 @@ def _declare_names(api: Declarations, c: CRuntime) -> None:
 
 
 def _text_within(memory: CMemory, at: int, size: int) -> bytes:
-    """The bytes of a text up to its NUL, or as many as there may be; nothing beyond is looked at."""
+    """Return the bytes of a text up to its NUL, at most `size`; nothing beyond is read."""
     found = bytearray()
     while len(found) < size:
         piece = memory.peek(at + len(found), min(size - len(found), 64 - (at + len(found)) % 64))
@@ -150,7 +150,7 @@ def _text_within(memory: CMemory, at: int, size: int) -> bytes:
 
 
 class CFileWrite:
-    """A background write as C describes it (CFE_FS_FileWriteMetaData_t), a `FileWrite`: all stands in the memory of C.
+    """A `FileWrite` for a background write that C describes (CFE_FS_FileWriteMetaData_t). All data is in C's memory.
 
     Args:
         c: the C side of the processor.
@@ -168,13 +168,13 @@ class CFileWrite:
         self._memory = c.memory
 
     def has_functions(self) -> bool:
-        """Whether both functions are there; C code may say NULL."""
+        """Return True if both functions are there; C code may pass NULL."""
         at = self._at
         return bool(self._memory.u64(at + self._GET_DATA_AT) and self._memory.u64(at + self._ON_EVENT_AT))
 
     @property
     def is_pending(self) -> bool:
-        """IsPending of the structure, at which C code may look itself."""
+        """IsPending of the structure, which C code may read itself."""
         return bool(self._memory.u8(self._at))
 
     @is_pending.setter
@@ -188,17 +188,17 @@ class CFileWrite:
 
     @property
     def description(self) -> str:
-        """For the header of the file."""
+        """The description in the header of the file."""
         return from_bytes(self._memory.peek(self._at + self._DESCRIPTION_AT, DESCRIPTION_SIZE))
 
     @property
     def file_subtype(self) -> int:
-        """For the header of the file."""
+        """The subtype in the header of the file."""
         return self._memory.u32(self._at + self._SUBTYPE_AT)
 
     @property
     def get_data(self) -> Callable[[int], tuple[bytes, bool]]:
-        """GetData(Meta, RecordNum, &Buffer, &BufSize), which says whether the record is the last one."""
+        """GetData(Meta, RecordNum, &Buffer, &BufSize), which returns whether the record is the last one."""
         function = self._memory.u64(self._at + self._GET_DATA_AT)
         return lambda record: self._ask(function, record)
 

@@ -1,7 +1,7 @@
-"""What libgcov needs to write the counts of an object that was compiled with --coverage: files of the host.
+"""Host files for libgcov, which writes the counts of an object that was compiled with --coverage.
 
-An application reaches the files of the run through OSAL. These functions are for libgcov, which is linked into the
-object, and for its files alone: their names end in .gcda, and a folder is made below GCOV_PREFIX only.
+An application reaches the files of the run through OSAL. These functions are only for libgcov, which is linked into the
+object, and only for its files: their names end in .gcda, and a folder is made only below GCOV_PREFIX.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ SETTINGS = (PREFIX, "GCOV_PREFIX_STRIP")
 FLOCK = 32
 """Bytes of struct flock."""
 STREAM = 0x1000
-"""The first number that stands for a FILE of libgcov."""
+"""The first handle of a libgcov FILE."""
 FAILED = -1
 
 
@@ -34,14 +34,14 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_files(api: Declarations, c: CRuntime) -> None:
-    """Files by name and number."""
-    import fcntl  # the engine is for Linux, but tools elsewhere read what is declared
+    """Add functions for files by name and number."""
+    import fcntl  # the engine is for Linux, but tools on other systems read the declarations
 
     memory = c.memory
     opened: set[int] = set()
 
     def failing(call: Callable[[], object]) -> int:
-        """The number that a call of the host gives, 0 for another answer, or -1 with errno."""
+        """Return the number that a call of the host gives, 0 for another answer, or -1 with errno."""
         try:
             answer = call()
             return answer if isinstance(answer, int) else 0
@@ -86,7 +86,7 @@ def _declare_files(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_streams(api: Declarations, c: CRuntime) -> None:
-    """Files as streams."""
+    """Add functions for files as streams."""
     memory = c.memory
     streams: dict[int, IO[bytes]] = {}
 
@@ -121,7 +121,7 @@ def _declare_streams(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_rest(api: Declarations, c: CRuntime) -> None:
-    """The environment."""
+    """Add functions for the environment."""
 
     def get_environment(name: str) -> int:
         value = os.environ.get(name) if name in SETTINGS else None

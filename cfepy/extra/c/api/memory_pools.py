@@ -1,6 +1,6 @@
 """CFE_ES_Pool*, CFE_ES_*PoolBuf*: memory pools for C.
 
-The bytes of a pool are the caller's, as in C. Under the guard the pool keeps its books in them, and its blocks are
+The bytes of a pool are the caller's, as in C. With the guard, the pool keeps its records in them, and its blocks are
 elsewhere.
 """
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 BAD = CFE_ES_BAD_ARGUMENT
 ALIGNMENT = 16
-"""Of CFE_ES_PoolAlign_t, the largest of pointer, long long, double and long double, on x86-64 and aarch64."""
+"""Alignment of CFE_ES_PoolAlign_t: the largest of pointer, long long, double, long double (x86-64 and aarch64)."""
 DEFAULT_SIZES = ES_MEM_BLOCK_SIZES[::-1]
-"""As the configuration registry has them: the largest first."""
+"""In the order of the configuration registry: the largest first."""
 MOST = 1 << 40
-"""Bytes of the view of a pool: no pool is larger, whatever somebody says."""
+"""Bytes of the view of a pool: no pool is larger, whatever size the caller gives."""
 POOL_STATS = struct.Struct("<QIIQ")
 """The head of CFE_ES_MemPoolStats_t; then there are 17 of these: size, created, free."""
 POOL_FIELDS = ("PoolSize", "NumBlocksRequested", "CheckErrCtr", "NumFreeBytes")
@@ -35,7 +35,7 @@ BLOCK_STATS = struct.Struct("<QII")
 
 
 class Lent(NamedTuple):
-    """A block that a pool has lent: where it is in the pool, and where the application has its bytes."""
+    """A block that a pool has lent: its offset in the pool, and the address that the application uses."""
 
     pool: MemPool
     offset: int
@@ -45,8 +45,8 @@ class Lent(NamedTuple):
 class GuardedPools:
     """Blocks of pools in pages of their own.
 
-    A pool lends its offsets as ever. Each time it does, an application gets another address for it, which is not used
-    again: an address that was given back still tells the pool which block it means.
+    A pool lends its offsets as usual. Each time, the application gets another address for the block. Addresses are not
+    used again, so an address that was given back still identifies its block.
 
     Args:
         c: the C side of the processor.
@@ -61,7 +61,7 @@ class GuardedPools:
         c.at_app_end.append(self._sweep)
 
     def lend(self, block: PoolBlock, size: int) -> int:
-        """The address of a block of `size` bytes that a pool has just lent."""
+        """Return an address for a block of `size` bytes that a pool has just lent."""
         owner = self._c.kernel.current.owner
         pool, app = block.pool, "" if owner is None else owner.name
         address = self._guard.take(size, "a pool block", app, pool.blocks.alignment)
@@ -70,7 +70,7 @@ class GuardedPools:
         return address
 
     def in_pool(self, address: int) -> int:
-        """The address in its pool of what an application has an address of."""
+        """Translate an application's address to the address in the pool."""
         near = self._guard.near(address)
         lent = None if near is None else self._all.get(near[0])
         if lent is None:
@@ -79,10 +79,10 @@ class GuardedPools:
         return start + lent.offset + address - lent.address
 
     def refuse_old(self, address: int, function: str) -> None:
-        """Refuse the address of a block that was given back, and whose place in the pool somebody else has now.
+        """Refuse the address of a returned block if its place in the pool was lent again.
 
         Raises:
-            CFault: it is one; the pool would take it for the other one's.
+            CFault: it is such an address; the pool would take it for the new block.
         """
         lent = self._all.get(address)
         now = None if lent is None else self._lent.get((lent.pool, lent.offset))
@@ -90,19 +90,19 @@ class GuardedPools:
             raise CFault(f"{function}() of 0x{address:x}, a pool block that was already returned and reused")
 
     def leave(self, block: PoolBlock) -> Lent | None:
-        """A block is about to be given back; what `gone` or `stay` takes."""
+        """Begin to give back a block. Pass the result to `gone` or `stay`."""
         return self._lent.pop((block.pool, block.offset), None)
 
     def stay(self, lent: Lent | None) -> None:
-        """The pool has not taken it."""
+        """Keep a block that the pool did not take back."""
         if lent is not None:
             self._lent[lent.pool, lent.offset] = lent
 
     def gone(self, lent: Lent | None) -> None:
-        """The pool has taken it.
+        """Release a block that the pool has taken back.
 
         Raises:
-            CFault: it was written past.
+            CFault: the application wrote past the block.
         """
         if lent is not None:
             try:
@@ -111,17 +111,17 @@ class GuardedPools:
                 self._guard.give(lent.address)
 
     def forget(self, pool: MemPool | None) -> None:
-        """A pool was deleted. Its blocks are still memory of the application's, which may use them.
+        """Forget a deleted pool. Its blocks are still the application's memory, which it may use.
 
         Raises:
-            CFault: one was written past.
+            CFault: the application wrote past a block.
         """
         mine = [self._lent.pop(key) for key in list(self._lent) if key[0] is pool]
         for lent in mine:
             self._guard.check(lent.address, "CFE_ES_PoolDelete()")
 
     def _sweep(self) -> None:
-        """An application has ended: the blocks of its pools are gone with its memory."""
+        """Release the blocks of pools that ended with their application."""
         pools = list(self._c.cfe.es.pools)
         for key in [each for each in self._lent if each[0] not in pools]:
             self._guard.give(self._lent.pop(key).address)
@@ -196,7 +196,7 @@ def _declare_blocks(api: Declarations, c: CRuntime, guarded: GuardedPools | None
         return size, memory.address_of(block.memory) if guarded is None else guarded.lend(block, size)
 
     def block_at(handle: int, at: int) -> PoolBlock:
-        """The block that C means by its address; some block where there is no such pool, which is found out later."""
+        """Return the block at C's address. Without such a pool, return any block, because a later check refuses it."""
         need(BAD, at)
         pool = pools.find(handle) or no_pool
         place = at if guarded is None else guarded.in_pool(at)

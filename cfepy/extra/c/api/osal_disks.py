@@ -1,4 +1,4 @@
-"""OS_mkfs, OS_mount, OS_TranslatePath and their kin: file systems for C."""
+"""OS_mkfs, OS_mount, OS_TranslatePath and related functions: file systems for C."""
 
 from __future__ import annotations
 

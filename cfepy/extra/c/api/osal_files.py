@@ -1,6 +1,6 @@
-"""OS_OpenCreate, OS_read, OS_stat, OS_DirectoryOpen and their kin: files and folders for C.
+"""OS_OpenCreate, OS_read, OS_stat, OS_DirectoryOpen and related functions: files and folders for C.
 
-A descriptor may be a socket, which can be polled: reading and writing cost virtual time.
+A descriptor may be a socket, which can be polled, so reading and writing cost virtual time.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def _declare_descriptors(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_transfers(api: Declarations, c: CRuntime) -> None:
-    """Reading and writing: status codes are numbers below 0, other results counts of bytes."""
+    """Add functions for reading and writing. Status codes are below 0, other results are counts of bytes."""
     os, memory = c.handle.os, c.memory
     timed_read = in_time(os.timed_read, OS_ERROR_TIMEOUT)
     timed_read_abs = in_time(os.timed_read_abs, OS_ERROR_TIMEOUT)

@@ -1,7 +1,7 @@
 """OS_Module*, OS_Symbol*: loading code, and finding functions and variables by name, for C.
 
-OS_SymbolLookup finds what the dynamic linker of Linux would: first the functions of cFE, OSAL and the PSP and what
-libraries export, then what modules and applications have.
+OS_SymbolLookup searches as the dynamic linker of Linux does: first the functions of cFE, OSAL and the PSP and the
+exports of libraries, then modules and applications.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 MODULE_INFO = Struct(f"<QQ{OS_MAX_PATH_LEN}s{OS_MAX_API_NAME}s4xIIQQQQQQ")
 """OS_module_prop_t."""
 _LATE = (OS_ERROR, OS_FS_ERR_PATH_INVALID, OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_NAME_TOO_LONG, OS_INVALID_POINTER)
-"""What fails when the module has its id already."""
+"""Statuses of failures after the module has got its id."""
 
 
 def declare(api: Declarations, c: CRuntime) -> None:

@@ -1,4 +1,4 @@
-"""OS_ForEachObject, OS_GetResourceName, OS_GetErrorName and their kin: object ids and status codes for C."""
+"""OS_ForEachObject, OS_GetResourceName, OS_GetErrorName and related functions: object ids and status codes for C."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
     def get(queue_id: int, data: int, size: int, size_copied: int, timeout: int) -> None:
         check_size(size)
-        # A negative time other than OS_PEND ends at once, in the past.
+        # A negative timeout other than OS_PEND is in the past, so it ends at once.
         message = os.queue_get(queue_id, timeout if timeout >= OS_PEND else OS_CHECK, size=size)
         memory.put_u64(size_copied, len(message) if message is not None else 0)
         if message is None:

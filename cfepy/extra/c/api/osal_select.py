@@ -20,7 +20,7 @@ SET_BYTES = (OS_MAX_NUM_OPEN_FILES + 7) // 8
 
 
 def read_set(memory: CMemory, at: int) -> FdSet | None:
-    """The set at an address; None for NULL."""
+    """Return the set at an address; None for NULL."""
     if not at:
         return None
     made = FdSet()
@@ -30,7 +30,7 @@ def read_set(memory: CMemory, at: int) -> FdSet | None:
 
 
 def write_set(memory: CMemory, at: int, fd_set: FdSet | None) -> None:
-    """Write a set back; nothing for NULL."""
+    """Write a set back; do nothing for NULL."""
     if fd_set is not None:
         memory.poke(at, sum(1 << slot for slot in fd_set.slots).to_bytes(SET_BYTES, "little"))
 

@@ -1,6 +1,6 @@
 """OS_BinSem*, OS_CountSem*, OS_MutSem*: semaphores and mutexes for C.
 
-Tasks may hand the processor to each other with these for ever: each costs virtual time.
+Tasks could pass the processor to each other forever with these calls, so each call costs virtual time.
 """
 
 from __future__ import annotations

@@ -37,14 +37,14 @@ ADDRESS_BYTES = 40
 OPTIONS = (0, 1)
 """OS_socket_option_t below OS_socket_option_MAX."""
 BROKEN = -1
-"""A domain that there is not."""
+"""A domain that does not exist."""
 _LENGTH = Struct("<Q")
 _FAMILY = Struct("<H")
 _PORT = Struct(">H")
 
 
 class Family(NamedTuple):
-    """What Linux has for a domain: the number of its family, the bytes of a sockaddr, and where in it the host is."""
+    """Linux's data of a domain: the number of its family, the bytes of a sockaddr, and the place of the host in it."""
 
     domain: int
     number: int
@@ -59,12 +59,12 @@ _BY_NUMBER = {family.number: family for family in FAMILIES}
 
 
 def read_address(memory: CMemory, at: int) -> SockAddr:
-    """An OS_SockAddr_t, whatever its length."""
+    """Read an OS_SockAddr_t of any length."""
     return _read(memory, at)[0]
 
 
 def read_target(memory: CMemory, at: int) -> SockAddr:
-    """An OS_SockAddr_t; of a domain that there is not when its length is not that of its family."""
+    """Read an OS_SockAddr_t. Its domain is invalid if its length does not match its family."""
     address, is_whole = _read(memory, at)
     return address if is_whole else SockAddr(BROKEN)
 

@@ -1,4 +1,4 @@
-"""OS_API_Init, OS_HeapGetInfo, OS_BSP_* and their kin: what is around flight software, for C.
+"""OS_API_Init, OS_HeapGetInfo, OS_BSP_* and related functions: the environment of flight software, for C.
 
 OS_Application_Startup can be found by its name, as on a board; it runs there before there are applications.
 """
@@ -63,7 +63,7 @@ def _declare_board(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_host(api: Declarations, c: CRuntime) -> None:
-    """Memory, network, shell."""
+    """Add functions for memory, network and shell."""
     os, memory = c.handle.os, c.memory
 
     def heap_info(at: int) -> None:

@@ -1,6 +1,6 @@
 """OS_Task*: OSAL's tasks for C.
 
-As with NASA's OSAL, such a task belongs to no application: the end of one does not end it.
+As with NASA's OSAL, such a task belongs to no application: it goes on when an application ends.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 TASK_INFO = Struct("<20sIQB7x")
 """OS_task_prop_t."""
 SYSTEM_DATA = 8
-"""Bytes of what the operating system knows a task by (pthread_t); here its id."""
+"""Bytes of the operating system's handle of a task (pthread_t); here its id."""
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
@@ -33,7 +33,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
         return os.task_create(name, run, size, priority, flags, owner=NOBODY, brings_stack=bool(stack))
 
     def delay(milliseconds: int) -> None:
-        if not milliseconds:  # others get their turn, and code may wait for them like this
+        if not milliseconds:  # other tasks get their turn, and code may poll in this way
             c.kernel.charge(c.polling_ns)
         os.task_delay(milliseconds)
 

@@ -1,7 +1,7 @@
-"""OS_GetLocalTime and its kin, OS_TimeBase*, OS_Timer*: the clock, time bases and timers for C.
+"""OS_GetLocalTime and related functions, OS_TimeBase*, OS_Timer*: the clock, time bases and timers for C.
 
-Code may wait by reading a clock again and again: each reading costs virtual time. What else there is for an OS_time_t
-are inline functions of its header. Callbacks run in the task of the time base.
+Code may wait by reading a clock repeatedly, so each reading costs virtual time. Other functions for an OS_time_t are
+inline functions of its header. Callbacks run in the task of the time base.
 """
 
 from __future__ import annotations

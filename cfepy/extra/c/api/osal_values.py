@@ -1,4 +1,4 @@
-"""What the modules of OSAL for C share: ids and properties as outputs, time-outs as status codes, times."""
+"""Shared helpers of the OSAL modules for C: ids and properties as outputs, timeouts as status codes, times."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from cfepy.osal import OS_MAX_API_NAME
 from cfepy.status import OS_ERR_INVALID_SIZE, OS_INVALID_POINTER, CfeError, OsalError
 
 BAD = OS_INVALID_POINTER
-"""What OSAL answers a NULL pointer with."""
+"""OSAL's status for a NULL pointer."""
 NAMED = Struct(f"<{OS_MAX_API_NAME}sI")
-"""The properties of objects that have a name and a creator only, such as OS_queue_prop_t."""
+"""The properties of objects with only a name and a creator, such as OS_queue_prop_t."""
 _TOO_LARGE = 0x7FFFFFFF
 
 
 def properties(memory: CMemory, layout: Struct, fields: Callable[[int], Iterable[Any]]) -> Callable[[int, int], None]:
-    """A function `(id, structure *)` that fills a structure; it is all 0 when there is no such object.
+    """Return a function `(id, structure *)` that fills a structure; all bytes are 0 if there is no such object.
 
     Args:
         memory: of C.
@@ -36,14 +36,14 @@ def properties(memory: CMemory, layout: Struct, fields: Callable[[int], Iterable
 
 
 def new_id(create: Callable[..., int], *late: int) -> Callable[..., tuple[int, int]]:
-    """A function that makes an object, for a signature with "=": gives a status, and the id.
+    """Return a function that makes an object, for a signature with "=". It returns a status and the id.
 
-    OSAL takes an id before the operating system makes the object. What fails after that leaves 0 as the id; what
-    fails before leaves the caller's variable as it is.
+    OSAL takes an id before the operating system makes the object. A later failure leaves 0 as the id. An earlier
+    failure leaves the caller's variable as it is.
 
     Args:
         create: makes it; raises a status.
-        late: the statuses of what the operating system refuses.
+        late: the statuses of failures of the operating system.
     """
 
     def call(*args: Any) -> tuple[int, int]:
@@ -58,7 +58,7 @@ def new_id(create: Callable[..., int], *late: int) -> Callable[..., tuple[int, i
 
 
 def in_time(call: Callable[..., Any], status: int) -> Callable[..., Any]:
-    """A function that answers with a status where OSAL's gives None or False for a time that was over."""
+    """Return a function that raises a status where OSAL returns None or False after a timeout."""
 
     def timed(*args: Any) -> Any:
         result = call(*args)
@@ -70,7 +70,7 @@ def in_time(call: Callable[..., Any], status: int) -> Callable[..., Any]:
 
 
 def check_size(size: int) -> None:
-    """Refuse a size of 0, or one that no memory has (OS_CHECK_SIZE).
+    """Refuse a size of 0, or one larger than any memory (OS_CHECK_SIZE).
 
     Raises:
         OsalError: OS_ERR_INVALID_SIZE.

@@ -1,4 +1,4 @@
-"""What functions of the API do with pointers again and again."""
+"""Shared helpers of API functions for pointers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cfepy.status import CFE_SUCCESS, CfeError
 
 
 def need(status: int, *pointers: object) -> None:
-    """Refuse NULL, or a text that is one.
+    """Refuse NULL pointers, and texts that are NULL.
 
     Raises:
         CfeError: `status`.
@@ -21,13 +21,13 @@ def need(status: int, *pointers: object) -> None:
 def name_into(
     memory: CMemory, get: Callable[[int], str], no_room: int, too_long: int
 ) -> Callable[[int, int, int], None]:
-    """A function `(char *buffer, id, size_t size)` that tells a name.
+    """Return a function `(char *buffer, id, size_t size)` that writes a name.
 
     Args:
         memory: of C.
         get: gives the name of an id.
         no_room: the status for no buffer, or one of size 0.
-        too_long: the status when the name had to be cut; CFE_SUCCESS where C does not tell.
+        too_long: the status when the name had to be cut; CFE_SUCCESS if C does not report that.
     """
 
     def call(buffer: int, key: int, size: int) -> None:

@@ -1,4 +1,4 @@
-"""CFE_PSP_*: the board for C, but for its memory (`psp_memory`) and its drivers (`psp_iodriver`).
+"""CFE_PSP_*: the board for C, except its memory (`psp_memory`) and its drivers (`psp_iodriver`).
 
 CFE_PSP_Main can be found by its name, as on a board; it runs there before there are applications.
 """
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from cfepy.extra.c.runtime import CRuntime
 
 SIZES = ((16, "H"), (32, "I"), (64, "Q"))
-"""Bits of the numbers whose bytes can be turned round, and their letter in a signature."""
+"""Bits of the numbers whose byte order can be swapped, and their letter in a signature."""
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
@@ -88,7 +88,7 @@ def _declare_identity(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_time(api: Declarations, c: CRuntime) -> None:
-    """Code may wait by reading a clock again and again: each reading costs virtual time."""
+    """Add functions for the clock. Code may wait by reading a clock repeatedly, so each reading costs virtual time."""
     psp = c.handle.psp
     api.add("CFE_PSP_GetTime", "$8", psp.get_time)
     api.add("CFE_PSP_Get_Timebase", "$44", psp.get_timebase)
@@ -136,7 +136,7 @@ def _declare_cds(api: Declarations, c: CRuntime) -> None:
 
 
 def _check_cds(offset: int, size: int, room: int) -> None:
-    """Before memory of C is read: a size that does not fit need not be there."""
+    """Check a size before C's memory is read, because memory of an invalid size may not exist."""
     if offset + size > room:
         raise OsalError(CFE_PSP_ERROR, f"{size} bytes at {offset} are outside the CDS of {room}")
 

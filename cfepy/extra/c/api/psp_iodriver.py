@@ -1,6 +1,6 @@
-"""CFE_PSP_IODriver_*: the PSP's drivers for C. NASA's Linux PSP has one, `linux_sysmon`, which tells the CPU's load.
+"""CFE_PSP_IODriver_*: the PSP's drivers for C. NASA's Linux PSP has one, `linux_sysmon`, which reports the CPU's load.
 
-The load is that of the simulated processor: virtual time that its tasks have used, of the last 30 s.
+The load is the simulated processor's: the virtual time that its tasks have used in the last 30 s.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ MODULES = (
     *("soft_timebase", "timebase_posix_clock", "eeprom_mmap_file", "ram_notimpl"),
     *("port_notimpl", "iodriver", "linux_sysmon", "endian_api"),
 )
-"""The modules of NASA's Linux PSP; their ids follow each other."""
+"""The modules of NASA's Linux PSP, with successive ids."""
 FIRST_ID = 0x0110FF00
 DRIVER = "linux_sysmon"
 LOCATION = Struct("<IHH")
 """CFE_PSP_IODriver_Location_t: module, subsystem, subchannel."""
 READING = Struct("<H6xQ")
-"""CFE_PSP_IODriver_AnalogRdWr_t: how many channels, and where the samples go."""
+"""CFE_PSP_IODriver_AnalogRdWr_t: number of channels, and address for the samples."""
 NOOP, SET_RUNNING, GET_RUNNING, LOOKUP_SUBSYSTEM, LOOKUP_SUBCHANNEL, QUERY_DIRECTION = 0, 1, 2, 5, 6, 8
 ANALOG_NOOP, ANALOG_READ = 0x10000, 0x10001
 INPUT_ONLY = 1
@@ -51,7 +51,7 @@ class CpuMonitor:
         kernel: the processor.
 
     Attributes:
-        load: of the last sample: 0 to `FULL_LOAD`.
+        load: the last sample, 0 to `FULL_LOAD`.
         has_started: whether it was ever started.
     """
 
@@ -63,23 +63,23 @@ class CpuMonitor:
 
     @property
     def is_running(self) -> bool:
-        """Whether it measures."""
+        """Whether it is measuring."""
         return self._task is not None
 
     def start(self) -> None:
-        """Begin to measure; the first sample is there after 30 s."""
+        """Begin to measure. The first sample is available after 30 s."""
         self.load = 0
         self.has_started = True
         self._task = self._kernel.spawn(DRIVER, self._measure, _PRIORITY)
 
     def stop(self) -> None:
-        """Measure no more; the last sample stays."""
+        """Stop measuring. The last sample stays."""
         if self._task is not None:
             self._kernel.kill(self._task)
             self._task = None
 
     def _measure(self) -> None:
-        self._kernel.current.owner = None  # it belongs to the board, and not to whoever switched it on
+        self._kernel.current.owner = None  # it belongs to the board, not to the application that started it
         busy = self._busy_ns()
         while True:
             self._kernel.delay(SAMPLE_S * NS_PER_S)
@@ -91,7 +91,7 @@ class CpuMonitor:
 
 
 def load_of(busy_ns: int, elapsed_ns: int) -> int:
-    """A share of time as the driver tells it: 12 bits of it, twice."""
+    """Return a share of time in the driver's form: its 12 bits, twice."""
     busy_ms, elapsed_ms = busy_ns // NS_PER_MS, elapsed_ns // NS_PER_MS
     if busy_ms >= elapsed_ms:
         return FULL_LOAD
@@ -111,7 +111,7 @@ class SystemMonitor:
         self._cpu = CpuMonitor(c.kernel)
 
     def command(self, code: int, subsystem: int, subchannel: int, argument: int) -> int:
-        """Do what a command wants; a status, or what was asked for."""
+        """Execute a command. Returns a status, or the requested value."""
         if subsystem not in (AGGREGATE, PER_CPU):
             return CFE_PSP_ERROR_NOT_IMPLEMENTED
         if code in (NOOP, ANALOG_NOOP):
@@ -153,7 +153,7 @@ class SystemMonitor:
         return CFE_PSP_SUCCESS if self._cpu.has_started else CFE_PSP_ERROR
 
     def _read_each(self, subchannel: int, argument: int) -> int:
-        """There is one CPU. NASA's gives the samples, and then says that it is not implemented."""
+        """Read the load of each CPU; there is one. NASA's driver gives the samples, but returns "not implemented"."""
         count, samples = READING.unpack(self._c.memory.peek(argument, READING.size))
         if self._cpu.has_started and subchannel == 0 and count == 1:
             self._c.memory.put_u32(samples, self._cpu.load)

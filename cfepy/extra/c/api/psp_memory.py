@@ -1,8 +1,8 @@
 """CFE_PSP_Mem*, CFE_PSP_Eeprom*, CFE_PSP_Port* and the areas of the board's memory, for C.
 
-The board's memory table has a range more: the memory of compiled code itself, as RAM. The reset area, the user reserved
-area and the EEPROM lie in that memory, too, as long as there is compiled code: C code may go by their pointers, and
-other applications see the same bytes. At the end of the processor they are what the retained memory keeps.
+The board's memory table has one more range: the memory of compiled code, as RAM. While there is compiled code, the
+reset area, the user reserved area and the EEPROM also lie in that memory. So C code may use their pointers, and other
+applications see the same bytes. At the end of the processor their contents go to the retained memory.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from cfepy.extra.c.runtime import CRuntime
 
 CODE_RANGE = 3
-"""The number of the range that is the memory of compiled code: the next one after the board's own."""
+"""The number of the range for the memory of compiled code: the next one after the board's own."""
 _WORDS = 8
-"""Bytes to which an area is aligned at least."""
+"""Minimum alignment of an area in bytes."""
 MEM_RAM, MEM_ATTR_READWRITE, WORD = 1, 3, 4
 AREAS = {"reset_area": 0, "eeprom": 1, "user_reserved": 2}
 """The retained areas, and the numbers of their ranges."""
@@ -32,11 +32,11 @@ AREA_NAMES = {"reset_area": "the reset area", "eeprom": "the EEPROM", "user_rese
 
 
 class CodeMemory:
-    """The memory of compiled code as bytes behind a range.
+    """The memory of compiled code as the bytes of a range.
 
     Args:
         memory: of C.
-        base: where the range begins.
+        base: first address of the range.
     """
 
     def __init__(self, memory: CMemory, base: int) -> None:
@@ -71,7 +71,7 @@ class SharedAreas:
         c.at_close.append(self._leave)
 
     def _take(self, c: CRuntime, name: str, size: int) -> memoryview:
-        pointer = c.arena.map(size)  # under the guard, too: what comes later has the address that it has without
+        pointer = c.arena.map(size)  # also with the guard, so that later memory has the same address
         if c.guard is not None:
             pointer = c.guard.take(size, AREA_NAMES[name], alignment=max(alignment_of(size), _WORDS))
         self._places[name] = pointer, size
@@ -83,18 +83,18 @@ class SharedAreas:
             self._psp.move_area(name, bytearray)
 
     def place(self, name: str) -> tuple[int, int]:
-        """The pointer to an area, and its bytes."""
+        """Return the pointer to an area, and its size in bytes."""
         return self._places[name]
 
     def board_address(self, pointer: int) -> int:
-        """The address in the board's table of what C code has a pointer to."""
+        """Translate C's pointer to the address in the board's table."""
         for name, (start, size) in self._places.items():
             if start <= pointer < start + size:
                 return self._psp.mem_range_get(AREAS[name]).start_addr + pointer - start
         return pointer
 
     def pointer(self, number: int, address: int) -> int:
-        """The pointer with which C code reaches the start of a range, if it is one of the areas."""
+        """Return C's pointer to the start of a range if it is one of the areas; otherwise return `address`."""
         for name, (start, _) in self._places.items():
             if AREAS[name] == number:
                 return start

@@ -1,6 +1,6 @@
-"""The part of pthreads that the compilers' libraries and std::mutex, std::call_once and the like use.
+"""The part of pthreads that the compilers' libraries and std::mutex, std::call_once and similar use.
 
-Threads of an application are those of OSAL and ES: there is no pthread_create.
+Threads of an application are tasks of OSAL and ES: there is no pthread_create.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 ONCE_DONE = 2
 FUTEX = {"x86_64": 202, "aarch64": 98}
-"""The system call with which code waits for a static variable of C++ that another task initialises."""
+"""The system call by which code waits for a static C++ variable that another task initialises."""
 FUTEX_COMMANDS = 0x7F
 FUTEX_WAIT = 0
 WAIT_MS = 1
@@ -69,7 +69,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
         return 0
 
     def set_up(attributes: int) -> None:
-        """All mutexes are recursive, as OSAL's are: there is nothing to be kept."""
+        """Do nothing: all mutexes are recursive, as OSAL's are."""
 
     c.on_unload.append(forget_all)
     api.add("pthread_mutexattr_init", "P", set_up, errno.EINVAL)

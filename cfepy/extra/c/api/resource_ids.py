@@ -1,4 +1,4 @@
-"""CFE_ResourceId_*: resource ids for C, where the base of an id is in its place (0x110000), not shifted down (0x11)."""
+"""CFE_ResourceId_*: resource ids for C. The base of an id is in its place (0x110000), not shifted down (0x11)."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
 
 def _to_index(resource_id: int, base: int, size: int) -> int:
-    """As C computes it: an id may be of another kind with the same difference to an odd base."""
+    """Use the arithmetic of NASA's C code: an id of another kind is accepted if its offset from the base matches."""
     serial = resource_id - base & 0xFFFFFFFF
     if serial > ids.SERIAL_MAX or size == 0:
         raise CfeError(CFE_ES_ERR_RESOURCEID_NOT_VALID, f"id 0x{resource_id:x} is not one of base 0x{base:x}")

@@ -1,6 +1,6 @@
-"""CFE_SB_*: the Software Bus for C, and CFE_MSG_*Action: what it does to a message where that starts and arrives.
+"""CFE_SB_*: the Software Bus for C, and CFE_MSG_*Action: its actions on a message at its origin and at its destination.
 
-What only looks at a message is the engine's (`engine/natives_msg.c`).
+Functions that only read a message belong to the engine (`engine/natives_msg.c`).
 """
 
 from __future__ import annotations
@@ -129,7 +129,7 @@ def _declare_messages(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_user_data(api: Declarations, c: CRuntime) -> None:
-    """What the engine leaves to Python: lines in the system log."""
+    """Add the cases that the engine leaves to Python: lines in the system log."""
     log = c.handle.es.write_to_sys_log
 
     def no_user_data(message: int) -> int:
@@ -145,7 +145,7 @@ def _declare_user_data(api: Declarations, c: CRuntime) -> None:
 
 
 def _declare_ids(api: Declarations) -> None:
-    """Message ids of topics. As in NASA's code, a command to instance 0, which is all, has the id of telemetry."""
+    """Add functions for message ids of topics. As in NASA's code, a command to instance 0 has the id of telemetry."""
 
     def command(topic: int, instance: int) -> int:
         return msg.cmd_topic_id_to_msg_id(topic, instance) if instance else msg.global_tlm_topic_id_to_msg_id(topic)

@@ -1,7 +1,7 @@
 """qsort and bsearch of libc, with a comparison in C.
 
-Nothing moves while the comparison is asked: items are compared where they lie, and put in order then. Equal ones keep
-their order, as glibc's merge sort leaves them.
+Items do not move during the comparisons; they are put in order afterwards. Equal items keep their order, as with
+glibc's merge sort.
 """
 
 from __future__ import annotations

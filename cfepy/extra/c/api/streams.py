@@ -1,7 +1,7 @@
-"""stdout and stderr of C code, and what ends it: abort(), exit().
+"""stdout and stderr of C code, and the functions that end it: abort(), exit().
 
-Both streams go to the console of the mission. What was written to stderr last is told when the code aborts: there
-libstdc++ says which exception nobody caught.
+Both streams go to the console of the mission. A report of an abort includes the last lines of stderr, in which
+libstdc++ names an uncaught exception.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     from cfepy.extra.c.runtime import CRuntime
 
 STDIN, STDOUT, STDERR = 3, 1, 2
-"""What stands for a FILE: nobody looks into one. There is nothing to read from stdin."""
+"""Handles of a FILE, whose contents code never reads. There is nothing to read from stdin."""
 EOF = -1
 UNREADABLE = ("getc", "getwc")
 LAST_WORDS = 8
-"""Lines of stderr that an abort tells."""
+"""Lines of stderr in the report of an abort."""
 
 
 class LineWriter:
-    """A stream of text: lines are shown when they are whole, those of each application by themselves.
+    """A stream of text. Lines are shown when they are complete, separately for each application.
 
     Args:
         show: gets the name of an application and a line of it.
@@ -39,24 +39,24 @@ class LineWriter:
         self._begun: dict[str, bytes] = {}
 
     def write(self, app: str, data: bytes) -> None:
-        """Take what an application prints."""
+        """Take printed data of an application."""
         *lines, rest = (self._begun.get(app, b"") + data).split(b"\n")
         self._begun[app] = rest
         for line in lines:
             self._show(app, line.decode("utf-8", "surrogateescape"))
 
     def finish(self, app: str) -> None:
-        """Show the line that an application has begun, if there is one."""
+        """Show the unfinished line of an application, if there is one."""
         if self._begun.get(app):
             self.write(app, b"\n")
 
 
 class Streams:
-    """The streams that are open, by what stands for a FILE.
+    """The open streams, by their FILE handles.
 
     Args:
         show: gets lines.
-        app: the name of the application that runs.
+        app: returns the name of the running application.
         nodes: names of ROS nodes, by the names of their applications: their lines begin with them.
     """
 
@@ -77,7 +77,7 @@ class Streams:
         lines.write(self._owner(), data)
 
     def _owner(self) -> str:
-        """Whose line it is: those that are no ROS nodes share the console, as they do on a flight computer."""
+        """Return the owner of a line; empty for applications that are not ROS nodes and share the console."""
         app = self._ending or self._app()
         return app if app in self._nodes else ""
 
@@ -89,13 +89,13 @@ class Streams:
         self._show(app, line)
 
     def finish(self, app: str) -> None:
-        """Show the lines that an application has begun, if it is a ROS node: it is at its end."""
+        """Show the unfinished lines of an application that ends, if it is a ROS node."""
         for lines in self._lines.values() if app in self._nodes else ():
             lines.finish(app)
 
     @contextmanager
     def ending(self, app: str) -> Iterator[None]:
-        """What is printed meanwhile is of an application whose task has ended, such as by destructors."""
+        """Assign output in this context, such as from destructors, to an application whose task has ended."""
         self._ending = app
         try:
             yield
@@ -104,7 +104,7 @@ class Streams:
             self.finish(app)
 
     def write(self, stream: int, data: bytes) -> int:
-        """Write to a stream; the bytes that were written.
+        """Write to a stream. Returns the number of bytes written.
 
         Raises:
             CFault: there is no such stream.
@@ -116,7 +116,7 @@ class Streams:
         return len(data)
 
     def abort(self) -> None:
-        """The end of an application that says so itself.
+        """End an application that calls abort().
 
         Raises:
             CFault: always.

@@ -1,9 +1,8 @@
 """CFE_TBL_*: Table Services for C.
 
-A handle of C is an int16, the lower half of a handle id, in a build as NASA's that leaves deprecated elements in, and
-the id itself in one that was made with OMIT_DEPRECATED (`CRuntime.omit_deprecated`). Addresses of tables are those of
-their buffers: nothing is copied. Only under the guard a validation function gets a copy where a table fills a part of a
-load buffer.
+In NASA's default build, which keeps deprecated elements, a handle of C is an int16, the lower half of a handle id. In a
+build with OMIT_DEPRECATED it is the id itself (`CRuntime.omit_deprecated`). A table's address is the address of its
+buffer, without a copy. Only with the guard, a validation function gets a copy if a table fills a part of a load buffer.
 """
 
 from __future__ import annotations
@@ -31,21 +30,21 @@ BAD = CFE_TBL_BAD_ARGUMENT
 FROM_FILE, FROM_ADDRESS = 0, 1
 """CFE_TBL_SrcEnum_t."""
 INFO = struct.Struct("<QIIIIII?????64s3x")
-"""CFE_TBL_Info_t of a computer with 64 bits."""
+"""CFE_TBL_Info_t on a 64-bit computer."""
 _POINTER = 8
 _FIRST = make(TBL_HANDLE_BASE, 0)
 
 
 class Handles:
-    """What C takes for a handle, and the ids that these are.
+    """Conversion between C's handles and ids.
 
     Args:
         omit_deprecated: whether the code was built with OMIT_DEPRECATED.
 
     Attributes:
         letter: of a handle as a parameter.
-        output: of one that is written.
-        array: one of an array of handles.
+        output: of a handle that is written.
+        array: an element of an array of handles.
         bad: CFE_TBL_BAD_TABLE_HANDLE.
     """
 
@@ -56,11 +55,11 @@ class Handles:
         self._first = 0 if omit_deprecated else _FIRST
 
     def to_id(self, handle: int) -> int:
-        """The id of a handle (CFE_TBL_HANDLE_IMPORT)."""
+        """Return the id of a handle (CFE_TBL_HANDLE_IMPORT)."""
         return handle + self._first & 0xFFFFFFFF
 
     def of(self, handle_id: int) -> int:
-        """The handle of an id (CFE_TBL_HANDLE_EXPORT)."""
+        """Return the handle of an id (CFE_TBL_HANDLE_EXPORT)."""
         return int(handle_id) - self._first
 
 
@@ -121,13 +120,13 @@ def _declare_content(api: Declarations, c: CRuntime, handles: Handles) -> None:
             return tbl.load(handle_id, memoryview(b""), source_type=kind)
         access = accesses.find(handle_id)
         size = 0 if access is None else access.table.size
-        memory.peek(source, size)  # bytes that are not there are a fault of whoever brings them
+        memory.peek(source, size)  # missing bytes are a fault of the caller
 
         def read() -> bytes:
             try:
                 image: bytes = memory.peek(source, size)
                 return image
-            except CFault:  # of a table at an address of the application's, which has gone with its memory
+            except CFault:  # the application has ended, and its memory with the table is gone
                 return bytes(size)
 
         return tbl.load(handle_id, memory.view(source, size), address=source, read=read)
@@ -150,10 +149,10 @@ def _declare_content(api: Declarations, c: CRuntime, handles: Handles) -> None:
 
 
 def _check(c: CRuntime, handle_ids: list[int], function: str) -> None:
-    """Under the guard, look at tables whose addresses are given back.
+    """With the guard, check tables whose addresses are given back.
 
     Raises:
-        CFault: one was written past.
+        CFault: the application wrote past a table.
     """
     if c.tables is not None:
         accesses = (c.cfe.tbl.registry.accesses.find(each) for each in handle_ids)
@@ -203,7 +202,7 @@ def _declare_rest(api: Declarations, c: CRuntime, handles: Handles) -> None:
     def get_info(at: int, name: str) -> None:
         info = tbl.get_info(name)
         loaded = to_bytes(info.last_file_loaded)
-        if len(loaded) >= 64:  # a long path and the mark that the table was modified, which stays whole
+        if len(loaded) >= 64:  # a long path; keep the mark of a modified table
             loaded = loaded[:60] + loaded[-3:]
         raw = INFO.pack(
             info.size,

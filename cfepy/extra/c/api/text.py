@@ -1,4 +1,4 @@
-"""What C code prints: OS_printf, printf and their kin, onto the console of the mission."""
+"""OS_printf, printf and related functions: printing onto the console of the mission."""
 
 from __future__ import annotations
 

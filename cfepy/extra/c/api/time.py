@@ -18,7 +18,7 @@ Time = tuple[int, int]
 
 
 def word_of(time: Time) -> int:
-    """A time as C passes it in a register."""
+    """Return a time as C passes it in a register."""
     return time[0] & 0xFFFFFFFF | (time[1] & 0xFFFFFFFF) << 32
 
 
@@ -69,7 +69,7 @@ def _declare_signals(api: Declarations, c: CRuntime) -> None:
     callbacks: dict[int, Callable[[], object]] = {}
 
     def callback_at(function: int) -> Callable[[], object]:
-        """The same object for the same function: what is unregistered has to be what was registered."""
+        """Return the same object for the same function, so that a registered callback can be unregistered."""
         return callbacks.setdefault(function, lambda: c.run(function))
 
     def only_configured(name: str, call: Callable[..., object]) -> Callable[..., object]:

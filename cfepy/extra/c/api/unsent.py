@@ -1,7 +1,8 @@
-"""cfepy_unsent and its kin: messages of compiled ROS nodes that reach no subscriber, for the trace, bags and viewers.
+"""cfepy_unsent and related functions: messages of compiled ROS nodes without a subscriber, for traces and viewers.
 
-The interface library finds these functions by weak symbols, so a flight computer never calls them. A call takes no
-virtual time, and its memory is outside of the arena: no address that a program sees depends on it.
+These messages go to the trace, bags and viewers. The interface library finds these functions by weak symbols, so a
+flight computer never calls them. A call takes no virtual time, and its memory is outside of the arena, so no address
+that a program sees depends on it.
 """
 
 from __future__ import annotations
@@ -17,20 +18,20 @@ SMALLEST = 256
 
 
 class PublicationWatch(Protocol):
-    """Looks on at what compiled ROS nodes publish."""
+    """Observes the messages that compiled ROS nodes publish."""
 
     def unsent(self, app: str, msg_id: int, message: bytes) -> None:
-        """An application publishes a message that reaches no subscriber."""
+        """Take a published message that reaches no subscriber."""
 
     def latches(self, app: str, msg_id: int) -> None:
-        """An application has a publisher of the topic that latches."""
+        """Record that an application has a latching publisher of the topic."""
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
     watch = c.publication_watch
     if watch is None:
         return
-    rooms: dict[str, bytearray] = {}  # by application, which fills one at a time
+    rooms: dict[str, bytearray] = {}  # by application; each fills one at a time
     memory = c.memory
 
     def app() -> str:

@@ -1,4 +1,4 @@
-"""The command build, which compiles applications; here are its options.
+"""The options of the command build, which compiles applications.
 
 A command belongs here when it works on applications in C.
 """

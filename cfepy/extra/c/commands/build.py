@@ -1,4 +1,4 @@
-"""`cfepy build`: compile an application in C, as cFS has them, to a shared object and table files."""
+"""`cfepy build`: compile an application in C, in the form of cFS applications, to a shared object and table files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cfepy.status import UsageError
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Build what the command line says.
+    """Build the application that the command line names.
 
     Returns:
         The exit status.

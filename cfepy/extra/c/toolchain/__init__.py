@@ -1,8 +1,9 @@
-"""Building compiled applications: from the sources of one to a shared object and table files that a mission flies.
+"""The build of compiled applications: from the sources to a shared object and table files that a mission flies.
 
-What belongs here calls the C compiler or reads what it made: the headers it is given, cfepy's or those of a cFS tree
-(`headers`), what a folder of sources consists of (`source_files`, `cmake`), the compiler itself (`compiler`), tables
-out of object files (`tables`). Loading and running a shared object is not of this package.
+Code that calls the C compiler or reads its output belongs here. It has the headers, from cfepy or a cFS tree
+(`headers`), and the reader for folders of sources (`source_files`, `cmake_script`). It has the compiler itself
+(`compiler`), and the build with tables out of object files (`application`). Loading and running a shared object does
+not belong here.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Building an application: from its folder to a shared object and table files, in one go.
+"""The build of an application: from its folder to a shared object and table files, in one step.
 
-A C source with CFE_TBL_FILEDEF becomes a table file, which is elf2cfetbl's work: the compiler has laid out the table's
-object; its bytes are taken from the object file as they stand.
+A C source with CFE_TBL_FILEDEF becomes a table file, as with elf2cfetbl. The compiler has laid out the table's object,
+and its bytes are copied unchanged from the object file.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from cfepy.tbl import build as table_file
 WITHOUT_DEPRECATED = ("CFE_OMIT_DEPRECATED_6_8", "CFE_OMIT_DEPRECATED_6_7", "CFE_OMIT_DEPRECATED_6_6")
 WITHOUT_DEPRECATED_OSAL = "OSAL_OMIT_DEPRECATED"
 COVERAGE_FOLDER = ".coverage"
-"""Behind the name of a shared object: the folder of its object files, where gcov finds its notes."""
+"""Suffix of a shared object's name: the folder of its object files, in which gcov finds its notes."""
 DEFINITION = "CFE_TBL_FileDef"
 LAYOUT = struct.Struct("<64s40s32s20sI")
 """CFE_TBL_FileDef_t: name of the object, full name of the table, description, name of the file, bytes."""
@@ -37,17 +37,18 @@ LAYOUT = struct.Struct("<64s40s32s20sI")
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How an application is built.
+    """Options for the build of an application.
 
     Attributes:
-        cfs: a cFS tree whose headers are taken; None for cfepy's.
+        cfs: a cFS tree whose headers are used; None for cfepy's.
         definitions: a folder of a mission's headers, which go before the application's own.
         optimize: the compiler's -O, such as "2" or "g".
-        debug: whether debug data (-g) is there.
+        debug: whether to include debug data (-g).
         omit_deprecated: whether deprecated names are left out, as with OMIT_DEPRECATED in a cFS build: table handles
             and ids of OSAL are other types then.
-        coverage: whether the code counts for gcov what is executed.
-        sanitize_thread: whether accesses to memory are told (-fsanitize=thread), to whom is left to the loader.
+        coverage: whether the code counts executed lines for gcov.
+        sanitize_thread: whether the code reports its memory accesses (-fsanitize=thread); the loader chooses the
+            receiver.
         flags: more flags of the compiler.
     """
 
@@ -63,12 +64,12 @@ class Options:
 
 @dataclass(slots=True)
 class Built:
-    """What was built.
+    """The results of a build.
 
     Attributes:
         library: the shared object.
         tables: table files.
-        warnings: what the compiler and the reading of tables warned of.
+        warnings: warnings of the compiler and of the table reader.
     """
 
     library: Path
@@ -82,10 +83,10 @@ def build(folder: str | Path, library: str | Path | None = None, options: Option
     Args:
         folder: of the application, in the form that cFS has: fsw/src, fsw/inc, fsw/tables, CMakeLists.txt.
         library: the shared object to write; NAME.so in the folder itself when None. Table files come beside it.
-        options: how; the defaults when None.
+        options: the build options; the defaults when None.
 
     Returns:
-        What was written.
+        The written files.
 
     Raises:
         UsageError: the folder has nothing to build, or there is no compiler.
@@ -104,10 +105,10 @@ class _Builder:
     """Builds one application.
 
     Args:
-        sources: what it is made of.
-        options: how.
-        scratch: a folder for what is needed on the way.
-        built: gets what was made.
+        sources: its sources.
+        options: the build options.
+        scratch: a folder for temporary files.
+        built: gets the results.
     """
 
     def __init__(self, sources: Sources, options: Options, scratch: Path, built: Built) -> None:
@@ -128,7 +129,7 @@ class _Builder:
             self._flags += [f"-D{each}" for each in (*WITHOUT_DEPRECATED, WITHOUT_DEPRECATED_OSAL)]
 
     def build(self) -> None:
-        """Build code and tables; nothing is written before all is compiled."""
+        """Build code and tables. Nothing is written before everything is compiled."""
         code = self._code()
         tables = self._tables()
         flags = [*(["--coverage"] if self._options.coverage else []), *self._options.flags]
@@ -149,7 +150,7 @@ class _Builder:
         return [self._compile(source, self._object(source, where.resolve()), flags) for source in self._sources.code]
 
     def _object(self, source: Path, where: Path) -> Path:
-        """The object file of a source, in folders like its own: two of one name may be in different ones."""
+        """Return the object file of a source, in the same subfolders, because sources may share a name."""
         is_inside = ".." not in source.parts and source.is_relative_to(self._sources.folder)
         inner = source.relative_to(self._sources.folder) if is_inside else Path(source.name)
         made = where / inner.with_name(f"{source.name}.o")
@@ -192,7 +193,7 @@ class TableObject(NamedTuple):
     Attributes:
         file: the name of the table file.
         table: its contents.
-        addresses: how many words of it are addresses, which a table file cannot have: 0 is written for them.
+        addresses: number of its words that are addresses, which a table file cannot have: 0 is written for them.
     """
 
     file: str
@@ -203,27 +204,27 @@ class TableObject(NamedTuple):
         """Write the table file.
 
         Args:
-            folder: where to.
+            folder: folder for the file.
 
         Returns:
             Its path.
 
         Raises:
-            UsageError: the table's name is none.
+            UsageError: the table's name is not a valid file name.
         """
         write_contained(folder, f"/{self.file}", table_file(self.table))
         return folder / self.file
 
 
 def read_table(data: bytes, source: Path) -> TableObject:
-    """The table in an object file.
+    """Return the table in an object file.
 
     Args:
         data: the object file.
-        source: what it was compiled from, for errors.
+        source: its source file, for errors.
 
     Raises:
-        UsageError: it defines no table, or one that it does not have; pyelftools is not installed.
+        UsageError: it defines no table, or an object that it does not have; or pyelftools is not installed.
     """
     elf = elf_file(BytesIO(data))
     if elf["e_type"] != "ET_REL" or elf["e_machine"] not in MACHINES or not elf.little_endian:
@@ -250,7 +251,7 @@ def read_table(data: bytes, source: Path) -> TableObject:
 
 
 def _bytes_of(elf: Any, symbol: Any) -> tuple[bytes, int]:
-    """An object's bytes, and how many words of it the linker would fill in."""
+    """Return an object's bytes, and how many words of it the linker would fill in."""
     where, at, size = symbol["st_shndx"], symbol["st_value"], symbol["st_size"]
     if not isinstance(where, int):  # SHN_COMMON: never set
         return bytes(size), 0
@@ -262,7 +263,7 @@ def _bytes_of(elf: Any, symbol: Any) -> tuple[bytes, int]:
 
 
 def _filled_in(elf: Any, section: int) -> Iterator[int]:
-    """Offsets of words in a section that a linker would fill in."""
+    """Yield offsets of words in a section that a linker would fill in."""
     for each in elf.iter_sections():
         if each["sh_type"] in ("SHT_RELA", "SHT_REL") and each["sh_info"] == section:
             yield from (relocation["r_offset"] for relocation in each.iter_relocations())

@@ -1,10 +1,11 @@
 """A reader of CMake's language: enough of it for the files of cFS applications and of catkin packages.
 
-This is no CMake: nothing is found on the computer and nothing is built. Variables, `if`, `foreach`, `function` and
-`macro`, lists, `file(GLOB)` and the files of subfolders are followed; what a command means is decided by a subclass.
-A condition holds when what it asks is known to be so: a variable that nobody has set is false.
+It is not CMake: it finds nothing on the computer and builds nothing. It follows variables, `if`, `foreach`, `function`
+and `macro`, lists, `file(GLOB)` and the files of subfolders. A subclass defines the meaning of a command. A condition
+holds only if it is known to be true: an unset variable is false.
 
-A file may come from anywhere, so what it can have done is limited (`CMakeBudget`): it is refused where it goes on.
+A file may come from any source, so the work that it can cause is limited (`CMakeBudget`). A file beyond the limit is
+refused.
 """
 
 from __future__ import annotations
@@ -36,12 +37,12 @@ _NUMBER = re.compile(r"[0-9]{1,18}")
 _DEEP = "**"  # any number of folders, in a pattern
 _MOST_PARTS = 40  # of a pattern
 _LONGEST_PART = 255  # characters of a file's name
-_ROUNDS = 8  # in which variables in names and values of variables are replaced
+_ROUNDS = 8  # of replacements of variables in names and values of variables
 _ENDS = {"if": "endif", "foreach": "endforeach", "while": "endwhile", "function": "endfunction", "macro": "endmacro"}
 
 
 class CMakeBudget:
-    """What the files of a package may have done, subfolders included.
+    """Limits for the files of a package, including subfolders.
 
     Args:
         file: the outermost one, for errors.
@@ -55,19 +56,19 @@ class CMakeBudget:
         self._depth = 0
 
     def command(self) -> None:
-        """A command is carried out. Errors as `spend`."""
+        """Count a command. It raises the errors of `spend`."""
         self._commands -= 1
         if self._commands < 0:
             raise self._error(f"executes more than {CMAKE_COMMANDS:,} commands, loops included")
 
     def turns(self, count: int) -> None:
-        """A loop is about to go round; each turn counts as a command. Errors as `spend`."""
+        """Count the turns of a loop, each as a command. It raises the errors of `spend`."""
         self._commands -= count
         if self._commands < 0:
             raise self._error(f"has a loop of {count:,} iterations, more than {CMAKE_COMMANDS:,} commands")
 
     def spend(self, characters: int) -> None:
-        """Words are read or made.
+        """Count characters of words that are read or made.
 
         Raises:
             UsageError: they are too many.
@@ -77,14 +78,14 @@ class CMakeBudget:
             raise self._error(f"makes words of more than {CMAKE_CHARACTERS:,} characters")
 
     def look(self) -> None:
-        """A pattern looks at a file or a folder. Errors as `spend`."""
+        """Count a file or folder that a pattern examines. It raises the errors of `spend`."""
         self._files -= 1
         if self._files < 0:
             raise self._error(f"has patterns that look at more than {CMAKE_FILES:,} files")
 
     @contextmanager
     def inside(self) -> Iterator[None]:
-        """Around a block, a call or a subfolder. Errors as `spend`."""
+        """Count a nested block, call or subfolder in this context. It raises the errors of `spend`."""
         self._depth += 1
         if self._depth > CMAKE_DEPTH:
             raise self._error(f"has more than {CMAKE_DEPTH} nested blocks, calls and subfolders")
@@ -96,24 +97,24 @@ class CMakeBudget:
 
 
 class CMakeCommand(NamedTuple):
-    """A command: its name in small letters, and what stands between the parentheses."""
+    """A command: its name in small letters, and the text between the parentheses."""
 
     name: str
     text: str
 
     @property
     def words(self) -> list[str]:
-        """Its words, with their variables."""
+        """Its words, with unexpanded variables."""
         return [quoted or plain for quoted, plain in _WORD.findall(self.text)]
 
 
 @dataclass(frozen=True, slots=True)
 class _Block:
-    """Commands of a file that follow each other.
+    """Successive commands of a file.
 
     Attributes:
         commands: all of the file.
-        ends: where the structure ends that a command begins; the number of commands where it does not end.
+        ends: by the number of a command that begins a structure, the number of its end; missing if it does not end.
         start, stop: the first, and the one after the last.
     """
 
@@ -123,27 +124,27 @@ class _Block:
     stop: int
 
     def end_of(self, at: int) -> int:
-        """Where a structure ends: the end of the block when it does not."""
+        """Return the end of a structure; the end of the block if it does not end."""
         return min(self.ends.get(at, self.stop), self.stop)
 
     def part(self, start: int, stop: int) -> _Block:
-        """Some of the commands."""
+        """Return a part of the block."""
         return _Block(self.commands, self.ends, start, max(start, stop))
 
 
 class CMakeScript:
-    """Carries out a file; a subclass gives meaning to commands.
+    """Executes a file; a subclass gives meaning to commands.
 
     Args:
         folder: of the file.
-        variables: those that are set before.
-        budget: what is left of that of the file around; None for a file by itself.
+        variables: variables that are already set.
+        budget: the remaining budget of the including file; None for a separate file.
 
     Attributes:
         folder: of the file that is being read.
         variables: by name, each a list.
-        budget: what may still be done.
-        follows_loops: whether `foreach` is carried out.
+        budget: the remaining budget.
+        follows_loops: whether `foreach` is executed.
     """
 
     follows_loops = True
@@ -156,10 +157,10 @@ class CMakeScript:
         self._routines: dict[str, tuple[list[str], _Block]] = {}
 
     def run(self, text: str) -> None:
-        """Carry out a file's text.
+        """Execute a file's text.
 
         Raises:
-            UsageError: it has too much done.
+            UsageError: it exceeds the budget.
         """
         self.budget.spend(len(text))
         commands = list(_commands(text))
@@ -167,7 +168,7 @@ class CMakeScript:
             self._all(_Block(commands, _ends(commands), 0, len(commands)))
 
     def command(self, name: str, words: list[str]) -> None:
-        """A command that belongs to no structure, its words expanded; subclasses know more of them."""
+        """Execute a command outside of structures, with expanded words. Subclasses add more commands."""
         match name, words:
             case "set", [variable, *values]:
                 self.variables[variable] = _until(_until(values, "CACHE"), "PARENT_SCOPE")
@@ -185,24 +186,24 @@ class CMakeScript:
                 self.variables[variable] = self._globbed(patterns, kind == "GLOB_RECURSE")
 
     def glob(self, pattern: str, deep: bool = False) -> list[str]:
-        """Files of a pattern, sorted, as seen from the folder; with `deep` those of subfolders as well."""
+        """Return files of a pattern, sorted, relative to the folder; with `deep` also those of subfolders."""
         base, _, name = pattern.rpartition("/")
         pattern = f"{base}/**/{name}".lstrip("/") if deep else pattern
         return _matching_files(self.folder, pattern, self.budget.look)
 
     def holds(self, words: Sequence[str]) -> bool:
-        """Whether a condition holds; what cannot be known does not."""
+        """Return True if a condition holds. An unknown condition does not hold."""
         return _Condition(self, words).value()
 
     def is_true(self, word: str) -> bool:
-        """Whether a word is true: a constant, or a variable that is not false."""
+        """Return True if a word is true: a constant, or a variable that is not false."""
         if word.upper() in ("1", "ON", "YES", "TRUE", "Y"):
             return True
         values = self.variables.get(word, [])
         return bool(values) and values[0].upper() not in FALSE and not values[0].upper().endswith("-NOTFOUND")
 
     def expanded(self, words: Sequence[str]) -> list[str]:
-        """Words with their variables replaced; a variable that is a word of its own becomes as many words as it has."""
+        """Return words with their variables replaced. A variable that is a whole word becomes a word for each value."""
         found: list[str] = []
         for word in words:
             whole = _VARIABLE.fullmatch(word)
@@ -215,7 +216,7 @@ class CMakeScript:
         return found
 
     def text(self, word: str) -> str:
-        """A word with its variables replaced, those in names of variables too."""
+        """Return a word with its variables replaced, including those in names of variables."""
         self.budget.spend(len(word))
         for _ in range(_ROUNDS):
             replaced = _VARIABLE.sub(self._value, word)
@@ -232,7 +233,7 @@ class CMakeScript:
     # -- structures ----------------------------------------------------------------------------------------------------
 
     def _all(self, block: _Block) -> bool:
-        """Carry out commands; False when `return` ends the file or function."""
+        """Execute commands. Returns False if `return` ends the file or function."""
         at = block.start
         while at < block.stop:
             self.budget.command()
@@ -257,7 +258,7 @@ class CMakeScript:
                 name, *parameters = self._words(each) or [""]
                 self._routines[name.lower()] = (parameters, body)
             case "while":
-                pass  # counts something that is not known here
+                pass  # its condition is not known here
             case name if name in self._routines:
                 with self.budget.inside():
                     self._call(*self._routines[name], self._words(each))
@@ -270,7 +271,7 @@ class CMakeScript:
         return self.expanded(command.words)
 
     def _branch(self, first: CMakeCommand, body: _Block) -> _Block:
-        """The commands of the branch that holds."""
+        """Return the commands of the branch that holds."""
         condition: CMakeCommand | None = first
         start = at = body.start
         while at <= body.stop:
@@ -339,7 +340,7 @@ class _Condition:
     """A condition of `if`, read from left to right: OR binds least, then AND, then NOT.
 
     Args:
-        script: whose variables it is about.
+        script: the script with the variables.
         words: of the condition.
     """
 
@@ -349,7 +350,7 @@ class _Condition:
         self._at = 0
 
     def value(self) -> bool:
-        """Whether it holds."""
+        """Return True if it holds."""
         return bool(self._words) and self._either()
 
     def _either(self) -> bool:
@@ -385,7 +386,7 @@ class _Condition:
         return self._script.is_true(self._script.text(word))
 
     def _ahead(self) -> str:
-        """The next word; empty when there is none."""
+        """Return the next word; empty if there is none."""
         return self._words[self._at] if self._at < len(self._words) else ""
 
     def _next(self) -> str:
@@ -429,7 +430,7 @@ _COMPARISONS: Mapping[str, Callable[[str, str], bool]] = {
 
 
 def _version(text: str) -> list[tuple[int, str]]:
-    """The numbers of a version, so that they compare as numbers, however many digits they have."""
+    """Return the numbers of a version in a form that compares as numbers, with any number of digits."""
     numbers = (each.lstrip("0") for each in re.findall(r"[0-9]+", text))
     return [(len(each), each) for each in numbers]
 
@@ -439,7 +440,7 @@ def _until(words: list[str], word: str) -> list[str]:
 
 
 def _commands(text: str) -> Iterator[CMakeCommand]:
-    """The commands of a file; one that does not end is left out."""
+    """Yield the commands of a file; an unfinished one is left out."""
     name, parts, depth, at = "", [""], 0, 0
     while at < len(text):
         token = _TOKEN.match(text, at)
@@ -466,7 +467,7 @@ def _commands(text: str) -> Iterator[CMakeCommand]:
 
 
 def _ends(commands: Sequence[CMakeCommand]) -> dict[int, int]:
-    """Where the structures end that commands begin."""
+    """Return the ends of structures, by the commands that begin them."""
     open_at: dict[str, list[int]] = {end: [] for end in _ENDS.values()}
     found = {}
     for at, each in enumerate(commands):
@@ -477,20 +478,20 @@ def _ends(commands: Sequence[CMakeCommand]) -> dict[int, int]:
     return found
 
 
-# -- files of a pattern: through links, folders can lead round in circles; the budget ends that ------------------------
+# -- files of a pattern: links can form cycles, which the budget ends --------------------------------------------------
 
 
 def _matching_files(folder: Path, pattern: str, look: Callable[[], object]) -> list[str]:
     """Find the files and folders of a pattern.
 
     Args:
-        folder: where it begins.
+        folder: folder in which the search begins.
         pattern: a path with `*`, `?` and `[...]` in its parts; `**` stands for any number of folders, and follows no
             symbolic links.
-        look: called for each file or folder that is looked at; may raise.
+        look: called for each file or folder that is examined; may raise.
 
     Returns:
-        Paths seen from the folder, sorted; none for a pattern that leads elsewhere by itself.
+        Paths relative to the folder, sorted; empty for an absolute pattern.
     """
     parts = [each for each in pattern.split("/") if each not in ("", ".")]
     is_strange = any((_DEEP in each and each != _DEEP) or len(each) > _LONGEST_PART or "\0" in each for each in parts)
@@ -500,7 +501,7 @@ def _matching_files(folder: Path, pattern: str, look: Callable[[], object]) -> l
 
 
 def _below(folder: Path, inner: str, parts: Sequence[str], look: Callable[[], object]) -> Iterator[str]:
-    """What fits the parts in an inner folder."""
+    """Yield paths in an inner folder that match the parts."""
     part, *rest = parts
     if part == _DEEP:
         for place in _folders(folder, inner, look):
@@ -518,7 +519,7 @@ def _below(folder: Path, inner: str, parts: Sequence[str], look: Callable[[], ob
 
 
 def _folders(folder: Path, inner: str, look: Callable[[], object]) -> Iterator[str]:
-    """An inner folder and all in it, each with a slash behind it."""
+    """Yield an inner folder and all folders in it, each with a slash at its end."""
     waiting = [inner]
     while waiting:
         place = waiting.pop()

@@ -18,23 +18,23 @@ from cfepy.status import UsageError
 CPP_SUFFIXES = (".cpp", ".cc", ".cxx", ".c++", ".C")
 SOURCE_SUFFIXES = (".c", *CPP_SUFFIXES)
 COMMON = ("-fPIC", "-Wall", "-fno-stack-protector", "-U_FORTIFY_SOURCE", "-D_LINUX_OS_", "-D_POSIX_OS_")
-"""What every source gets. The guards of distributions are left out: they look into memory that the host owns."""
+"""Flags of every source. The guards of distributions are left out, because they read memory of the host."""
 WAITS = "the compiler was waiting for input and was ended"
-_LOOK_S = 2.5  # from one look at a compiler that goes on to the next; it has ended when two are alike
+_LOOK_S = 2.5  # between two looks at a running compiler; it hangs when both are the same
 _MOST_LOOKS = 720  # half an hour
 _ASLEEP = "S"
-_USER_TIME, _SYSTEM_TIME = 9, 10  # in /proc/PID/stat, behind the state and the parent
-_MOST_SAID = 16 << 20  # bytes of what a compiler says
+_USER_TIME, _SYSTEM_TIME = 9, 10  # in /proc/PID/stat, after the state and the parent
+_MOST_SAID = 16 << 20  # bytes of a compiler's output
 C_FLAGS = ("-std=gnu11",)
 CPP_FLAGS = ("-std=gnu++17",)
 
 
 class CompilerError(Exception):
-    """The compiler refused a file; the text is what it said."""
+    """The compiler refused a file; the text is the compiler's output."""
 
 
 def cpp_compiler() -> list[str]:
-    """The command of the C++ compiler: CXX in the environment, or c++."""
+    """Return the command of the C++ compiler: CXX in the environment, or c++."""
     return os.environ.get("CXX", "c++").split()
 
 
@@ -47,7 +47,7 @@ def compile_file(source: Path, made: Path, flags: Sequence[str]) -> str:
         flags: more flags.
 
     Returns:
-        What the compiler warned of.
+        The compiler's warnings.
 
     Raises:
         CompilerError: it refused the file.
@@ -58,22 +58,22 @@ def compile_file(source: Path, made: Path, flags: Sequence[str]) -> str:
 
 
 def link(objects: Sequence[Path], made: Path, flags: Sequence[str], *, with_cpp: bool) -> str:
-    """Link object files to a shared object, with C++'s library when it is needed; see `compile_file`."""
+    """Link object files to a shared object, with C++'s library if it is needed; see `compile_file`."""
     command = cpp_compiler() if with_cpp else compiler()
     return _call([*command, "-shared", *flags, *map(str, objects), "-o", str(made)])
 
 
 def is_cpp(source: Path) -> bool:
-    """Whether a source is C++."""
+    """Return True if a source is C++."""
     return source.suffix in CPP_SUFFIXES
 
 
 def start_bounded(command: Sequence[str], output: int) -> subprocess.Popen[bytes]:
-    """Start a compiler, with bounds on what it takes: a source may come from anywhere.
+    """Start a compiler with limits on its resources, because a source may come from anywhere.
 
     Args:
         command: its command.
-        output: descriptor that gets what it says.
+        output: descriptor that gets its output.
 
     Returns:
         The process; `end_bounded` waits for it.
@@ -88,7 +88,7 @@ def start_bounded(command: Sequence[str], output: int) -> subprocess.Popen[bytes
             stdout=output,
             stderr=output,
             env={**os.environ, "LC_ALL": "C"},
-            preexec_fn=_bound if os.name == "posix" else None,  # elsewhere the clock alone bounds it
+            preexec_fn=_bound if os.name == "posix" else None,  # on other systems only the clock limits it
         )
     except OSError as error:
         if not is_absent(command[0], error):
@@ -101,13 +101,13 @@ def end_bounded(process: subprocess.Popen[bytes]) -> int:
     """Wait for the end of a compiler.
 
     Args:
-        process: of `start_bounded`.
+        process: from `start_bounded`.
 
     Returns:
         Its exit status; less than 0 when a signal ended it.
 
     Raises:
-        CompilerError: it waited for something and was ended, such as for a header that is a pipe.
+        CompilerError: it waited for input, such as a header that is a pipe, and was ended.
     """
     before: dict[int, tuple[str, int]] = {}
     try:
@@ -120,7 +120,7 @@ def end_bounded(process: subprocess.Popen[bytes]) -> int:
             before = now
         raise CompilerError(f"{WAITS}; check that no source or header is a pipe")
     finally:
-        if process.returncode is None:  # what it has started, too, or that would stay
+        if process.returncode is None:  # also its child processes, which would stay otherwise
             for pid in (*_family(process.pid), process.pid):
                 with suppress(OSError):
                     os.kill(pid, signal.SIGKILL if os.name == "posix" else signal.SIGTERM)
@@ -128,10 +128,10 @@ def end_bounded(process: subprocess.Popen[bytes]) -> int:
 
 
 def call_bounded(command: Sequence[str]) -> tuple[int, str]:
-    """Call a compiler, with bounds, until it ends. Errors as `start_bounded` and `end_bounded`.
+    """Call a compiler with limits until it ends. It raises the errors of `start_bounded` and `end_bounded`.
 
     Returns:
-        Its exit status, and what it said.
+        Its exit status, and its output.
     """
     with tempfile.TemporaryFile() as output:
         status = end_bounded(start_bounded(command, output.fileno()))
@@ -148,11 +148,11 @@ def _bound() -> None:
         (resource.RLIMIT_FSIZE, OBJECT_BYTES),
     ):
         held = min([each for each in resource.getrlimit(what) if each != resource.RLIM_INFINITY], default=most)
-        resource.setrlimit(what, (min(most, held),) * 2)  # this process may be held to less already, as by `ulimit`
+        resource.setrlimit(what, (min(most, held),) * 2)  # the process may have a lower limit, such as from `ulimit`
 
 
 def _family(pid: int) -> dict[int, tuple[str, int]]:
-    """State and time of the processor of a process and all that it has started; empty where that is not told."""
+    """Return state and CPU time of a process and its descendants; empty on systems without this information."""
     stats: dict[int, tuple[int, str, int]] = {}
     for each in Path("/proc").glob("[0-9]*"):
         try:

@@ -1,11 +1,11 @@
 """The headers that compiled applications include: cFE's, OSAL's and the PSP's public interface, under NASA's names.
 
-What they declare is in `cfepy/extra/c/headers`, a file for each part. The compiler is given a folder in the user's
-cache that has them under `cfepy/`, and for each name of NASA's a file that leads there (`headers/names.txt`).
+The declarations are in `cfepy/extra/c/headers`, a file for each part. The compiler gets a folder in the user's cache
+that has them under `cfepy/`, and for each of NASA's names a file that includes them (`headers/names.txt`).
 
-A cFS tree of the user's own can be taken in their place. One that was configured (`make prep`) has the headers that its
-build made in `build/inc` and `build/native/*/inc`. Of one that was not, the defaults of each module stand for them, as
-they would for its build; what only a build can make, such as `osconfig.h`, is cfepy's then.
+A cFS tree of the user's own can be used in their place. A configured tree (`make prep`) has the headers of its build in
+`build/inc` and `build/native/*/inc`. For an unconfigured tree, the defaults of each module stand for them, as in its
+build. Headers that only a build can make, such as `osconfig.h`, are then cfepy's.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from cfepy.status import UsageError
 DECLARATIONS = Path(__file__).parents[1] / "headers"
 NAMES = DECLARATIONS / "names.txt"
 INNER = "cfepy"
-"""The folder of the declarations, seen from the names."""
+"""The folder of the declarations, relative to the names."""
 
 
 def headers_folder() -> Path:
-    """The folder for the compiler's -I, made before if need be.
+    """Return the folder for the compiler's -I, and make it first if necessary.
 
     Raises:
         UsageError: it cannot be written.
@@ -47,7 +47,7 @@ def headers_folder() -> Path:
 
 
 def names() -> dict[str, list[str]]:
-    """Which of our headers a name of NASA's stands for; all without `.h`."""
+    """Return cfepy's headers for each of NASA's names; all without `.h`."""
     found: dict[str, list[str]] = {}
     ours: list[str] = []
     for line in NAMES.read_text(encoding="utf-8").splitlines():
@@ -59,7 +59,7 @@ def names() -> dict[str, list[str]]:
 
 
 def _files() -> dict[str, str]:
-    """What the folder holds: path to text."""
+    """Return the contents of the folder: path to text."""
     files = {f"{INNER}/{each.name}": each.read_text(encoding="utf-8") for each in DECLARATIONS.glob("*.h")}
     for name, ours in names().items():
         files[f"{name}.h"] = "".join(f'#include "{INNER}/{each}.h"\n' for each in ours)
@@ -81,7 +81,7 @@ OPTIONS = {
     "cfe_msg_sechdr.h": "cfe/modules/msg/option_inc/default_cfe_msg_sechdr.h",
     "cfe_resourceid_typedef.h": "cfe/modules/resourceid/option_inc/cfe_resourceid_simple.h",
 }
-"""Headers of which a tree has several to choose from; those that it takes when nothing else is said."""
+"""Headers of which a tree has several variants, with the default variant."""
 MADE_BY_BUILDS = {
     "osconfig.h": "osal_config.h",
     "pspconfig.h": "osal_config.h",
@@ -93,11 +93,11 @@ NEEDED = "cfe/modules/core_api/fsw/inc/cfe.h"
 
 @dataclass(slots=True)
 class CfsTree:
-    """Where a tree has its headers.
+    """The headers of a tree.
 
     Attributes:
         includes: folders, the first searched first.
-        chosen: headers to be written for the compiler: a name, and the file that stands for it.
+        chosen: headers to write for the compiler: a name, and the file that stands for it.
     """
 
     includes: list[Path] = field(default_factory=list)
@@ -108,10 +108,10 @@ def read_tree(folder: Path) -> CfsTree:
     """Find the headers of a cFS tree.
 
     Args:
-        folder: that has cfe, osal and psp.
+        folder: the folder with cfe, osal and psp.
 
     Raises:
-        UsageError: it is no such tree.
+        UsageError: it is not such a tree.
     """
     if not (folder / NEEDED).is_file():
         raise UsageError(f"is not a cFS tree of cFE 7: {NEEDED} is missing", file=folder)

@@ -1,14 +1,13 @@
-"""The folder of a compiled application: what of it is compiled, and where its headers are.
+"""The folder of a compiled application: the files to compile, and the folders of its headers.
 
-A cFS application keeps its code in `fsw/src`, its headers in `fsw/inc` and beside them, tables in `fsw/tables`, and
-what a mission may choose in `config`: a file `config/default_NAME.h` there is included as `NAME.h`, unless the mission
-has one. What the folder's CMakeLists.txt says goes before these habits: its name, sources, tables, include folders and
-what it depends on.
+A cFS application keeps its code in `fsw/src`, its headers in `fsw/inc` and beside them, and tables in `fsw/tables`.
+Settings of a mission are in `config`: a file `config/default_NAME.h` there is included as `NAME.h`, unless the mission
+has one. The folder's CMakeLists.txt takes precedence over these conventions: its name, sources, tables, include folders
+and dependencies.
 
-Of the commands that such files are made of, cFS's `add_cfe_app`, `add_cfe_tables` and `add_cfe_app_dependency` have
-their meaning here, beside include folders and definitions; `cmake_script` knows the language itself. A condition holds
-when its variable was set to something true in the file itself: no EDS, no unit tests, no options, as in a plain build
-of the mission.
+Among the commands of such files, cFS's `add_cfe_app`, `add_cfe_tables` and `add_cfe_app_dependency` are defined here,
+and also include folders and definitions; `cmake_script` knows the language itself. A condition holds if its variable
+was set to a true value in the file itself: no EDS, no unit tests, no options, as in a plain build of the mission.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ _EDS = re.compile(r"_eds_\w+$")
 
 @dataclass(slots=True)
 class Sources:
-    """What an application is made of.
+    """The sources of an application.
 
     Attributes:
         name: of the shared object.
@@ -51,7 +50,7 @@ class Sources:
         code: files to be compiled and linked.
         tables: files that define tables.
         includes: folders of headers, the first searched first.
-        chosen: headers to be written for the compiler: a name, and the file that stands for it; None for an empty one.
+        chosen: headers to write for the compiler: a name, and the file that stands for it; None for an empty one.
         definitions: the compiler's -D.
         missing: applications and libraries that its headers come from and that were not found.
     """
@@ -67,7 +66,7 @@ class Sources:
 
 
 def find_sources(folder: Path, definitions: Path | None = None) -> Sources:
-    """Look through the folder of an application.
+    """Find the sources in the folder of an application.
 
     Args:
         folder: of the application.
@@ -104,11 +103,11 @@ def find_sources(folder: Path, definitions: Path | None = None) -> Sources:
 
 
 def chosen_headers(folders: Iterable[Path], overriding: Sequence[Path] = ()) -> dict[str, Path]:
-    """The headers `NAME.h` that files `default_NAME.h` stand for.
+    """Return the headers `NAME.h` that files `default_NAME.h` stand for.
 
     Args:
-        folders: that have such files.
-        overriding: folders that may have a `NAME.h` of their own, which is taken instead.
+        folders: folders with such files.
+        overriding: folders that may have their own `NAME.h`, which is used instead.
     """
     found: dict[str, Path] = {}
     for folder in folders:
@@ -128,7 +127,7 @@ def _choose(found: Sources, folder: Path, overriding: Sequence[Path]) -> None:
 
 
 def _declared(folder: Path) -> Iterator[str]:
-    """Headers that a mission makes for an application, those without a default among them: such a one is empty."""
+    """Yield headers that a mission makes for an application, including those without a default, which are empty."""
     for name in ("mission_build.cmake", "arch_build.cmake"):
         file = folder / name
         if os.path.isfile(file):
@@ -162,18 +161,18 @@ def _folders(folder: Path, names: Iterable[str]) -> list[Path]:
 
 
 def _neighbour(folder: Path, name: str) -> Path | None:
-    """The folder of another application or library: beside this one, or in the `libs` or `apps` beside its parent."""
+    """Return the folder of another application or library: beside this one, or in `libs` or `apps` one level up."""
     above = folder.resolve().parent
     places = [above / name, *(above.parent / each / name for each in NEIGHBOURS)]
     return next((each for each in places if os.path.isdir(each) and each != folder.resolve()), None)
 
 
-# -- what the CMakeLists.txt says --------------------------------------------------------------------------------------
+# -- CMakeLists.txt ----------------------------------------------------------------------------------------------------
 
 
 @dataclass(slots=True)
 class CMakeLists:
-    """What was read; all paths are seen from the folder of the file.
+    """The contents of a CMakeLists.txt; all paths are relative to its folder.
 
     Attributes:
         name: of the application, "" when there is none.
@@ -199,7 +198,7 @@ def read_cmake_lists(folder: Path) -> CMakeLists:
         folder: of the application.
 
     Returns:
-        What it says; nothing when there is no such file.
+        Its contents; empty if there is no such file.
     """
     file = folder / FILE
     if not os.path.isfile(file):
@@ -213,13 +212,13 @@ class _Reader(CMakeScript):
     """Reads the file of an application.
 
     Args:
-        folder: that it is in.
+        folder: folder of the file.
 
     Attributes:
-        found: what it says.
+        found: its contents.
     """
 
-    follows_loops = False  # they are over the applications of a mission, which are not known here
+    follows_loops = False  # loops go over the applications of a mission, which are not known here
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder, {"CMAKE_CURRENT_SOURCE_DIR": ["."], "CMAKE_CURRENT_LIST_DIR": ["."]})
@@ -244,7 +243,7 @@ class _Reader(CMakeScript):
                 super().command(name, words)
 
     def expanded(self, words: Sequence[str]) -> list[str]:
-        """A folder of another application makes it one that this one depends on."""
+        """Expand words. A folder of another application also makes it a dependency."""
         for word in words:
             for name in _MISSION_DIR.findall(word):
                 self.found.dependencies += [name] if name not in self.found.dependencies else []

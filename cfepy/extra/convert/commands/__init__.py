@@ -1,6 +1,6 @@
-"""The command for ROS nodes in C++: convert; here are its options.
+"""The options of the command convert, for ROS nodes in C++.
 
-A command belongs here when it makes applications of cFE out of ROS nodes, or says what keeps it from doing so.
+A command belongs here when it makes applications of cFE out of ROS nodes, or reports why that is not possible.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _STATUS = "exit status: 0 well, 1 a node cannot be converted, 2 bad usage, or no
 
 
 def cpp_nodes_config(arguments: argparse.Namespace) -> CppNodesConfig:
-    """What nodes are built for, as the command line and the mission file that it names say.
+    """Return the build settings of nodes, from the command line and the mission file that it names.
 
     Args:
         arguments: of the command line.

@@ -1,6 +1,6 @@
-"""`cfepy convert check`: whether ROS nodes in C++ can be applications of cFE, a line for each finding.
+"""`cfepy convert check`: check whether ROS nodes in C++ can be applications of cFE, with a line for each finding.
 
-A line is `file:line:column: what: why; what to do [rule]`; warnings and notes stand behind the errors.
+A line is `file:line:column: what: why; what to do [rule]`; warnings and notes come after the errors.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ _ONLY_TO_CONVERT = {"output": "-o", "ids": "--ids", "force": "--force", "no_chec
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Check what the command line names.
+    """Check the programs that the command line names.
 
     Returns:
-        The exit status: 0 when nothing but warnings and notes was found.
+        The exit status: 0 when only warnings and notes were found.
 
     Raises:
         UsageError: there is nothing to check, or a file cannot be written.
@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _print(reports: Sequence[CheckReport], profile: Profile) -> None:
-    """What several programs share is told once."""
+    """Print the findings. A finding that several programs share is printed once."""
     counts = []
     for level in Level:
         found = sorted({finding for report in reports for finding in report.at(level)})

@@ -1,4 +1,4 @@
-"""`cfepy convert`: applications of cFE out of the ROS nodes in C++ of a launch file or a package."""
+"""`cfepy convert`: make applications of cFE out of the ROS nodes in C++ of a launch file or a package."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from cfepy.status import UsageError
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Convert what the command line names, or check it, if the first word is `check`.
+    """Convert the nodes that the command line names, or check them if the first word is `check`.
 
     Returns:
         The exit status.
@@ -57,17 +57,17 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 class _Judge:
-    """Checks programs before they are converted, and prints what keeps them from it.
+    """Checks programs before they are converted, and prints the errors that prevent it.
 
     Args:
-        config: what nodes are built for.
+        config: the build settings of nodes.
     """
 
     def __init__(self, config: CppNodesConfig) -> None:
         self._config = config
 
     def __call__(self, program: Program) -> str:
-        """Why it is not to be converted; empty when nothing speaks against it."""
+        """Return why a program is not converted; empty if it can be."""
         report = check_program(program, Profile(self._config.profile), dict(os.environ), self._config)
         errors = report.at(Level.ERROR)
         tell([each.line(Level.ERROR) for each in errors])
@@ -76,7 +76,7 @@ class _Judge:
 
 
 def _ids(arguments: argparse.Namespace, folder: Path) -> RosConfig:
-    """MsgIds that are given: of a mission, or those of the last time."""
+    """Return the given MsgIds: a mission's, or the MsgIds of the last conversion."""
     if arguments.ids is not None:
         return read_mission(arguments.ids).ros
     lock = folder / "mission" / LOCK_FILE

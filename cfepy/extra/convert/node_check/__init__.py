@@ -1,6 +1,6 @@
-"""`cfepy convert check`: whether a ROS node in C++ can be a cFE application, and what is to be known of it before.
+"""`cfepy convert check`: whether a ROS node in C++ can be a cFE application, and the facts to know before a conversion.
 
-What belongs here looks at sources, with a parser and with the compiler, and tells what it finds by a table of rules.
+Code that examines sources, with a parser and with the compiler, and reports findings by a table of rules belongs here.
 Nothing is built and nothing runs.
 """
 

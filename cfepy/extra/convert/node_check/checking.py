@@ -1,4 +1,4 @@
-"""The check of one program: what its sources say, then what the compiler says, and the memory of its subscriptions."""
+"""The check of one program: findings in its sources, errors of the compiler, and the memory of its subscriptions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 LONGEST_PACKET = 32768
 """Bytes of a packet on NASA's Software Bus (CFE_MISSION_SB_MAX_SB_MSG_SIZE)."""
 KEPT = 4
-"""Messages that a node may hold beside those that wait."""
+"""Messages that a node may hold in addition to the waiting ones."""
 
 
 def check_program(
@@ -37,14 +37,14 @@ def check_program(
     """Check a program.
 
     Args:
-        program: what it is compiled of.
-        profile: that it is to be built for.
-        environ: says where packages are, for their message definitions.
+        program: its sources and build settings.
+        profile: the profile of the build.
+        environ: has the paths of packages, for their message definitions.
         config: the section `cpp_nodes:` of a mission file, whose profile does not count; None without one.
-        compile_refused: whether the compiler is asked, too, where the sources alone refuse the program.
+        compile_refused: whether the compiler is called even if the sources alone refuse the program.
 
     Raises:
-        UsageError: tree-sitter or the compiler is not there.
+        UsageError: tree-sitter or the compiler is not installed.
         CppNodesError: the section is wrong.
     """
     config = config or CppNodesConfig()
@@ -92,7 +92,7 @@ def _compile(
 
 
 def _measure(report: CheckReport, compiler: Compiler, sources: ProgramSources, scratch: Path) -> None:
-    """The memory of all subscriptions whose type is seen."""
+    """Add the memory of all subscriptions with a known type."""
     found = list(subscriptions(report.names))
     types = sorted({name.type for name, _ in found} & sources.messages)
     sizes = compiler.sizes(types, scratch) if types else {}
@@ -106,7 +106,7 @@ def _measure(report: CheckReport, compiler: Compiler, sources: ProgramSources, s
 
 
 def _hold_to_arena(report: CheckReport, config: CppNodesConfig) -> None:
-    """The messages that subscriptions keep lie in the arena of a node that has one."""
+    """Check that the messages of all subscriptions fit into the arena of a node that has one."""
     total = sum(each.total for each in report.memory)
     if total > config.arena_bytes and report.profile is not Profile.HOST:
         mark = config.places.get("arena_bytes")
@@ -115,7 +115,7 @@ def _hold_to_arena(report: CheckReport, config: CppNodesConfig) -> None:
 
 
 def _shown(sources: ProgramSources, source: Path, made: Sequence[Path], file: Path) -> SourcePlace | None:
-    """Where a header that was made was included; of one that another header includes, the source."""
+    """Return the place where a generated header was included, or the source if another header includes it."""
     folder = next((each for each in made if file.is_relative_to(each)), None)
     if folder is None:
         return None
@@ -124,7 +124,7 @@ def _shown(sources: ProgramSources, source: Path, made: Sequence[Path], file: Pa
 
 @cache
 def _refusals(real_boost: bool) -> tempfile.TemporaryDirectory[str]:
-    """The headers that refuse, written once for all programs; the folder goes with the process."""
+    """Return the headers that refuse, written once for all programs; the folder ends with the process."""
     folder = tempfile.TemporaryDirectory(prefix="cfepy-refusals-")
     write_refusals(Path(folder.name), real_boost)
     return folder

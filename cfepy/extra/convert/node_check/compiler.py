@@ -1,7 +1,7 @@
-"""The compiler's word on a program: its errors as findings, and the sizes of the messages that it subscribes to.
+"""The compiler's result for a program: its errors as findings, and the sizes of the messages that it subscribes to.
 
-It is called as for a build, with the interface library's headers, and makes nothing. What it does not accept is never
-called clean, whatever its reason: an error of its own, its end, or too much time or memory.
+It is called as for a build, with the interface library's headers, and makes no files. A file that it does not accept is
+never reported as clean, for any reason: an error of its own, its end, or too much time or memory.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cfepy.extra.convert.node_check.headers import SYSTEM, is_of_ros
 from cfepy.extra.convert.node_check.rules import RULES
 
 _SAID = re.compile(r"^#error \"?(?:roscfe: )?(.*?) ?\[([a-z-]+)\]\"?$")
-_MOST = 50  # errors that are told of a source; GCC's own -fmax-errors throws all away with this format
+_MOST = 50  # reported errors of a source; GCC's own -fmax-errors drops all of them with this format
 _HEADER = re.compile(r"^(.+): (?:No such file or directory|Is a directory|Permission denied|File name too long)$")
 _NAMESPACES = (
     "ros|tf|tf2|tf2_ros|actionlib|nodelet|message_filters|dynamic_reconfigure|diagnostic_updater|pluginlib|boost|angles"
@@ -43,7 +43,7 @@ class Diagnostic(NamedTuple):
 
     Attributes:
         message: its text.
-        place: where.
+        place: its place.
     """
 
     message: str
@@ -51,12 +51,12 @@ class Diagnostic(NamedTuple):
 
 
 class Compiled(NamedTuple):
-    """What the compiler said of a file.
+    """The compiler's result for a file.
 
     Attributes:
         ok: whether it accepts the file.
-        errors: those that it tells.
-        problem: why it did not come to an end, when it did not.
+        errors: its errors.
+        problem: why it did not finish, if it did not.
         used: all files that it read.
     """
 
@@ -70,7 +70,7 @@ class Compiler:
     """Calls the compiler for the sources of one program.
 
     Args:
-        profile: that is built for.
+        profile: profile of the build.
         folders: of the include path, the first searched first.
         definitions: the compiler's -D, without -D.
     """
@@ -104,7 +104,7 @@ class Compiler:
         return Compiled(status == 0 and not errors, errors, "" if status == 0 else problem, used)
 
     def sizes(self, types: Sequence[str], scratch: Path) -> dict[str, int]:
-        """Bytes of messages, by type; empty when the compiler does not say them."""
+        """Return the bytes of messages, by type; empty if the compiler does not report them."""
         asked = scratch / "sizes.cpp"
         lines = [f"#include <{each}.h>" for each in types]
         lines += ["template <unsigned long Index, unsigned long Size> struct Told;"]
@@ -117,17 +117,17 @@ class Compiler:
 
 
 def tell(report: CheckReport, source: Path, compiled: Compiled, shown: Callable[[Path], SourcePlace | None]) -> None:
-    """Add what the compiler said of a file.
+    """Add the compiler's result for a file to a report.
 
     Args:
-        report: gets it.
+        report: receives it.
         source: the file.
-        compiled: what was said.
-        shown: the place that stands for a file that the user does not know; None for itself.
+        compiled: the compiler's result.
+        shown: returns the place to show for a file that the user does not know; None for the file itself.
     """
     told = [(*rule_of(each.message, report.profile), each.place) for each in compiled.errors]
     without_header = [each for each in told if each[0] in ABOUT_HEADERS]
-    for rule, message, place in (without_header or told)[:_MOST]:  # without a header all that needs it is wrong, too
+    for rule, message, place in (without_header or told)[:_MOST]:  # a missing header causes more errors
         at = shown(place.file) or place
         seen = any(each.rule == rule and each.place[:2] == at[:2] for each in report.findings if rule in _SEEN_BEFORE)
         if not seen:
@@ -142,7 +142,7 @@ def tell(report: CheckReport, source: Path, compiled: Compiled, shown: Callable[
 
 
 def rule_of(message: str, profile: Profile) -> tuple[str, str]:
-    """The rule that an error of the compiler falls under, and what a finding says of it."""
+    """Return the rule for an error of the compiler, and the message of its finding."""
     said = _SAID.match(message)
     if said is not None and said[2] in RULES:
         return said[2], said[1]
@@ -159,7 +159,7 @@ def rule_of(message: str, profile: Profile) -> tuple[str, str]:
 
 
 def _call(command: list[str]) -> tuple[int, str]:
-    """Call the compiler, with bounds; its status and what it said."""
+    """Call the compiler with limits. Returns its status and its output."""
     try:
         return call_bounded(command)
     except CompilerError as error:
@@ -167,7 +167,7 @@ def _call(command: list[str]) -> tuple[int, str]:
 
 
 def _diagnostics(said: str) -> tuple[list[Diagnostic], str]:
-    """The errors in what the compiler said, and what it said beside them."""
+    """Return the errors in the compiler's output, and its first other problem."""
     errors: list[Diagnostic] = []
     other: list[str] = []
     for line in said.splitlines():
@@ -187,9 +187,9 @@ ABOUT_HEADERS = (
     *("include-unknown", "library-outside", "ros-library", "boost-header"),
     *("message-definition", "capacity-missing", "configuration"),
 )
-"""Rules about headers that are not there."""
+"""Rules about missing headers."""
 _SEEN_BEFORE = ("throw", "catch", "rtti")
-"""Rules under which sources are looked at without the compiler, too, whose columns are others."""
+"""Rules that are also checked without the compiler, with other columns."""
 _BAD = ("error", "fatal error", "internal compiler error", "sorry, unimplemented")
 
 

@@ -1,4 +1,4 @@
-"""What the check tells: findings, the names that a node uses, and the memory of its subscriptions."""
+"""The results of the check: findings, the names that a node uses, and the memory of its subscriptions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cfepy.extra.convert.node_check.rules import RULES, Level
 
 
 class SourcePlace(NamedTuple):
-    """Where something is.
+    """A place in a source.
 
     Attributes:
         file: its path.
@@ -27,12 +27,12 @@ class SourcePlace(NamedTuple):
 
 
 class RuleFinding(NamedTuple):
-    """Something that a rule has found.
+    """A finding of a rule.
 
     Attributes:
         rule: id of the rule.
-        place: where.
-        message: what it is, of this place.
+        place: its place.
+        message: the message for this place.
     """
 
     rule: str
@@ -40,7 +40,7 @@ class RuleFinding(NamedTuple):
     message: str
 
     def line(self, level: Level) -> str:
-        """A line for a person: `file:line:column: what: why; what to do [rule]`; a warning or note says so."""
+        """Return a line: `file:line:column: what: why; what to do [rule]`, with the level of a warning or note."""
         file = self.place.file
         shown = os.path.relpath(file) if file.is_relative_to(Path.cwd()) else str(file)
         place = ":".join(str(part) for part in (shown, *self.place[1:]) if part)
@@ -56,9 +56,9 @@ class GraphName(NamedTuple):
         kind: "publish", "subscribe", "serve", "call", "action" or "parameter".
         name: as written; None when it is computed.
         text: of the expression.
-        place: where.
-        type: of the message, such as "std_msgs/String"; empty when it is not seen.
-        queue: its size as written; None when it is not.
+        place: its place.
+        type: of the message, such as "std_msgs/String"; empty when it is not known.
+        queue: its size as written; None when it is not written.
     """
 
     kind: str
@@ -77,7 +77,7 @@ class SubscriptionMemory(NamedTuple):
         type: of its messages.
         slots: messages that it keeps.
         size: of one, in bytes, as the compiler lays it out.
-        place: where it is subscribed to.
+        place: place of the subscription.
     """
 
     topic: str
@@ -94,13 +94,13 @@ class SubscriptionMemory(NamedTuple):
 
 @dataclass(slots=True)
 class CheckReport:
-    """What the check found in one program.
+    """The findings of the check in one program.
 
     Attributes:
         name: of the program.
-        profile: that it is checked for.
+        profile: the profile of the check.
         findings: sorted by place, each once.
-        names: that it uses.
+        names: names in the ROS graph that it uses.
         memory: of its subscriptions; empty when it does not compile.
         files: its sources and own headers that were read.
         unparsed: places that were left to the compiler, because the parser does not expand macros.
@@ -115,14 +115,14 @@ class CheckReport:
     unparsed: int = 0
 
     def add(self, rule: str, place: SourcePlace, message: str) -> None:
-        """A finding, when the rule matters in this profile; one that is there already is not told again."""
+        """Add a finding if the rule applies in this profile and the place does not have it yet."""
         level = RULES[rule].level(self.profile)
         finding = RuleFinding(rule, place, message)
         if level is not None and not any(each.rule == rule and each.place == place for each in self.findings):
             self.findings.append(finding)
 
     def at(self, level: Level) -> list[RuleFinding]:
-        """The findings of a level, by place."""
+        """Return the findings of a level, by place."""
         return sorted(each for each in self.findings if RULES[each.rule].level(self.profile) is level)
 
     @property
@@ -131,5 +131,5 @@ class CheckReport:
         return bool(self.at(Level.ERROR))
 
     def counts(self) -> Counter[str]:
-        """How often each rule was met."""
+        """Return the number of findings of each rule."""
         return Counter(each.rule for each in self.findings)

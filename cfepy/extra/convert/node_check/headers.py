@@ -1,6 +1,7 @@
-"""Where a header comes from, by its name alone: the closed list that a convertible node's includes are on.
+"""The origin of a header by its name alone: the closed list of includes for a convertible node.
 
-The names of ROS's and others' headers are facts of their projects; a header that is ours is one that is there.
+The names of ROS's and other headers are facts of their projects. A header of the interface library is one whose file
+exists.
 """
 
 from __future__ import annotations
@@ -67,11 +68,11 @@ _NAMES = {
     "openssl pcl pcl_conversions pcl_ros pangolin phidget22.h qpOASES qpOASES.hpp sdf sdformat tinyxml.h "
     "tinyxml2.h urdf yaml-cpp zmq.hpp libfreenect libusb.h",
 }
-"""Names as their standards and projects have them; those of C without `.h`."""
+"""Names from the standards and projects; C headers without `.h`."""
 STANDARD = frozenset(_NAMES["c++"].split())
 """Headers of C++17."""
 C_HEADERS = frozenset(f"{name}.h" for name in _NAMES["c"].split())
-"""Headers of C and of POSIX. That one is there says nothing of what is called from it."""
+"""Headers of C and of POSIX. A listed header does not mean that its functions may be called."""
 ROS_LIBRARIES: dict[str, str] = {
     "actionlib": "client/action_client client/client_goal_handle_imp client/client_helpers client/comm_state "
     "client/service_client client/simple_action_client client/simple_client_goal_state client/terminal_state "
@@ -156,35 +157,35 @@ OUTSIDE = frozenset(_NAMES["outside"].split())
 
 
 def ros_headers() -> Iterator[str]:
-    """All known headers of ROS's libraries, such as "nodelet/nodelet.h"."""
+    """Yield all known headers of ROS's libraries, such as "nodelet/nodelet.h"."""
     for package, names in ROS_LIBRARIES.items():
         for name in dict.fromkeys(names.split()):
             yield f"{package}/{name}" if name.endswith((".h", ".hpp")) else f"{package}/{name}.h"
 
 
 def is_standard(name: str) -> bool:
-    """Whether a header is of C++, C or POSIX."""
+    """Return True if a header belongs to C++, C or POSIX."""
     return name in STANDARD or name in C_HEADERS or name.startswith(("bits/", "asm/", "linux/"))
 
 
 def is_ours(name: str) -> bool:
-    """Whether a header is the interface library's."""
+    """Return True if a header is the interface library's."""
     return is_file(OURS / name)
 
 
 def is_small_boost(name: str) -> bool:
-    """Whether a header of Boost is in the small one of the interface library."""
+    """Return True if a header of Boost is in the small one of the interface library."""
     return is_file(OUR_BOOST / name)
 
 
 def has_boost(name: str, profile: Profile) -> bool:
-    """Whether a profile has a header of Boost; the host's has all that are installed."""
+    """Return True if a profile has a header of Boost; the host profile has all installed ones."""
     return is_small_boost(name) or (profile is Profile.HOST and is_file(SYSTEM / name))
 
 
 @cache
 def behind_ours(name: str) -> tuple[str, ...]:
-    """All headers that one of the interface library includes, and those that they do, such as those of messages."""
+    """Return all headers that a header of the interface library includes, with nested ones, such as message headers."""
     found: dict[str, None] = {}
     waiting = [name]
     while waiting:
@@ -197,24 +198,24 @@ def behind_ours(name: str) -> tuple[str, ...]:
 
 
 def is_eigen(name: str) -> bool:
-    """Whether a header is Eigen's, which has no parts to be linked."""
+    """Return True if a header is Eigen's, which has no parts to link."""
     return name.startswith(("Eigen/", "eigen3/Eigen/", "unsupported/Eigen/"))
 
 
 def is_outside(name: str) -> bool:
-    """Whether a header is of a library from outside ROS: one that is known, Qt, or one that is installed here."""
+    """Return True if a header belongs to a library from outside ROS: a known one, Qt, or an installed one."""
     folder = name.partition("/")[0]
     is_qt = name[:1] == "Q" and name[1:2].isupper() and "." not in name
     return folder in OUTSIDE or is_qt or folder.startswith("Qt") or is_file(SYSTEM / name)
 
 
 def has_eigen() -> bool:
-    """Whether Eigen's headers are on this computer."""
+    """Return True if Eigen's headers are on this computer."""
     return is_file(SYSTEM / "eigen3" / "Eigen" / "Core")
 
 
 def is_file(path: Path) -> bool:
-    """Whether a file is there; of a name that no file can have it is not."""
+    """Return True if a file exists. False if the name is not a legal path."""
     try:
         return path.is_file()
     except (OSError, ValueError):
@@ -222,10 +223,10 @@ def is_file(path: Path) -> bool:
 
 
 def refused_headers(real_boost: bool) -> dict[str, str]:
-    """The headers that are refused, and the rule by which: those of ROS and Boost, known or installed here.
+    """Return the refused headers, each with its rule: headers of ROS and Boost, known or installed here.
 
     Args:
-        real_boost: whether the computer's Boost is taken.
+        real_boost: whether the computer's Boost is used.
     """
     installed = (name for folder in _installed() for name in _headers_in(folder))
     found = {name: "ros-library" for name in (*ros_headers(), *installed) if not is_ours(name)}
@@ -235,12 +236,12 @@ def refused_headers(real_boost: bool) -> dict[str, str]:
 
 
 def is_of_ros(folder: str) -> bool:
-    """Whether a folder of headers is a ROS package's."""
+    """Return True if a folder of headers is a ROS package's."""
     return folder in ROS_LIBRARIES or folder.endswith(("_msgs", "_srvs")) or folder == "roscpp"
 
 
 def _installed() -> list[Path]:
-    """Folders with the headers of a ROS on this computer."""
+    """Return folders with the headers of a ROS on this computer."""
     try:
         return sorted(each for each in SYSTEM.iterdir() if is_of_ros(each.name) and each.is_dir())
     except OSError:
@@ -255,12 +256,11 @@ def _headers_in(folder: Path) -> Iterator[str]:
 def write_refusals(folder: Path, real_boost: bool) -> list[str]:
     """Write the headers that refuse.
 
-    They stand on the include path behind the interface library, so that a ROS on this computer never fills a hole in
-    it.
+    They come on the include path after the interface library, so that a ROS on this computer never fills a gap in it.
 
     Args:
-        folder: gets them; it goes on the include path after all others.
-        real_boost: whether the computer's Boost is taken.
+        folder: receives them; it goes on the include path after all others.
+        real_boost: whether the computer's Boost is used.
 
     Returns:
         Their names, sorted.
@@ -272,12 +272,12 @@ def write_refusals(folder: Path, real_boost: bool) -> list[str]:
 
 
 def write_refusal(file: Path, why: str, rule: str) -> None:
-    """Write a header that refuses, with the rule behind the text."""
+    """Write a header that refuses, with the rule after the text."""
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(refusal(why, rule), encoding="utf-8")
 
 
 def refusal(why: str, rule: str) -> str:
-    """The text of a header that refuses."""
+    """Return the text of a header that refuses."""
     text = why.replace("\n", " ").replace('"', "'")
     return f'#error "roscfe: {text} [{rule}]"\n'

@@ -1,4 +1,4 @@
-"""What a program's sources say together: headers that are not on the list, callbacks that allocate, names, queues."""
+"""Findings in the sources of a program together: unlisted headers, callbacks that allocate, names, queues."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ from cfepy.status import UsageError
 from rospy_shim.types.msgs import Library
 
 LONGEST_SOURCE = 1_000_000
-"""Bytes of a source; one that is longer is no source that somebody has written."""
+"""Bytes of a source; a longer one was not written by hand."""
 CARRIED_OUT = ("thread", "socket", "serial", "process", "getchar")
-"""Rules about what refuses a node only where it is carried out."""
+"""Rules for code that refuses a node only if the code can be executed."""
 _MOST_FILES = 2000
 _MOST_BYTES = 4_000_000  # of all files of a program
 _NODELET = re.compile(rb"\bPLUGINLIB_(?:EXPORT|DECLARE)_CLASS\b|\bNODELET_EXPORT\b")
@@ -58,17 +58,17 @@ class ProgramSources:
         self.library = library
         self.files: dict[Path, SourceFile] = {}
         self.unreadable: dict[Path, str] = {}
-        self._size = 0  # bytes of all that was read
+        self._size = 0  # bytes of all files
         self.messages: set[str] = set()
         self.has_plugin = False
         self.generated: dict[str, str] = {}
-        """Texts of headers that are made of the package's configurations, by name."""
+        """Texts of headers from the package's configurations, by name."""
         self._unknown: list[Include] = []
         self._boost: set[str] = set()
         self._read_all()
 
     def look(self, report: CheckReport) -> None:
-        """Add all that the rules find; what the compiler finds is not among it."""
+        """Add all findings of the rules, without the compiler's errors."""
         report.files += sorted(self.files)
         report.unparsed += sum(each.unparsed for each in self.files.values())
         for path, problem in self.unreadable.items():
@@ -91,11 +91,11 @@ class ProgramSources:
             self._look_at_name(report, name)
 
     def make_configurations(self, report: CheckReport, program: Program) -> None:
-        """Make the headers of the configurations, which takes the packages' scripts in `cfg`.
+        """Make the headers of the configurations, with the packages' scripts in `cfg`.
 
         Args:
-            report: gets what is wrong with a script.
-            program: says which packages are looked through.
+            report: gets the errors of scripts.
+            program: has the packages to search.
         """
         for include in self._unknown:
             try:
@@ -105,18 +105,18 @@ class ProgramSources:
                 self.generated[include.name] = refusal(error.text, "configuration")
 
     def takes_real_boost(self, profile: Profile) -> bool:
-        """Whether the program is built with the Boost of this computer, since the small one has not all of it."""
+        """Return True if the program is built with this computer's Boost, because the small one lacks parts."""
         if profile is not Profile.HOST or not is_file(SYSTEM / "boost" / "version.hpp"):
             return False
         return any(name in BOOST_IN_PART or not is_small_boost(name) for name in self._boost)
 
     def included_at(self, header: str) -> SourcePlace | None:
-        """Where a header is included."""
+        """Return the place where a header is included."""
         found = (each for file in self.files.values() for each in file.includes if each.name == header)
         return next((each.place for each in found), None)
 
     def names(self) -> list[GraphName]:
-        """The names that the program uses, with types and constants that other files have."""
+        """Return the names that the program uses, with types and constants from its other files."""
         constants = self._agreed({}, "constants")
         parameters = self._agreed({}, "parameters")
         found = []
@@ -132,7 +132,7 @@ class ProgramSources:
         return found
 
     def _agreed(self, found: dict[str, str], what: str) -> dict[str, str]:
-        """What the files say of names together; a name of which they say different things is left out."""
+        """Return the values of names in all files; a name with different values is left out."""
         unclear = set()
         for file in self.files.values():
             for name, value in getattr(file, what).items():
@@ -179,7 +179,7 @@ class ProgramSources:
         return read_source(path, source)
 
     def _own(self, includer: Path, name: str) -> Path | None:
-        """The file that an include names, when it is the program's own."""
+        """Return the file of an include if it is the program's own."""
         if not name or "\0" in name or len(name) > 300:
             return None
         for folder in (includer.parent, *self.folders, OURS):
@@ -190,7 +190,7 @@ class ProgramSources:
         return None
 
     def _is_message_header(self, name: str) -> bool:
-        """Whether a header is made of a message's definition; it is then noted."""
+        """Return True if a header is made from a message's definition, and record the message."""
         kind = name.removesuffix(".h")
         if not name.endswith(".h") or kind.count("/") != 1:
             return False
@@ -225,7 +225,7 @@ class ProgramSources:
         else:
             report.add("include-unknown", place, f"{name} is not found")
 
-    # -- the rest ------------------------------------------------------------------------------------------------------
+    # -- mains, unused code and names ----------------------------------------------------------------------------------
 
     def _look_at_mains(self, report: CheckReport) -> None:
         mains = [main for path in self.sources if path in self.files for main in self.files[path].mains]
@@ -238,10 +238,10 @@ class ProgramSources:
                 report.add("main-form", main.place, f"main takes ({main.takes})")
 
     def _unused(self) -> set[Path]:
-        """Sources with nothing that another file can call, and headers that they alone include.
+        """Return sources without functions that another file can call, and headers that only they include.
 
-        They define methods of their own classes alone, and no object that is made when the program is loaded: as the
-        sources of a library do that the node links with for something else.
+        They define only methods of their own classes, and no object that is made when the program is loaded. Such
+        sources come from a library that the node links for another purpose.
         """
         includers: dict[Path, set[Path]] = {}
         for path, file in self.files.items():
@@ -276,7 +276,7 @@ class ProgramSources:
 
 
 def subscriptions(names: Sequence[GraphName]) -> Iterator[tuple[GraphName, int]]:
-    """Subscriptions whose type is seen, and how many messages wait in each."""
+    """Yield subscriptions with a known type, each with the number of messages that wait."""
     for each in names:
         if each.kind == "subscribe" and each.type:
             asked = LONGEST_QUEUE if not each.queue else each.queue
@@ -284,7 +284,7 @@ def subscriptions(names: Sequence[GraphName]) -> Iterator[tuple[GraphName, int]]
 
 
 def _without_dots(parts: Sequence[str]) -> list[str]:
-    """Parts of a path without `.` and, as far as they can be taken back, `..`."""
+    """Return parts of a path without `.` and, as far as possible, `..`."""
     kept: list[str] = []
     for part in parts:
         if part == ".." and kept and kept[-1] not in ("..", "/"):

@@ -1,4 +1,4 @@
-"""The programs that a check is asked for: of a package, of a source file, or of the nodes in a launch file."""
+"""The programs of a check: of a package, of a source file, or of the nodes in a launch file."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from rospy_shim.types.msgs import Packages
 
 
 def programs_of(words: Sequence[str], environ: Mapping[str, str]) -> list[Program]:
-    """The programs behind words of the command line.
+    """Return the programs for words of the command line.
 
     Args:
         words: a source file, a package's name or folder, or a launch file with its arguments.
-        environ: says where packages are.
+        environ: has the paths of packages.
 
     Returns:
-        Them, each once; of a package the libraries of its nodelets behind its executables.
+        The programs, each once; for a package the executables, then the libraries of its nodelets.
 
     Raises:
-        UsageError: there is nothing of that name, or it has no C++ node.
+        UsageError: nothing has that name, or it has no C++ node.
     """
     path = Path(os.path.abspath(words[0]))
     if len(words) == 1 and path.suffix in SUFFIXES:

@@ -1,6 +1,6 @@
-"""The rules of `cfepy convert check`: what is looked for in a node's sources, how bad it is, why, and what to do.
+"""The rules of `cfepy convert check`: each with its criterion, its level, the reason, and the remedy.
 
-docs/how_to/convertor.md has this table too; a test holds them together.
+docs/how_to/convertor.md has this table too; a test checks that they are the same.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from cfepy.extra.convert.message_headers import Profile
 
 
 class Level(StrEnum):
-    """How bad a finding is: an error refuses the node; a warning and a note do not. The words are SARIF's."""
+    """The level of a finding: an error refuses the node; a warning and a note do not. The words are SARIF's."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -24,9 +24,9 @@ class CheckRule(NamedTuple):
 
     Attributes:
         id: its name, by which findings and `#error` texts of headers refer to it.
-        host, pool, strict: its level by profile; None where it does not matter.
-        what: it looks for.
-        why: that matters on cFE.
+        host, pool, strict: its level by profile; None where it does not apply.
+        what: the code that it looks for.
+        why: the reason why that matters on cFE.
         remedy: what to do.
     """
 
@@ -39,7 +39,7 @@ class CheckRule(NamedTuple):
     remedy: str
 
     def level(self, profile: Profile) -> Level | None:
-        """Its level in a profile; None where it is not looked for."""
+        """Return its level in a profile; None if it does not apply."""
         return {Profile.HOST: self.host, Profile.POOL: self.pool, Profile.STRICT: self.strict}[profile]
 
 

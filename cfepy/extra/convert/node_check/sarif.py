@@ -19,13 +19,13 @@ SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sar
 
 
 def sarif_of(reports: Sequence[CheckReport], profile: Profile, version: str, base: Path) -> dict[str, Any]:
-    """A log of findings.
+    """Return a log of findings.
 
     Args:
         reports: of the programs.
-        profile: that they were checked for.
+        profile: the profile of the check.
         version: of cfepy.
-        base: folder that paths below it are told from.
+        base: paths below this folder are relative to it.
 
     Returns:
         Plain data for JSON.

@@ -1,9 +1,8 @@
-"""Reads a C++ source without the compiler: what it includes, calls, throws and keeps, and the names that it uses.
+"""Reads a C++ source without the compiler: its includes, calls, exceptions and variables, and the names that it uses.
 
-The parser is tree-sitter, which needs no headers and reads what does not compile; this module alone imports it.
-
-Each file is read once, for all profiles; what a place means depends on the other files of the program and is said by
-`cfepy.extra.convert.node_check.program`.
+The parser is tree-sitter, which needs no headers and reads sources that do not compile; this module alone imports it.
+Each file is read once, for all profiles. `cfepy.extra.convert.node_check.program` interprets the places, because that
+depends on the other files of the program.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ CALLS: dict[str, str] = {
     **dict.fromkeys(("pthread_create", "std::async", "boost::async"), "thread"),
     **dict.fromkeys(("typeid", "dynamic_cast", "boost::dynamic_pointer_cast", "std::dynamic_pointer_cast"), "rtti"),
 }
-"""Functions by the rule that their call falls under."""
+"""Functions, each with the rule for its call."""
 TYPES: dict[str, str] = {
     **dict.fromkeys(("std::thread", "boost::thread", "boost::thread_group", "std::jthread", "pthread_t"), "thread"),
     **dict.fromkeys(("std::ifstream", "std::ofstream", "std::fstream", "ifstream", "ofstream", "fstream"), "file"),
@@ -49,13 +48,13 @@ TYPES: dict[str, str] = {
     **dict.fromkeys(("std::condition_variable", "std::condition_variable_any", "boost::barrier"), "thread"),
     **dict.fromkeys(("serial::Serial", "boost::asio::serial_port", "termios"), "serial"),
 }
-"""Types by the rule that what is declared with them falls under."""
+"""Types, each with the rule for its declarations."""
 _EMPTY = ("std::thread", "boost::thread", "boost::thread_group", "std::jthread", "pthread_t")
-"""Members of these types start nothing by themselves."""
+"""Members of these types start nothing until they are used."""
 _MEMBERS = frozenset(name for name, rule in TYPES.items() if rule in ("socket", "serial", "thread")) - {*_EMPTY}
 _METHODS = {"create_thread": "thread"}
 _KEYBOARD = frozenset(("stdin", "STDIN_FILENO", "cin"))
-"""What a function that is given it reads; std::cin is met wherever it stands."""
+"""Arguments for standard input; std::cin is found at any place."""
 GROWING = frozenset(
     ("push_back", "emplace_back", "resize", "insert", "emplace", "reserve", "push_front", "append", "assign")
 )
@@ -100,12 +99,12 @@ def read_source(path: Path, source: bytes) -> SourceFile:
 
 
 class _Around(NamedTuple):
-    """What a node stands in.
+    """A node around the current one.
 
     Attributes:
-        end: byte where it ends.
-        kind: type of the node that it is.
-        function: name of the innermost function around, itself included.
+        end: byte at which it ends.
+        kind: its type.
+        function: name of the innermost function around it, or of itself.
     """
 
     end: int
@@ -114,14 +113,14 @@ class _Around(NamedTuple):
 
 
 class _Reader:
-    """Walks a tree once, and knows at each node what it stands in."""
+    """Walks a tree once, and knows the nodes around each node."""
 
     def __init__(self, path: Path) -> None:
         self._file = SourceFile(path)
         self._around: list[_Around] = []
-        self._kinds: Counter[str] = Counter()  # of what is around
-        self._given: set[int] = set()  # where the lambdas begin that are given to ROS on the spot
-        self._lost: list[int] = []  # where what the parser does not understand ends, such as a class with a macro
+        self._kinds: Counter[str] = Counter()  # of the nodes around
+        self._given: set[int] = set()  # positions of lambdas that are passed directly to ROS
+        self._lost: list[int] = []  # ends of code that the parser does not understand, such as a class with a macro
         self._later: list[Node] = []
         self._skip = 0
         self._readers = {
@@ -141,7 +140,7 @@ class _Reader:
         }
 
     def read(self, root: Node) -> SourceFile:
-        """All of a file."""
+        """Read a whole file."""
         for node in _nodes(root):
             if node.start_byte < self._skip:
                 continue
@@ -157,7 +156,7 @@ class _Reader:
             self._enter(node)
             if node.type in _LOST and node != root:
                 self._lost.append(node.end_byte)
-        for call in self._later:  # names can be constants that are defined further down
+        for call in self._later:  # names can be constants that are defined later
             self._name_of_call(call)
         return self._file
 
@@ -180,7 +179,7 @@ class _Reader:
         self._around.append(_Around(node.end_byte, node.type, function or outer))
         self._kinds[node.type] += 1
 
-    # -- what rules are about ------------------------------------------------------------------------------------------
+    # -- rules ---------------------------------------------------------------------------------------------------------
 
     def _place(self, node: Node) -> SourcePlace:
         return SourcePlace(self._file.path, node.start_point[0] + 1, node.start_point[1] + 1)
@@ -193,7 +192,7 @@ class _Reader:
         path = node.child_by_field_name("path")
         text = _text(path)
         if path is None or path.type not in ("string_literal", "system_lib_string") or len(text) < 3:
-            return  # by a macro, which the compiler knows
+            return  # by a macro, which only the compiler knows
         conditional = any(self._kinds[kind] for kind in _CONDITIONS)
         self._file.includes.append(Include(text[1:-1].strip(), self._place(node), conditional))
 
@@ -244,7 +243,7 @@ class _Reader:
             self._file.classes.add(_plain(_text(node.child_by_field_name("name"))))
 
     def _object(self, node: Node, kind: str) -> None:
-        """An object of a type is made."""
+        """Record that an object of a type is made."""
         rule = TYPES.get(kind)
         if rule is not None:
             self._meet(rule, node, f"a {kind}")
@@ -266,7 +265,7 @@ class _Reader:
             self._declared_name(node, each, kind)
 
     def _keep(self, node: Node, name: str, words: set[str]) -> None:
-        """A variable that outlives what it stands in."""
+        """Record a variable that outlives its scope."""
         kinds = {kind for kind, count in self._kinds.items() if count} - set(_CONDITIONS)
         if not kinds and not words & {"constexpr", "extern", "using", "typedef"} and not self._lost:
             self._file.has_objects = True
@@ -292,7 +291,7 @@ class _Reader:
             self._meet(rule, node, f"{name}()" if rule != "rtti" else name)
         elif _reads_keyboard(name, [_text(each) for each in _arguments(node)]):
             self._meet("getchar", node, f"{name}()")
-        self._object(node, name)  # one that nobody keeps: std::thread(work).detach()
+        self._object(node, name)  # an unnamed object: std::thread(work).detach()
         if name in _FUNCTIONS:
             self._later.append(node)
 
@@ -323,9 +322,9 @@ class _Reader:
         field_node = function.child_by_field_name("field")
         call = _plain(_text(field_node))
         if call == "subscribe" and len(arguments) > 1 and _constant_text(arguments[1]) is not None:
-            arguments = arguments[1:]  # a filter's, which is given the node's handle first
+            arguments = arguments[1:]  # a filter's, whose first argument is the node's handle
         elif (call == "subscribe" and len(arguments) < 3) or not arguments:
-            return  # options, which have the name
+            return  # options, which contain the name
         if call == "param" and len(arguments) > 2:
             default = self._constant(arguments[2])
             if default is not None:
@@ -333,7 +332,7 @@ class _Reader:
         self._use(_HANDLE_CALLS[call], node, arguments, _template(field_node))
 
     def _declared_name(self, node: Node, declarator: Node, kind: str) -> None:
-        """A filter's subscriber or an action's server, whose constructor is given a name."""
+        """Record the name in the constructor of a filter's subscriber or an action's server."""
         found = next((role for name, role in _DECLARED.items() if kind.endswith(name)), None)
         value = declarator.child_by_field_name("value") if declarator.type == "init_declarator" else None
         if found is None or value is None or value.type != "argument_list":
@@ -359,7 +358,7 @@ class _Reader:
 
 
 def _constant_text(node: Node | None, constants: dict[str, str] | None = None) -> str | None:
-    """The text that an expression has, when it is one that is known before the program runs."""
+    """Return the text of an expression, if it is known before the program runs."""
     if node is None or (node.end_byte - node.start_byte > _LONGEST_NAME and not node.type.endswith("string_literal")):
         return None
     inner = [each for each in node.named_children if each.type != "comment"]
@@ -380,13 +379,13 @@ def _constant_text(node: Node | None, constants: dict[str, str] | None = None) -
     return None
 
 
-_LONGEST_TEXT = 8_000  # bytes of a node whose text is looked at
+_LONGEST_TEXT = 8_000  # bytes of a node whose text is read
 _LONGEST_NUMBER = 19  # digits of the length of a queue
-_LONGEST_NAME = 500  # bytes of an expression that is looked into
+_LONGEST_NAME = 500  # bytes of an expression that is examined
 
 
 def _reads_keyboard(function: str, given: list[str]) -> bool:
-    """Whether a call reads what is typed: it is given the standard input, or read() its number."""
+    """Return True if a call reads the keyboard: its arguments are standard input, or 0 for read()."""
     return not _KEYBOARD.isdisjoint(given) or (function in ("read", "::read") and given[:1] == ["0"])
 
 
@@ -396,7 +395,7 @@ def _arguments(call: Node) -> list[Node]:
 
 
 def _functions_in(argument: Node) -> list[str]:
-    """Names of the functions that an argument hands over: `&Class::method`, `function`, or in a bind."""
+    """Return names of the functions in an argument: `&Class::method`, `function`, or in a bind."""
     while argument.type == "call_expression" and _calls_bind(argument):
         given = _arguments(argument)
         if not given:
@@ -412,14 +411,14 @@ def _calls_bind(call: Node) -> bool:
 
 
 def _lambda_type(argument: Node) -> str:
-    """The type that a lambda takes, behind a blank, which no name of a function has."""
+    """Return the type of a lambda's parameter, after a blank, which no name of a function has."""
     declarator = argument.child_by_field_name("declarator") if argument.type == "lambda_expression" else None
     first = [] if declarator is None else _parameters(declarator)
     return f" {_text(first[0])}" if first else ""
 
 
 def _declarator(node: Node) -> Node | None:
-    """The function's declarator, behind `*` and `&` of what it returns."""
+    """Return the function's declarator, after `*` and `&` of its return type."""
     found = node.child_by_field_name("declarator")
     while found is not None and found.type in ("pointer_declarator", "reference_declarator"):
         found = found.child_by_field_name("declarator") or next(iter(found.named_children), None)
@@ -437,7 +436,7 @@ def _parameters(declarator: Node) -> list[Node]:
 
 
 def _taken(parameters: list[Node]) -> str:
-    """What a main takes; see `Main`."""
+    """Return the parameters of a main; see `Main`."""
     texts = ["".join(_text(each).split()) for each in parameters]
     if not texts or texts == ["void"]:
         return "nothing"
@@ -447,7 +446,7 @@ def _taken(parameters: list[Node]) -> str:
 
 
 def _is_variable(node: Node) -> bool:
-    """Whether a declarator declares a variable, not a function."""
+    """Return True if a declarator declares a variable, not a function."""
     seen: Node | None = node
     while seen is not None:
         if seen.type == "function_declarator":
@@ -473,7 +472,7 @@ def _variable_name(node: Node) -> str:
 
 
 def _is_guard(node: Node) -> bool:
-    """Whether a condition is the guard around a whole header."""
+    """Return True if a condition is the guard around a whole header."""
     name = node.child_by_field_name("name")
     if node.parent is None or node.parent.type != "translation_unit" or name is None:
         return False
@@ -484,14 +483,14 @@ def _is_guard(node: Node) -> bool:
 
 
 def _template(node: Node | None) -> str:
-    """The first template argument of a name, as written."""
+    """Return the first template argument of a name, as written."""
     text = _text(node)
     start = text.find("<")
     return "" if start < 0 or len(text) > _LONGEST_NAME else text[start + 1 : text.rfind(">")].strip()
 
 
 def _type_name(text: str) -> str:
-    """A message's type as ROS writes it, of how C++ does: "std_msgs/String" of "const std_msgs::StringConstPtr &"."""
+    """Convert a message's C++ type to ROS's form: "const std_msgs::StringConstPtr &" to "std_msgs/String"."""
     for word in ("const", "boost::shared_ptr", "std::shared_ptr", "ros::MessageEvent", "typename", "&", "*", "<", ">"):
         text = text.replace(word, " ")
     words = text.split()
@@ -505,12 +504,12 @@ def _type_name(text: str) -> str:
 
 
 def type_of(parameter: str) -> str:
-    """The type of message that a callback takes, by its first parameter as written; empty when it is not seen."""
+    """Return the message type of a callback, from its first parameter as written; empty when it is not known."""
     return _type_name(parameter)
 
 
 def _plain(text: str) -> str:
-    """A name without template arguments, blanks, and the `::` of the outermost namespace."""
+    """Return a name without template arguments, blanks, and the `::` of the outermost namespace."""
     return "".join(text.partition("<")[0].split()).removeprefix("::")
 
 
@@ -522,7 +521,7 @@ def _last(name: str) -> str:
 
 
 def _parse(source: bytes) -> Tree:
-    """The tree of a source.
+    """Return the tree of a source.
 
     Raises:
         UsageError: tree-sitter is not installed.
@@ -531,7 +530,7 @@ def _parse(source: bytes) -> Tree:
 
 
 def _nodes(root: Node) -> Iterator[Node]:
-    """A node and all below it, in the order of the source; as deep as they go."""
+    """Yield a node and all nodes below it, in the order of the source, at any depth."""
     cursor = root.walk()
     while True:
         node = cursor.node
@@ -545,7 +544,7 @@ def _nodes(root: Node) -> Iterator[Node]:
 
 
 def _text(node: Node | None) -> str:
-    """The source text of a node; empty for None, and for what is longer than any name."""
+    """Return the source text of a node; empty for None, and for a text longer than any name."""
     if node is None or node.end_byte - node.start_byte > _LONGEST_TEXT:
         return ""
     return "" if node.text is None else node.text.decode("utf-8", errors="replace")

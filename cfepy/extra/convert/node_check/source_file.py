@@ -1,4 +1,4 @@
-"""What a C++ source has, as it is read without the compiler: plain data, for each file by itself."""
+"""The contents of a C++ source, read without the compiler: plain data, separately for each file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Include(NamedTuple):
     Attributes:
         name: of the header.
         place: of the line.
-        conditional: whether it stands between `#if` and `#endif`, where the compiler alone knows whether it counts.
+        conditional: whether it is between `#if` and `#endif`, where only the compiler knows whether it counts.
     """
 
     name: str
@@ -24,12 +24,12 @@ class Include(NamedTuple):
 
 
 class Met(NamedTuple):
-    """Something that a rule is about.
+    """A place that matches a rule.
 
     Attributes:
         rule: its id.
-        place: where.
-        message: what it is.
+        place: its place.
+        message: the message for the finding.
         function: names of the functions around it, without their classes; "lambda" for one that is a callback.
     """
 
@@ -43,8 +43,8 @@ class Main(NamedTuple):
     """A definition of main.
 
     Attributes:
-        place: where.
-        takes: "nothing", "arguments", or something else that main may not take, as written.
+        place: its place.
+        takes: "nothing", "arguments", or invalid parameters, as written.
     """
 
     place: SourcePlace
@@ -53,20 +53,20 @@ class Main(NamedTuple):
 
 @dataclass(slots=True)
 class SourceFile:
-    """What one source has.
+    """The contents of one source.
 
     Attributes:
         path: of the file.
-        includes, met, mains: as they come.
-        names: that it uses in the ROS graph.
-        callbacks: names of functions that are given to ROS.
+        includes, met, mains: in the order of the file.
+        names: names in the ROS graph that it uses.
+        callbacks: names of functions that are passed to ROS.
         parameters: the type of the first parameter of each function, by its name without its class.
         constants: variables and macros that hold a text.
-        defaults: variables that get a parameter's value, and the default that is written there.
+        defaults: variables that get a parameter's value, with the default value in the source.
         handlers: the callback of each subscription, by its place.
         classes: names of classes that are defined in it.
-        owners: of the functions that are defined outside of classes, the class; "" for those of none. Functions that
-            other files cannot call are left out.
+        owners: of the functions that are defined outside of classes, the class; "" for functions without a class.
+            Functions that other files cannot call are left out.
         has_objects: whether there are variables of the whole program that may be made when it is loaded.
         unparsed: places that the parser does not understand.
     """

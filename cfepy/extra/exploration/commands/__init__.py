@@ -1,6 +1,6 @@
-"""The commands explore, faults and sweep, which find out what may go wrong in a mission; here are their options.
+"""The options of the commands explore, faults and sweep, which find out how a mission can fail.
 
-A command belongs here when it flies a mission many times, or makes faults happen in it, to find what fails.
+A command belongs here when it flies a mission many times, or makes faults happen in it, to find failures.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def _add_explore(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog=STATUS_HELP,
     )
     add_mission_or_node(explore, nargs="?")
-    add_run_options(explore, without=["schedule"])  # it is what explore chooses
+    add_run_options(explore, without=["schedule"])  # explore chooses the schedule
     _add_search(explore)
     _add_failures(explore)
     _add_crew(explore, "schedule")
@@ -53,7 +53,7 @@ def _add_explore(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def _add_search(explore: argparse.ArgumentParser) -> None:
-    """Which schedules."""
+    """Add the options that choose the schedules."""
     explore.add_argument(
         "--seeds",
         type=_count_of,
@@ -130,7 +130,7 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
 
 
 def _add_failures(explore: argparse.ArgumentParser) -> None:
-    """What counts as a failure."""
+    """Add the options that define a failure."""
     explore.add_argument(
         "--events",
         choices=("error", "critical", "none"),
@@ -156,7 +156,7 @@ def _add_failures(explore: argparse.ArgumentParser) -> None:
 
 
 def _add_crew(explore: argparse.ArgumentParser, what: str) -> None:
-    """The options for the processes that run them, each one at a time."""
+    """Add the options for the processes that run them, each one at a time."""
     explore.add_argument(
         "--jobs", type=_count_of, metavar="N", help="processes on this computer (default: one on each CPU)"
     )
@@ -173,7 +173,7 @@ def _add_crew(explore: argparse.ArgumentParser, what: str) -> None:
 
 
 def _add_outputs(explore: argparse.ArgumentParser) -> None:
-    """What is left behind, and what is shown."""
+    """Add the options for output files and displayed text."""
     explore.add_argument(
         "--results",
         metavar="FILE",

@@ -1,6 +1,6 @@
 """`cfepy explore`: run a mission under many schedules, and report what fails under some of them.
 
-Each failure is told once, with the command that replays it and its timeline.
+Each failure is reported once, with the command that replays it and its timeline.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from cfepy.status import UsageError
 from cfepy.units import NS_PER_S, time_text
 
 RUNS_THAT_ARE_COMPARED = 2
-INDENT = 2  # of what is told of a failure
+INDENT = 2  # of the lines about a failure
 
 
 def show(report: Report, stream: TextIO) -> None:
-    """Print it."""
+    """Print a report."""
     for number, told in enumerate(report.findings, 1):
         seen = "failure" if told.repeats else "seen once and not again: failure"
         print(f"{seen} {number}: {told.finding.failure.title}", file=stream)
@@ -52,7 +52,7 @@ def show(report: Report, stream: TextIO) -> None:
 
 
 def summary(report: Report) -> str:
-    """The last line: how many schedules, how many failed, of how many kinds."""
+    """Return the last line: the numbers of schedules, of failures, and of distinct failures."""
     tally = report.tally
     if not report.is_steady:
         return "no schedules: two runs under fifo differ"
@@ -69,7 +69,7 @@ def summary(report: Report) -> str:
 
 
 def _width_of(stream: TextIO) -> int:
-    """Characters of a line of a story: as many as a terminal has, if that is wide; anywhere else always the same."""
+    """Return the width of a story's line: the terminal's width if that is larger; always the same for other streams."""
     return max(WIDTH, shutil.get_terminal_size().columns - INDENT) if stream.isatty() else WIDTH
 
 
@@ -98,7 +98,7 @@ def _about(report: Report, told: Told, width: int) -> Iterator[str]:
 
 
 def _longest(report: Report, worst: Worst, width: int) -> Iterator[str]:
-    """What took longest, how long it took otherwise, and the command that shows it."""
+    """Yield lines about the longest run: its time, the usual time, and the command that shows it."""
     found, longest = worst.distribution, worst.distribution.longest
     if longest is None or worst.schedule is None:
         yield f"worst {found.measure.text}: no value was measured; check the name"
@@ -151,7 +151,7 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: it cannot be explored like this.
+        UsageError: the mission cannot be explored with these options.
     """
     if arguments.replay_all is not None:
         from cfepy.extra.exploration.commands.replay_all import run as replay
@@ -172,7 +172,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _show_leak(plan: RunPlan, schedule: Schedule) -> None:
-    """Two runs under one schedule differed: say where, as far as it can be found."""
+    """Report where two runs under one schedule differ, as far as the place can be found."""
     from cfepy.cli.run.check_determinism import compare
 
     print(f"\nnot deterministic: two runs under {schedule} differ, so not the schedule alone decides", flush=True)
@@ -185,7 +185,7 @@ def _show_leak(plan: RunPlan, schedule: Schedule) -> None:
 
 
 def _expedition(arguments: argparse.Namespace) -> Expedition:
-    """What the command line asks for."""
+    """Return the exploration that the command line requests."""
     names = ("policy", "depth", "first_seed", "any_priority", "fair", "until_failure", "events", "jobs", "cluster")
     more = ("worst", "results", "shrink", "points")
     return Expedition(

@@ -1,4 +1,4 @@
-"""`cfepy faults`: write a random fault plan for a mission, or say what faults can strike in it."""
+"""`cfepy faults`: write a random fault plan for a mission, or list what faults can strike in it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cfepy.pilot import booting
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do what the command line says.
+    """Run the command.
 
     Returns:
         The exit status.

@@ -1,4 +1,4 @@
-"""`cfepy explore --replay-all`: the failures of a results file in the mission as it now is."""
+"""`cfepy explore --replay-all`: fly the failures of a results file again in the current mission."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from cfepy.extra.exploration import GONE, NOT_POSSIBLE, STILL_THERE, ReplayedFai
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Fly them, and tell which are gone.
+    """Fly the failures again, and report which are gone.
 
     Returns:
         The exit status.
 
     Raises:
-        UsageError: it is no results file, the mission cannot be flown, or an option is for a search.
+        UsageError: the file is not a results file, the mission cannot be flown, or an option is for a search.
     """
     path = arguments.replay_all
     refuse_run_options(

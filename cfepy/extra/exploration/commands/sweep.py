@@ -1,4 +1,4 @@
-"""`cfepy sweep`: fly a mission at many rates, boards, seeds and values, and tell up to where it is carried."""
+"""`cfepy sweep`: fly a mission at many rates, boards, seeds and values, and report the highest rate without losses."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ HINT_COLUMN = "why it is not clean"
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Sweep, as the command line says.
+    """Run the sweep of the command line.
 
     Returns:
         The exit status.
 
     Raises:
-        UsageError: the mission or the points cannot be, or a file cannot be written.
+        UsageError: the mission or the points are invalid, or a file cannot be written.
     """
     plan = plan_of_mission(arguments)
     check_json(arguments)
@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _flown(arguments: argparse.Namespace, plan: RunPlan) -> tuple[list[SweepRow], bool]:
-    """All points that were flown, in order, and whether these are all."""
+    """Fly the points. Returns the flown points in order, and whether these are all points."""
     varied = [(name, values_of(text, "--set")) for name, text in arguments.varied]
     rates = [] if arguments.rate is None else numbers_of(arguments.rate, "--rate")
     boards: list[str | None] = [_board(each) for text in arguments.boards for each in text.split(",")] or [None]
@@ -108,7 +108,7 @@ def _args(varied: Sequence[tuple[str, list[str]]]) -> list[tuple[str, list[str]]
 
 
 def _board(word: str) -> str:
-    """A board, a file by its absolute path, since it is read elsewhere."""
+    """Return a board. A file becomes an absolute path, because another process reads it."""
     is_file = word.endswith((".yaml", ".yml")) or os.sep in word
     return os.path.abspath(word) if is_file else word
 
@@ -120,7 +120,7 @@ def _csv_text(rows: Sequence[Sequence[object]], quotes: bool) -> str:
 
 
 def _table(rows: Sequence[SweepRow]) -> Table:
-    """A row for each point, with the numbers of its worst topic."""
+    """Return a table with a row for each point, with the numbers of its worst topic."""
     names = list(dict.fromkeys(name for row in rows for name, _ in row.varied))
     columns = ("board", "rate, Hz", *names, "seed", "came, Hz", "lost", "held back", "latency", "longest", "CPU")
     numbers = tuple(at for at in range(1, len(columns)))
@@ -151,7 +151,7 @@ def _table(rows: Sequence[SweepRow]) -> Table:
 
 
 def _check_picture(file: str | None) -> None:
-    """That it can be drawn is better known before many runs than after them."""
+    """Check before the runs that the picture can be drawn."""
     if file is None:
         return
     from cfepy.extra.reports import figure_of_matplotlib
