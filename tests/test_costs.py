@@ -12,7 +12,7 @@ from dev.costs import meter
 from dev.costs.table import ROOT, SLOW_S, Table, file_of, function_of, lines
 from tests import quick
 
-SLOW, DEAR, CHEAP = 0.5, 0.2, 0.01
+SLOW, DEAR, CHEAP = 0.5, 0.1, 0.01
 MEASURED = {
     "tests/a.py::test_one": DEAR,
     "tests/a.py::test_two[x]": CHEAP,

@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 PATH = ROOT / "tests/costs.tsv"
 DEAR_S = 0.04  # of CPU time: the quick loop has no such test
-SLOW_S = 0.25  # of CPU time: such a test is a slow one
+SLOW_S = 0.2  # of CPU time: such a test is a slow one
 
 
 def file_of(test: str) -> str:
