@@ -373,8 +373,7 @@ def add_from_disk(parser: argparse.ArgumentParser) -> None:
     )
 
 
-# # -- files, begin and end
-# ------------------------------------------------------------------------------------------------
+# -- files, begin and end ----------------------------------------------------------------------------------------------
 
 
 def add_json(parser: Options, what: str) -> None:

@@ -93,7 +93,7 @@ class PerfettoTrace(Observer):
             self._events.name_thread(pid, tid, task.name)
         return pid, tid
 
-    # # -- events ------------------------------------------------------------------------------------------------------
+    # -- events --------------------------------------------------------------------------------------------------------
 
     def on_run(self, task: Task, at_ns: int) -> None:
         """Begin a slice."""

@@ -83,9 +83,7 @@ class Errands:
             self._threads += 1
         try:
             threading.Thread(target=self._work, name="errands", daemon=True).start()
-        except (
-            RuntimeError
-        ):  # this computer has no more threads now; a running one takes it, or the next call starts one
+        except RuntimeError:  # no more threads now; a running one takes it, or the next call starts one
             with self._guard:
                 self._threads -= 1
 

@@ -260,8 +260,7 @@ class RosHost:
         """Return the name of the outside node at a URI; "" if it is unknown."""
         return self.world.name_at(uri)
 
-    # # -- new and lost nodes
-    # -----------------------------------------------------------------------------------------------
+    # -- new and lost nodes --------------------------------------------------------------------------------------------
 
     def _look(self, now_s: float) -> None:
         self.bounds.places.look(now_s)
@@ -308,8 +307,7 @@ class RosHost:
         fields = {"probe": "1", "md5sum": ANY, "callerid": self.world.caller, "service": service}
         OutsideCall(self, service, uri, fields, b"", over)
 
-    # # -- the mission's nodes, as others see them
-    # --------------------------------------------------------------------------
+    # -- the mission's nodes, as others see them -----------------------------------------------------------------------
 
     def publication(self, topic: str, name: str) -> dict[str, str] | None:
         """Return the connection header of a publisher of the mission, or None if there is none."""

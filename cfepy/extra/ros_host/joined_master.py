@@ -141,8 +141,7 @@ class JoinedMaster:
     def _ask(self, method: str, arguments: tuple[Any, ...], done: Callable[..., object] | None = None) -> None:
         self._host.errands.ask(self.uri, method, arguments, done or (lambda result, error: None))
 
-    # # -- the state of the master
-    # ------------------------------------------------------------------------------------------
+    # -- the state of the master ---------------------------------------------------------------------------------------
 
     def _found(self, found: MasterState | None, error: Exception | None) -> None:
         self._asks = False

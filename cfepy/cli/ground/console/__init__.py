@@ -141,8 +141,7 @@ class Opening:
         went_wrong = flown is not None and flown.results.problems
         return FOUND_PROBLEMS if session.failed or went_wrong else ENDED_WELL
 
-    # # -- a remote target
-    # -----------------------------------------------------------------------------------------------
+    # -- a remote target -----------------------------------------------------------------------------------------------
 
     @contextlib.contextmanager
     def _remote(self) -> Iterator[ConsoleSession]:

@@ -247,8 +247,7 @@ class ConsoleScreen(App[None]):
         self.is_idle = False
         self._typed.put(line)
 
-    # # -- drawing; the session's thread waits meanwhile
-    # -----------------------------------------------------------------
+    # -- drawing; the session's thread waits meanwhile -----------------------------------------------------------------
 
     def _begin(self, session: ConsoleSession) -> None:
         self._session = session

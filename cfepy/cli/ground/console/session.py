@@ -156,8 +156,7 @@ class ConsoleSession:
             "quit": ConsoleWord(self._quit, "quit", "end the session"),
         }
 
-    # # -- output
-    # --------------------------------------------------------------------------------------------------------
+    # -- output --------------------------------------------------------------------------------------------------------
 
     def take_entries(self) -> list[Entry]:
         """Return the output since the last call."""
