@@ -1,7 +1,7 @@
 """The distributions of ROS that a node finds installed: rospy, genpy and the libraries, with their versions.
 
 A node looks for them with `importlib.metadata` or `pkg_resources`; for other distributions it gets the host's answers.
-Versions are those of ROS Noetic (index.ros.org).
+Versions are ROS Noetic's (index.ros.org).
 """
 
 from __future__ import annotations

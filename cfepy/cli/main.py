@@ -209,7 +209,7 @@ def terminable() -> Iterator[None]:
 
 
 def _command(module: str) -> Any:
-    """The module of a command. What is imported stays, so that garbage is not looked for in it, which takes as long."""
+    """Import and freeze a command's module: collecting garbage in it would take as long as the import."""
     if module in sys.modules:
         return sys.modules[module]
     with no_collection:

@@ -37,7 +37,7 @@ STATUS_HELP = """exit status:
   2    bad usage, or a mission that cannot boot
   130  ended by Ctrl-C, SIGTERM or SIGHUP (the report is still printed)"""
 
-# -- what decides a run ------------------------------------------------------------------------------------------------
+# -- the inputs of a run -----------------------------------------------------------------------------------------------
 
 
 def _add_launch_args(parser: Options) -> None:

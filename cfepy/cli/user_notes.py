@@ -1,4 +1,4 @@
-"""Messages that several commands share: a file cannot be written, or a run did not do what was asked."""
+"""Messages that several commands share: a file cannot be written, or a run did not do all that was asked of it."""
 
 from __future__ import annotations
 

@@ -197,7 +197,7 @@ class WatchedHost(Host):
         self._go = lambda until_ns: paced.step(min(until_ns, kernel.now + self._piece.ns))
 
     def _connect(self) -> None:
-        """Open real ports for the mission's. Only a run in real time has them, and only it imports what they need."""
+        """Open real ports for the mission's ports. Only a run in real time has them and imports the code for them."""
         from cfepy.io import HostNetwork
 
         self._mission.kernel.context.be_prompt()

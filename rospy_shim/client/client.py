@@ -100,7 +100,7 @@ class Client:
         return f"{name}_{universe.pid}_{(universe.clock.epoch_ns + universe.kernel.now) // 1_000_000}"
 
     def _load_params(self, argv: Sequence[str]) -> None:
-        """Set the private parameters of the mission file, and then those of the command line."""
+        """Set the private parameters given in the mission file, and then the ones on the command line."""
         self._node.params.give(self._node.config.params)
         for name, value in self.load_command_line_node_params(argv).items():
             self._node.params.set_param(f"~{name}", value)

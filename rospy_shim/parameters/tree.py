@@ -52,7 +52,7 @@ class ParameterTree:
         self._rows, self._save = rows, save
 
     def restore(self, root: dict[str, Any], rows: ParameterRows, save: Callable[[], object]) -> None:
-        """Replace the present parameters by those of tables; arguments as for `keep_in`."""
+        """Replace the present parameters by the ones in tables; arguments as for `keep_in`."""
         if self._rows is None:
             self._survived = True  # these tables have not been changed since the processor started
         self._root, self._rows, self._save = root, rows, save

@@ -31,7 +31,7 @@ def addressed(packet: bytes, pipe: int, number: int = 0) -> bytes:
     Args:
         packet: packet of a topic.
         pipe: the id of the subscriber's pipe.
-        number: number of the subscription among those of a compiled node to the topic; the first is 0.
+        number: number of the subscription among a compiled node's subscriptions to the topic; the first is 0.
     """
     return packet[:SPARE_AT] + _address(pipe, number) + packet[HEADER_BYTES:]
 

@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _find(arguments: argparse.Namespace) -> Find:
-    """Make the lookup of table types: those of the mission, of shipped apps, and of `--layout`."""
+    """Make the lookup of table types of the mission, of shipped apps, and of `--layout`."""
     problems: list[str] = []
     known = table_types(arguments.mission, problems)
     for problem in problems:

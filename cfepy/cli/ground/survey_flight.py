@@ -1,4 +1,4 @@
-"""The flight in which `cfepy mids` and `cfepy graph` look at a mission: 10 virtual seconds by default."""
+"""The flight that `cfepy mids` and `cfepy graph` make to look at a mission: 10 virtual seconds by default."""
 
 from __future__ import annotations
 

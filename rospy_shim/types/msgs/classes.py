@@ -166,7 +166,7 @@ def _add_readers(cls: MessageClass, spec: Spec, table: TypeTable, names: Namespa
 
 
 def _counter(spec: Spec, table: TypeTable, names: Namespace) -> Callable[[Message], int] | None:
-    """Make the function that counts the messages in a message's arrays: its own, and those of single messages in it."""
+    """Make the function that counts the messages in the arrays of a message and of single messages in it."""
     lengths = " + ".join(f"len(self.{path})" for path in _arrays(spec, table))
     if not lengths:
         return None

@@ -235,7 +235,7 @@ def hash_text(text: str) -> str:
 
 
 def full_text(spec: Spec, lookup: _Lookup) -> str:
-    """Return the definition followed by those of all types that it needs, each once, in order of first need."""
+    """Return the definition and the definitions of all types that it needs, each once, in order of first need."""
     parts = [spec.text + "\n"]
     for name in _needs(spec, lookup):
         parts.append(f"{_SEPARATOR}MSG: {name}\n{lookup(name).text}\n")

@@ -97,7 +97,7 @@ class LineInput(Input):
         event.prevent_default()
 
     def _on_paste(self, event: Paste) -> None:
-        """Enter several pasted lines one by one, such as those of a script."""
+        """Enter several pasted lines one by one, such as lines of a script."""
         *whole, rest = event.text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
         for text in whole:
             self.insert_text_at_cursor(text)
