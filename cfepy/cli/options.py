@@ -419,7 +419,7 @@ def add_until(parser: argparse.ArgumentParser, text: str) -> None:
 
     Args:
         parser: parser of the command.
-        text: the thing that ends, for the help.
+        text: the subject of the help text, such as "the run".
     """
     parser.add_argument("--until", type=seconds_of, metavar="SECONDS", help=f"{text} ends at this virtual time")
 

@@ -50,7 +50,7 @@ class Params:
             default: the result if there is no such parameter; it may be None.
 
         Raises:
-            KeyError: there is none, and no default; it holds `param_name`.
+            KeyError: there is no such parameter and no default; it holds `param_name`.
         """
         self._node.universe.charge()
         key = self._sent("getParam", self._node.names.resolve_name(param_name))[0]
@@ -94,7 +94,7 @@ class Params:
         """Remove a parameter or namespace.
 
         Raises:
-            KeyError: there is none.
+            KeyError: there is no such parameter or namespace.
         """
         key = self._sent("deleteParam", self._node.names.resolve_name(param_name))[0]
         try:

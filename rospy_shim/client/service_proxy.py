@@ -197,14 +197,14 @@ class ServiceProxy:
         return ServiceException(f"transport error completing service call: {what}")
 
     def _wait_in_vain(self) -> NoReturn:
-        """Wait without end: the service could not read the request behind half of another one, and does not answer."""
+        """Wait forever: the service could not read a request that follows half of another one, and does not answer."""
         life, waits = self._node.life, WaitList(f"an answer of service {self.resolved_name}, which got half a request")
         while not life.is_shutdown():
             life.wait(waits, FOREVER)
         raise ROSInterruptException("node shutdown interrupted service call")
 
     def _read_half(self) -> None:
-        """Read a response behind half of another one, as an empty message.
+        """Read a response that follows half of another one, as an empty message.
 
         Raises:
             ServiceException: an empty message is not a response.

@@ -118,7 +118,7 @@ def next_free(msg_id: int, taken: Mapping[int, str]) -> int:
     """Return the first free id after `msg_id`; after the last id the search continues at the first.
 
     Raises:
-        UsageError: there is none.
+        UsageError: no id is free.
     """
     for step in range(1, _HOW_MANY):
         found = FIRST_MSG_ID + (msg_id + step - FIRST_MSG_ID) % _HOW_MANY

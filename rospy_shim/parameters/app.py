@@ -269,7 +269,7 @@ class ParameterApp:
             self._images.write(self._rows.changed, self._rows.rows)
 
     def _wake(self) -> None:
-        """Have a changed parameter written."""
+        """Wake the application to write changed parameters."""
         if self._is_awake or not self._rows.changed:
             return
         self._is_awake = True

@@ -144,7 +144,7 @@ def records(rows: Iterable[Row]) -> Iterator[Record]:
 
 
 def fault(rows: Sequence[Row]) -> str | None:
-    """Return the error in the rows of one table, which may begin and end within a parameter; None if there is none."""
+    """Return the error in one table's rows, which may begin and end within a parameter; None if there is no error."""
     seen: dict[str, int] = {}
     found = list(records(rows))
     for record in found:

@@ -73,7 +73,7 @@ def find_script(packages: Packages, package: str, node_type: str) -> Path:
         node_type: the file's name.
 
     Raises:
-        ScriptError: there is none.
+        ScriptError: there is no such script.
     """
     found = sorted(_candidates(packages.folders(package), node_type), key=_rank)
     script = next(filter(is_python, found), None) or _tool(package, node_type)
@@ -263,7 +263,7 @@ def node_file(package: str, node_type: str, near: Path, environ: Mapping[str, st
         environ: environment with ROS_PACKAGE_PATH.
 
     Raises:
-        UsageError: there is none.
+        UsageError: there is no such script.
     """
     try:
         return find_script(packages_near(near, environ, package), package, node_type)
@@ -274,7 +274,7 @@ def node_file(package: str, node_type: str, near: Path, environ: Mapping[str, st
 def node_in_cpp(
     package: str, node_type: str, near: Path, environ: Mapping[str, str], words: Sequence[str]
 ) -> CppNode | None:
-    """Find a node in C++, as rosrun does; None if it is a script, or no sources that build it are here.
+    """Find a node in C++, as rosrun does; None if it is a script or its sources are missing.
 
     Args:
         package: its package.
@@ -324,7 +324,7 @@ def launch_file(package: str, name: str, near: Path, environ: Mapping[str, str])
         environ: environment with ROS_PACKAGE_PATH.
 
     Raises:
-        UsageError: there is none.
+        UsageError: there is no such file.
     """
     packages = packages_near(near, environ, package)
     file = find_file(packages, package, name)

@@ -24,7 +24,7 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: there is none, or it has an error.
+        UsageError: there is no such file, or it has an error.
     """
     if arguments.nodes or arguments.dump_params:
         file, args = launch_file(launch_words(arguments))

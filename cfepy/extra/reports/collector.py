@@ -199,7 +199,7 @@ class _SwitchNotes(AskingPolicy):
         self._numbers = MoveNumbers()
 
     def choose(self, decision: Decision) -> int:
-        """Decide. A policy is called in the task that gives up the processor, so its stack is available."""
+        """Make a decision. A policy is called in the task that gives up the processor, so its stack is available."""
         choice = self._inner.choose(decision)
         moves = self._numbers.moves(decision)
         if choice:
