@@ -3,11 +3,11 @@
 Inside a mission `import rospy_shim as rospy` and `import rospy` both give a node its own rospy. Outside, in a plain
 Python process, this module has rospy's exceptions, times and constants, and every function says how to run the node.
 
-What a node or a tool sees of ROS belongs here, in rooms: `types` is what needs no graph, `client` rospy itself, `graph`
-and `parameters` what all nodes of a mission share, `master` their XML-RPC side, `roslaunch` launch files,
-`rospy_modules` and `stand_ins` code of nodes, and `runtime` what a mission starts. What a program sees of Python is in
-`cfepy.nodes`; how a mission uses nodes is in `cfepy.mission`, of which nothing here knows. The central file is
-`rospy_shim/runtime.py`.
+Code belongs here if a node or a ROS tool sees it, in subpackages: `types` needs no graph, `client` is rospy itself,
+`graph` and `parameters` are shared by all nodes of a mission, `master` is their XML-RPC side, `roslaunch` reads launch
+files, `rospy_modules` and `stand_ins` are code that runs as part of nodes, and `runtime` is started by a mission.
+Python as a program sees it belongs to `cfepy.nodes`; the use of nodes by a mission belongs to `cfepy.mission`, which
+this package does not know. The central file is `rospy_shim/runtime.py`.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ _load, __dir__ = face(
 
 
 def __getattr__(name: str) -> Any:
-    """A name of `__all__`, or what only a node has: calling that tells how to become one."""
+    """Return a name of `__all__`, or a placeholder for a function of nodes; calling it explains how to run a node."""
     if name not in _NEEDS_A_NODE:
         return _load(name)
 

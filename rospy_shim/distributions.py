@@ -1,7 +1,7 @@
 """The distributions of ROS that a node finds installed: rospy, genpy and the libraries, with their versions.
 
-A node asks `importlib.metadata` or `pkg_resources` for them; every other answer is the host's. Versions are those of
-ROS Noetic (index.ros.org).
+A node looks for them with `importlib.metadata` or `pkg_resources`; for other distributions it gets the host's answers.
+Versions are ROS Noetic's (index.ros.org).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ VERSIONS = {name: version for version, names in _RELEASES.items() for name in na
 
 
 class RosDistribution(importlib.metadata.Distribution):
-    """A distribution that is no file.
+    """A distribution without a file.
 
     Args:
         name: normalised, as in `VERSIONS`.
@@ -46,16 +46,16 @@ class RosDistribution(importlib.metadata.Distribution):
         self._text = f"Metadata-Version: 2.1\nName: {name}\nVersion: {VERSIONS[name]}\n"
 
     def read_text(self, filename: str) -> str | None:
-        """Its metadata; there is nothing else."""
+        """Return its metadata; there is no other text."""
         return self._text if filename == "METADATA" else None
 
     def locate_file(self, path: Any) -> Path:
-        """Where a file of it would be."""
+        """Return where a file of it would be."""
         return Path(path)
 
 
 def metadata_module() -> ModuleType:
-    """`importlib.metadata` of a node."""
+    """Return `importlib.metadata` of a node."""
 
     def distribution(distribution_name: str) -> importlib.metadata.Distribution:
         name = _normal(distribution_name)
@@ -74,7 +74,7 @@ def metadata_module() -> ModuleType:
 
 
 def pkg_resources_module() -> ModuleType:
-    """`pkg_resources` of a node.
+    """Return `pkg_resources` of a node.
 
     Raises:
         ModuleNotFoundError: the host has no setuptools, or one without it.

@@ -1,10 +1,10 @@
-"""The libraries that nodes import besides rospy (tf, tf2_ros, ...), and parts of them that only their owner can make.
+"""The libraries that nodes import besides rospy (tf, tf2_ros, ...), and parts of them that depend on the node.
 
-A library is a folder in `ros_libraries`, ordinary code of nodes that knows nothing of this package. It is on the
-import path of every node, behind the node's own folders, so a node that brings a library's original source gets that.
-Packages of other projects that such a source imports and rarely uses have stand-ins, found when the real ones are not
-installed. Made here are modules that tell a library where packages lie, which definitions there are and what is
-installed, and `<package>.cfg.<Name>Config`, which ROS generates from cfg/<Name>.cfg at build time and
+A library is a folder in `ros_libraries`, ordinary code of nodes that does not know this package. It is on the import
+path of every node, after the node's own folders, so a node that brings a library's original source gets that one.
+Packages of other projects that such a source imports and rarely uses have stand-ins, which are used if the real ones
+are not installed. This module makes the modules with a library's data about package folders, definitions and installed
+distributions. It also makes `<package>.cfg.<Name>Config`, which ROS generates from cfg/<Name>.cfg at build time and
 `ros_libraries/dynamic_reconfigure` makes inside the node.
 """
 
@@ -31,15 +31,15 @@ _GENERATORS = ("parameter_generator", "parameter_generator_catkin")
 
 @cache
 def library_names() -> frozenset[str]:
-    """Names of the libraries."""
+    """Return the names of the libraries."""
     return frozenset(path.parent.name for path in FOLDER.glob("*/__init__.py"))
 
 
 def library_parts(node: Node) -> dict[str, Factory]:
-    """The factories of such modules, by full name.
+    """Return the factories of such modules, by full name.
 
     Args:
-        node: whose packages and messages they tell of.
+        node: the node whose packages and messages they describe.
     """
     library = node.library
     places = {"folders": partial(_folders, node)}
@@ -59,7 +59,7 @@ def library_parts(node: Node) -> dict[str, Factory]:
 
 
 def _metadata(universe: Universe) -> ModuleType:
-    from rospy_shim.distributions import metadata_module  # takes much to import, and few nodes ask
+    from rospy_shim.distributions import metadata_module  # slow to import, and few nodes need it
 
     return metadata_module()
 
@@ -80,7 +80,7 @@ def _factory(contents: Mapping[str, Any]) -> Factory:
 
 
 def _folders(node: Node, paths: Sequence[str] | None) -> dict[str, str]:
-    """Folders of packages by name: those in some folders, or all that the node sees with its environment as it is."""
+    """Return folders of packages by name: in some folders, or all that the node sees with its present environment."""
     universe = node.universe
     if paths is None:
         packages = Packages(node.place, universe.environ, universe.resolve)
@@ -103,7 +103,7 @@ class ConfigModules:
         self._packages = packages
 
     def find(self, name: str) -> Factory | None:
-        """What makes a module, by its full name; None: it is not a configuration."""
+        """Return the factory of a module by its full name, or None if it is not a configuration."""
         package, *rest = name.split(".")
         if package == _LIBRARY and len(rest) == 1 and rest[0] in _GENERATORS:
             return lambda universe: _own_generator(universe, name, rest[0])
@@ -126,7 +126,7 @@ def _package(name: str) -> ModuleType:
 
 
 def _own_generator(universe: Universe, name: str, part: str) -> ModuleType:
-    """The generator is always cfepy's: the original writes source files, for which there is no build here."""
+    """Load cfepy's generator always: the original writes source files, which need a build."""
     module: ModuleType = universe.importer.load_file(name, str(FOLDER / _LIBRARY / f"{part}.py"))
     return module
 

@@ -1,7 +1,7 @@
 """`RosRuntime`: ROS on one mission. It runs the scripts of nodes inside their cFE applications.
 
-A mission imports this module when the first node starts. The `ProcessMonitor` (roslaunch.pmon) decides
-whether a node that ended is started again, left alone, or ends the whole run.
+A mission imports this module when the first node starts. The `ProcessMonitor` (roslaunch.pmon) decides whether a node
+that ended is started again, left alone, or ends the whole run.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from cfepy.writing.console import Console
     from rospy_shim.graph.outside import OutsideGraph
 
-CRASHED = 139  # 128 + SIGSEGV, as a shell tells it
+CRASHED = 139  # 128 + SIGSEGV, as in a shell
 APP_ERROR = 3  # CFE_ES_RunStatus_APP_ERROR
 ENVIRONMENT = {
     "LANG": "C.UTF-8",
@@ -52,24 +52,24 @@ ENVIRONMENT = {
     "ROS_VERSION": "1",
     "USER": "ros",
 }
-"""What a login and the set-up file of an installed ROS tell a node, the same on every host."""
+"""The environment of a login and of the set-up file of an installed ROS, the same on every host."""
 STACK_BYTES, PRIORITY = 16384, 100  # of nodes that nodes start, as in a startup script
-SHORTEST_RESPAWN_NS = 100_000_000  # how often roslaunch looks after its processes
+SHORTEST_RESPAWN_NS = 100_000_000  # period at which roslaunch checks its processes
 
 
 class ProcessMonitor:
-    """Looks after the nodes of one mission.
+    """Monitors the nodes of one mission.
 
     Args:
-        config: what was said about them.
-        console: gets its messages.
-        stop: ends the run where it is.
+        config: the mission file's ROS section.
+        console: receives its messages.
+        stop: ends the run at once.
 
     Attributes:
-        statuses: the exit status of each node that has ended by itself, by cFE name.
-        restarts: how often a node was started again, by cFE name.
-        over: whether the run has come to its end.
-        closing: whether the nodes were asked to end, so that how they do it is not their failure.
+        statuses: the exit status of each node that has ended without a request, by cFE name.
+        restarts: number of restarts of each node, by cFE name.
+        over: True if the run has ended.
+        closing: True if the nodes were asked to end, so that their exit statuses are not failures.
     """
 
     def __init__(self, config: RosConfig, console: Console, stop: Callable[[], object]) -> None:
@@ -82,20 +82,20 @@ class ProcessMonitor:
         self.closing = False
 
     def close(self) -> None:
-        """The run is about to end: no node is started again, and the end of none is remarkable."""
+        """Prepare the end of the run: nodes are not started again, and their ends are not reported."""
         self.closing = True
 
     def starts_again(self, node: NodeConfig, status: int) -> bool:
-        """A node has ended: whether it is to be started again.
+        """Note the end of a node. Returns True if it is to be started again.
 
         Args:
-            node: which one.
+            node: the node.
             status: its exit status.
         """
         if self.closing:
             return False
         self.statuses[node.app] = status
-        name = node.name or node.app  # one that no launch file names
+        name = node.name or node.app  # if no launch file names it
         if node.respawn:
             self.restarts[node.app] = self.restarts.get(node.app, 0) + 1
             self._say(f"{name} ended with exit status {status} and is restarted")
@@ -108,7 +108,7 @@ class ProcessMonitor:
         return False
 
     def _apps(self) -> list[str]:
-        """The applications that all nodes are."""
+        """Return the applications of all nodes."""
         return [*self._config.nodes, *self._config.compiled]
 
     def _end(self) -> None:
@@ -120,11 +120,11 @@ class ProcessMonitor:
 
 
 class NodeEnd(NamedTuple):
-    """How a node's program has ended.
+    """The end of a node's program.
 
     Attributes:
-        name: what its output was marked with at last.
-        status: its exit status; None when it was ended from outside.
+        name: the last label of its output.
+        status: its exit status; None if it was ended from outside.
     """
 
     name: str
@@ -136,22 +136,22 @@ class RosRuntime:
 
     Args:
         cfe: the handle of cFE's services.
-        kernel: the simulated computer's.
-        config: what the mission file says about nodes and topics.
-        seed: of the run; the nodes' random numbers come from it.
+        kernel: the kernel of the simulated computer.
+        config: the mission file's ROS section, with nodes and topics.
+        seed: seed of the run; the nodes' random numbers come from it.
         epoch_ns: ROS time in ns when the kernel's clock is 0.
         node_call_ns: virtual CPU time of a call of ROS's or Python's API in a node.
-        max_publish_hz: messages a second that a publisher may send; it is held back at more. 0 for no limit.
-        console: where nodes print and log.
-        network: what their sockets are plugged into; None refuses sockets.
-        files: what they see of files; None is the computer's own.
-        accesses: what their code tells of what it touches; None for nothing.
+        max_publish_hz: maximum messages a second of a publisher, which waits at more. 0 for no limit.
+        console: output of nodes, including their logs.
+        network: network of their sockets; None refuses sockets.
+        files: their view of files; None is the computer's own.
+        accesses: receives the accesses of their code to data, or None.
 
     Attributes:
-        graph: who publishes, subscribes and offers what.
-        switchboard: finds who answers at a URI.
+        graph: publishers, subscribers and services.
+        switchboard: finds the object that answers at a URI.
         parameters: the application ROS, which starts before the first node.
-        ended: how the programs have ended that did, by cFE application; of several starts, the last one.
+        ended: the ends of programs, by cFE application; of several starts, the last one.
     """
 
     def __init__(
@@ -195,7 +195,7 @@ class RosRuntime:
         self._task_numbers = count(1)
 
     def _compiled_ended(self, app: str, status: int) -> int | None:
-        """A node in C++ has ended by itself: in how many ns it is to start again; None for never."""
+        """Note the end of a node in C++. Returns the ns until it starts again, or None."""
         config = self._config.compiled.get(app)
         if config is None:
             return None
@@ -206,7 +206,7 @@ class RosRuntime:
 
     @CachedProperty
     def outside(self) -> OutsideGraph:
-        """What nodes outside of the mission have in its graph; only a run that is joined to some imports it."""
+        """The entries of outside nodes in the mission's graph; only a run that is joined to some imports its module."""
         from rospy_shim.graph.outside import OutsideGraph
 
         return OutsideGraph(self.graph, self.switchboard, self._cfe, self._kernel)
@@ -214,15 +214,15 @@ class RosRuntime:
     def run_node(self, script: Path, app_name: str) -> None:
         """Run a node's script to its end, in the main task of its cFE application.
 
+        A node that fails ends its application with CFE_ES_RunStatus_APP_ERROR. One that crashes and is not to respawn
+        is an exception to ES, which takes the action in its line of the startup script.
+
         Args:
             script: the Python file.
             app_name: cFE name of the application.
-
-        A node that fails ends its application with CFE_ES_RunStatus_APP_ERROR. One that crashes and is not to respawn
-        is an exception to ES, which does what its line in the startup script says.
         """
         config = self._started.get(app_name) or self._config.nodes.get(app_name) or NodeConfig(app_name)
-        self._cfe.es.run_loop()  # tells ES that the application runs, so that the mission can become operational
+        self._cfe.es.run_loop()  # reports to ES that the application runs, so that the mission can become operational
         self.parameters.wait()
         status = self._run_process(script, app_name, config)
         while self.monitor.starts_again(self._started.get(app_name, config), status):
@@ -234,7 +234,7 @@ class RosRuntime:
             self._cfe.es.exit_app(APP_ERROR)
 
     def _run_process(self, script: Path, app_name: str, config: NodeConfig) -> int:
-        """Run a node's script once, in a universe of its own; returns its exit status."""
+        """Run a node's script once, in a universe of its own. Returns its exit status."""
         node = self._make_node(script, app_name, config)
         self._running.append(node)
         try:
@@ -248,7 +248,7 @@ class RosRuntime:
             node.abandon()
 
     def _crashed(self, node: Node, error: InjectedCrash) -> int:
-        """The end of a process that crashes; its threads have ended already, and no exit hook was called."""
+        """Handle a process that crashes; its threads have ended already, and no exit hook was called."""
         self._console.write(f"[{node.universe.name}] Segmentation fault ({error})")
         node.universe.exit_status = CRASHED
         return CRASHED
@@ -290,7 +290,7 @@ class RosRuntime:
         return node
 
     def _starter(self, node: Node) -> dict[str, Factory]:
-        """What a node starts other nodes with; only a node that does imports what it needs."""
+        """Return the module by which a node starts other nodes; only a node that does so imports its dependencies."""
 
         def make(universe: Universe) -> ModuleType:
             from rospy_shim.roslaunch.starter import Starter
@@ -309,36 +309,36 @@ class RosRuntime:
         self._cfe.es.create_app(config.app, StartParams(f"/cf/{config.app}.so", "__main__", STACK_BYTES, PRIORITY))
 
     def node_of(self, owner: object) -> Node | None:
-        """The node whose program an application runs, by the owner of its tasks."""
+        """Return the node whose program an application runs, by the owner of its tasks."""
         return next((node for node in self._running if node.owner is owner), None)
 
     def shift_clock(self, by_ns: int) -> None:
-        """The mission's clock was set, by so many ns: all nodes read another time of day from now on."""
+        """Shift the mission's clock by so many ns; all nodes read another time of day from now on."""
         self._epoch_ns += by_ns
         for node in self._running:
             node.universe.clock.epoch_ns += by_ns
             node.clock.shift(by_ns)
 
     def forget_start(self, app_name: str) -> None:
-        """A node that was started while the mission runs is not to come back."""
+        """Do not restart a node that was started while the mission runs."""
         config = self._started.get(app_name)
         if config is not None:
             self._started[app_name] = replace(config, respawn=False)
 
     def script_of(self, file: str) -> Path | None:
-        """The script of a node that was started while the mission runs, by its virtual path."""
+        """Return the script of a node that was started while the mission runs, by its virtual path."""
         config = self._started.get(Path(file).stem)
         return None if config is None else config.script
 
     def app_names(self) -> list[str]:
-        """Names that a new node's application cannot have."""
+        """Return the names that a new node's application cannot have."""
         return [*(app.name for app in self._cfe.es.apps), *self._config.nodes, *self._started]
 
     def begin_shutdown(self, reason: str, app_name: str | None = None) -> None:
-        """Ask all nodes to end, as Ctrl-C ends a roslaunch, or the one of an application.
+        """Ask all nodes to end, as Ctrl-C ends a roslaunch, or the node of one application.
 
         Args:
-            reason: what their shutdown hooks are told.
+            reason: the reason for their shutdown hooks.
             app_name: cFE name of the application; None for all nodes.
         """
         if app_name is None:
@@ -348,11 +348,11 @@ class RosRuntime:
                 node.ask_to_shut_down(reason)
 
     def all_finished(self) -> bool:
-        """Whether no node's program runs any more."""
+        """Return True if no node's program runs any more."""
         return not self._running
 
     def topics(self) -> list[TopicRow]:
-        """A row for each topic there ever was, by name."""
+        """Return a row for each topic so far, by name."""
         return [self._row(topic) for _, topic in sorted(self.graph.topics.items())]
 
     def _row(self, topic: TopicEntry) -> TopicRow:
@@ -371,12 +371,12 @@ class RosRuntime:
 
 
 def _python_path(universe: Universe) -> list[str]:
-    """The folders that PYTHONPATH names, where Python looks next after the script's own."""
+    """Return the folders in PYTHONPATH, which Python searches after the script's own."""
     return [universe.resolve(folder) for folder in universe.environ.get("PYTHONPATH", "").split(os.pathsep) if folder]
 
 
 def _command_line(config: NodeConfig) -> list[str]:
-    """The arguments that roslaunch would give the node."""
+    """Return the arguments that roslaunch would give the node."""
     found = [*config.args, *(f"{name}:={target}" for name, target in config.remap.items())]
     for special, value in (("__name", config.name), ("__ns", config.namespace if config.namespace != "/" else None)):
         if value and not any(argument.startswith(f"{special}:=") for argument in config.args):
@@ -385,10 +385,10 @@ def _command_line(config: NodeConfig) -> list[str]:
 
 
 def _finder(node: Node, made: dict[str, Factory]) -> Callable[[str], Factory | None]:
-    """Finds what makes a module of ROS: rospy's own, genpy, message packages that have no code as well.
+    """Return the finder of ROS's modules: rospy's own, genpy, and message packages, also those without code.
 
     Args:
-        node: whose modules they are.
+        node: the node.
         made: factories of further modules by name.
     """
     rospy, configs = RosModules(node), ConfigModules(node.packages)

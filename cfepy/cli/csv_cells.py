@@ -1,4 +1,4 @@
-"""Rows of CSV that a spreadsheet may open: `--quote-formulas` keeps texts in them from being taken for formulas."""
+"""CSV rows that a spreadsheet may open: `--quote-formulas` keeps it from evaluating texts as formulas."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _BEGINS_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 def add_quote_formulas(parser: argparse.ArgumentParser) -> None:
-    """The option."""
+    """Add the option `--quote-formulas`."""
     parser.add_argument(
         "--quote-formulas",
         action="store_true",
@@ -23,9 +23,9 @@ def write_rows(stream: TextIO, rows: Iterable[Iterable[Any]], quotes: bool) -> N
     """Write rows as comma-separated values.
 
     Args:
-        stream: where to.
-        rows: cells, the names of the columns first.
-        quotes: texts that a spreadsheet takes for formulas get a ' in front.
+        stream: the output.
+        rows: rows of cells; the first row has the names of the columns.
+        quotes: put a ' in front of texts that a spreadsheet would take for formulas.
     """
     written = (map(_quoted, row) for row in rows) if quotes else rows
     csv.writer(stream, lineterminator="\n").writerows(written)

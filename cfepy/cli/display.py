@@ -1,7 +1,7 @@
-"""What a person sees while a mission runs: console lines, and on a terminal a status line below them.
+"""Display of a running mission: console lines, and on a terminal a status line below them.
 
 Console lines arrive from inside the simulation. On a terminal they are kept until the host has the CPU again, a few
-dozen milliseconds later, and shown in one go, so that drawing costs the run next to nothing.
+dozen milliseconds later, and shown together, so that drawing slows the run very little.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ REFRESH_NS = NS_PER_S // 10
 
 
 class Display(Protocol):
-    """Shows a run."""
+    """Interface of a display of a run."""
 
     def line(self, text: str) -> None:
-        """A line of the mission's console; called from inside the simulation."""
+        """Show a line of the mission's console; called from inside the simulation."""
 
     def tell(self, text: str) -> None:
-        """What the user should know of this computer, such as where a port is open; called by the host."""
+        """Show a message about the host computer, such as the address of an open port; called by the host."""
 
     def update(self, mission: Mission) -> None:
-        """The run goes on; called by the host between pieces of it."""
+        """Refresh the display; called by the host repeatedly during the run."""
 
     def close(self) -> None:
-        """The run is over: nothing but finished lines may stay on the screen."""
+        """End the display at the end of the run; only finished lines stay on the screen."""
 
 
 class PlainDisplay:
-    """Lines only, for files and pipes.
+    """Prints lines only, for files and pipes.
 
     Args:
-        stream: where to.
+        stream: the output.
     """
 
     def __init__(self, stream: TextIO) -> None:
@@ -53,7 +53,9 @@ class PlainDisplay:
         self._broken: OSError | None = None
 
     def line(self, text: str) -> None:
-        """A reader that went away must not look like an error of the app that wrote."""
+        """Write a line; keep a write error for `update`, so that it does not look like an error of the app that
+        printed.
+        """
         if self._broken is None:
             try:
                 raw(self._stream).write(console_line(text, self._colours) + "\n")
@@ -63,13 +65,13 @@ class PlainDisplay:
                 self._broken = BrokenPipeError(str(error))
 
     def tell(self, text: str) -> None:
-        """Whoever reads a pipe may wait for it."""
+        """Write a line and flush it, because the reader of a pipe may wait for it."""
         self.line(text)
-        with contextlib.suppress(OSError, ValueError):  # which `line` has kept, or will meet
+        with contextlib.suppress(OSError, ValueError):  # `line` has kept the error, or will meet it
             self._stream.flush()
 
     def update(self, mission: Mission) -> None:
-        """See `Display.update`.
+        """Raise the write error that `line` has kept, if there is one.
 
         Raises:
             OSError: the reader of the output is gone, or the disk is full.
@@ -78,28 +80,28 @@ class PlainDisplay:
             raise self._broken
 
     def close(self) -> None:
-        """There is nothing to close."""
+        """Do nothing: there is nothing to close."""
 
 
 class SilentDisplay:
-    """Nothing of the run."""
+    """Shows nothing of the run."""
 
     def line(self, text: str) -> None:
-        """Nothing of the run is shown."""
+        """Ignore the line."""
 
     def tell(self, text: str) -> None:
-        """It is not of the run, so it is shown, and is not in the way of a report that is piped."""
+        """Print the message to standard error: it is not part of the run, and must not disturb a piped report."""
         tell([text])
 
     def update(self, mission: Mission) -> None:
-        """Nothing of the run is shown."""
+        """Do nothing."""
 
     def close(self) -> None:
-        """There is nothing to close."""
+        """Do nothing: there is nothing to close."""
 
 
 class LiveDisplay:
-    """Lines, and a status line below them that is drawn anew at most ten times a second.
+    """Prints lines, and a status line below them that is redrawn at most ten times a second.
 
     Args:
         stream: a terminal.
@@ -151,7 +153,7 @@ class LiveDisplay:
 
 
 def make_display(quiet: bool, seconds: float) -> Display:
-    """The display for this process's standard output.
+    """Make the display for this process's standard output.
 
     Args:
         quiet: show nothing while the mission runs.
@@ -167,7 +169,7 @@ def _messages(mission: Mission) -> int:
 
 
 def _coloured(text: str) -> Text:
-    """A text with colours of nodes, as rich has it."""
+    """Convert a text with the terminal colours of nodes to a rich text."""
     from rich.text import Text
 
     return Text.from_ansi(text)

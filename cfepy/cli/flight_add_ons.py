@@ -1,4 +1,4 @@
-"""What add-ons open around a flight that a person watches: their options, and servers, guests and attachments."""
+"""Add-ons of a flight that a person watches: their options, and the servers, guests and attachments they open."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ Tell = Callable[[str], object]
 
 
 class FlightAddOn:
-    """Options of an add-on, and what they open around a flight; does nothing, and derived classes do what they need.
+    """Base class of an add-on: its options, and the objects it opens around a flight. By default it does nothing.
 
     Args:
-        arguments: of the command line, with the options that `add` has added.
-        name: of the mission.
-        tell: gets the lines for the user before anything runs.
+        arguments: the command line, with the options that `add` has added.
+        name: name of the mission.
+        tell: receives the lines for the user before the run starts.
 
     Attributes:
-        attachments: what watches the flight, or changes its course.
-        guests: what brings something in between two pieces of the flight, also while time stands still.
-        OPTIONS: options by their names in the arguments. None of them can be said when the run is not flown here.
+        attachments: attachments that watch the flight, or change its course.
+        guests: guests that deliver input between two steps of the flight, also while time stands still.
+        OPTIONS: options by their names in the arguments. They are invalid if the run is not flown here.
     """
 
     OPTIONS: ClassVar[Mapping[str, str]] = {}
@@ -46,7 +46,7 @@ class FlightAddOn:
         """Check the options.
 
         Raises:
-            UsageError: they do not go with the others.
+            UsageError: they conflict with other options.
         """
 
     def __enter__(self) -> Any:
@@ -56,19 +56,19 @@ class FlightAddOn:
         self.close()
 
     def connect(self, mission: Mission, tell: Tell) -> Sequence[Guest]:
-        """Open what a run in real time joins, whose network is open by now.
+        """Open the services of a run in real time, whose network is open by now.
 
         Args:
-            mission: that flies.
-            tell: gets lines for the user.
+            mission: the mission that flies.
+            tell: receives lines for the user.
 
         Returns:
-            What else brings something in, beside `guests`.
+            Guests in addition to `guests`.
         """
         return ()
 
     def close(self) -> None:
-        """Close everything: the flight is over. May be called twice."""
+        """Close everything at the end of the flight. You may call it twice."""
 
 
 FLIGHT_ADD_ONS: Hook[type[FlightAddOn]] = Hook("flight_options")
@@ -78,7 +78,9 @@ class FlightAddOns(contextlib.ExitStack):
     """All add-ons of a flight; use as a context manager around it.
 
     Args:
-        arguments, name, tell: as of `FlightAddOn`.
+        arguments: as for `FlightAddOn`.
+        name: as for `FlightAddOn`.
+        tell: as for `FlightAddOn`.
     """
 
     def __init__(self, arguments: argparse.Namespace, name: str, tell: Tell) -> None:
@@ -94,16 +96,16 @@ class FlightAddOns(contextlib.ExitStack):
 
     @property
     def attachments(self) -> list[Attachment]:
-        """What all of them attach."""
+        """The attachments of all add-ons."""
         return [each for part in self._parts for each in part.attachments]
 
     @property
     def guests(self) -> list[Guest]:
-        """All guests."""
+        """The guests of all add-ons."""
         return [each for part in self._parts for each in part.guests]
 
     def connect(self, mission: Mission, tell: Tell) -> Iterator[Guest]:
-        """Open what joins a run in real time; first what opens for it, then the guests that are there already."""
+        """Yield the guests of a run in real time: first those that `connect` opens, then the existing ones."""
         for part in self._parts:
             yield from part.connect(mission, tell)
         yield from self.guests
@@ -119,13 +121,13 @@ def check_options(arguments: argparse.Namespace) -> None:
     """Check the options of all add-ons.
 
     Raises:
-        UsageError: one does not go with the others.
+        UsageError: an option conflicts with another one.
     """
     for kind in FLIGHT_ADD_ONS.all():
         kind.check(arguments)
 
 
 def options() -> Iterator[tuple[str, str]]:
-    """All options of add-ons: the name in the arguments, and the option."""
+    """Yield all options of add-ons: the name in the arguments, and the option."""
     for kind in FLIGHT_ADD_ONS.all():
         yield from kind.OPTIONS.items()

@@ -1,5 +1,6 @@
-"""Options of commands that fly a run in front of a person: what it leaves behind, and what it has to do with this
-computer. `cfepy.cli.run.run` does what they say.
+"""Options of commands that fly a run in front of a person: its output files, and its ties to this computer.
+
+`cfepy.cli.run.run` acts on them.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ HIGHEST_PORT = 65_535
 
 
 def add_flight(parser: argparse.ArgumentParser) -> None:
-    """All of them, as `fly_and_tell` takes them."""
+    """Add all options that `fly_and_tell` reads."""
     add_pace(parser)
     flight_add_ons.add_options(parser)
     add_outputs(parser)
@@ -24,7 +25,7 @@ def add_flight(parser: argparse.ArgumentParser) -> None:
 
 
 def add_outputs(parser: argparse.ArgumentParser) -> None:
-    """What the run leaves behind, and what it shows."""
+    """Add the options for the output of the run."""
     run = parser.add_argument_group("what the run leaves behind")
     add_json(run, "the report's numbers")
     run.add_argument(
@@ -46,7 +47,7 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
 
 
 def add_recording(parser: argparse.ArgumentParser) -> None:
-    """The journal of the run."""
+    """Add the options for the journal of the run."""
     run = parser.add_argument_group("the journal of the run")
     run.add_argument(
         "--record", metavar="FILE", help="write a journal, from which `cfepy replay FILE` does the same run again"
@@ -59,7 +60,7 @@ def add_recording(parser: argparse.ArgumentParser) -> None:
 
 
 def add_pace(parser: argparse.ArgumentParser) -> None:
-    """The wall clock, and the ports that are open meanwhile."""
+    """Add the options for the pace of the run and for the ports that are open meanwhile."""
     pace = parser.add_argument_group("the wall clock and this computer")
     pace.add_argument(
         "--realtime",
@@ -81,10 +82,10 @@ def add_pace(parser: argparse.ArgumentParser) -> None:
 
 
 def check_pace(arguments: argparse.Namespace) -> None:
-    """Check what `add_pace` and add-ons have added.
+    """Check the options of `add_pace` and of add-ons.
 
     Raises:
-        UsageError: something in it is for a run in real time, and this one is none.
+        UsageError: an option requires a run in real time, and this run is not.
     """
     if arguments.realtime is None and arguments.port:
         raise UsageError("requires --realtime; without it no port is opened on this computer", field="--port")
@@ -107,7 +108,7 @@ def _add_check_determinism(parser: argparse.ArgumentParser) -> None:
 
 
 def ports_of(text: str) -> tuple[int, int]:
-    """A port of the mission and what it is on this computer, for argparse."""
+    """Parse a port of the mission and its port on this computer, for argparse."""
     inside, _, here = text.partition("=")
     if not (inside.isdecimal() and here.isdecimal() and 0 < int(inside) <= HIGHEST_PORT >= int(here)):
         raise argparse.ArgumentTypeError(
@@ -117,7 +118,7 @@ def ports_of(text: str) -> tuple[int, int]:
 
 
 def runs_of(text: str) -> int:
-    """How many runs to compare, for argparse."""
+    """Parse the number of runs to compare, for argparse."""
     if not text.isdecimal() or not 2 <= int(text) <= MOST_RUNS:
         raise argparse.ArgumentTypeError(f"invalid number of runs {text!r}; expected 2 to {MOST_RUNS}")
     return int(text)

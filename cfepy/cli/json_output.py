@@ -1,7 +1,7 @@
-"""`--json FILE|-`: what a command found, for programs, in a file or alone on standard output.
+"""`--json FILE|-`: the findings of a command, for programs, in a file or alone on standard output.
 
-A command prints its text and writes its JSON; with `-` the text goes nowhere, so that no command needs to ask. It is
-the same with every other option that takes `FILE|-`.
+A command prints its text and writes its JSON. With `-` the text is discarded, so that a command does not need to check
+for it. The same holds for every other option that takes `FILE|-`.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ _MAY_BE_STDOUT = ("json", "csv", "sarif", "yaml", "output", "dot", "svg")
 
 @contextlib.contextmanager
 def standard_output(arguments: argparse.Namespace) -> Iterator[None]:
-    """Around a command: standard output is for the option that takes it with `-`, and only for it.
+    """Reserve standard output for the option that was given as `-`, while a command runs.
 
     Args:
-        arguments: of the command line; gets `stdout`, the standard output. What is written there is as it is in a
-            file, but a terminal gets no control characters.
+        arguments: the command line; its attribute `stdout` is set to the standard output. Data is written there
+            unchanged as to a file, except that a terminal gets no control characters.
     """
     arguments.stdout = for_data(sys.stdout)
     if not any(getattr(arguments, name, None) == STDOUT for name in _MAY_BE_STDOUT):
@@ -37,22 +37,22 @@ def standard_output(arguments: argparse.Namespace) -> Iterator[None]:
 
 
 def check_json(arguments: argparse.Namespace) -> None:
-    """That the file can be written is better known before a run than after it.
+    """Check before a run that the file can be written.
 
     Raises:
-        UsageError: it cannot.
+        UsageError: it cannot be written.
     """
     if arguments.json not in (None, STDOUT):
         check_writable(arguments.json, "--json")
 
 
 def write_json(arguments: argparse.Namespace, value: Any, indent: int | None = 2) -> None:
-    """Write what a command found, if the command line asks for it.
+    """Write the findings of a command as JSON, if the command line asks for it.
 
     Args:
-        arguments: of the command line.
+        arguments: the command line.
         value: plain data.
-        indent: of a level; None for all in one line.
+        indent: blanks a level; None for all in one line.
 
     Raises:
         UsageError: the file could not be written.
@@ -63,12 +63,12 @@ def write_json(arguments: argparse.Namespace, value: Any, indent: int | None = 2
 
 
 def json_text(value: Any, indent: int | None = None, default: Callable[[Any], Any] | None = None) -> str:
-    """Plain data as JSON without a control character: DEL, which JSON lets pass, is an escape as all others are.
+    """Return plain data as JSON without control characters. DEL, which JSON permits, is escaped like all others.
 
     Args:
         value: the data.
         indent: see `write_json`.
-        default: makes plain data of what is not.
+        default: converts other objects to plain data.
     """
     import json
 
@@ -81,8 +81,8 @@ def write_text(file: str, text: str, option: str, arguments: argparse.Namespace)
     Args:
         file: its path, or `-` for standard output.
         text: the text.
-        option: that named the file.
-        arguments: of the command line.
+        option: the option that named the file.
+        arguments: the command line.
 
     Raises:
         UsageError: it could not be written.
@@ -93,7 +93,7 @@ def write_text(file: str, text: str, option: str, arguments: argparse.Namespace)
 
 @contextlib.contextmanager
 def json_lines(arguments: argparse.Namespace) -> Iterator[TextIO | None]:
-    """Around what writes a line of JSON again and again: where to; None when the command line does not ask for it.
+    """Yield a stream for lines of JSON, or None if the command line does not ask for it.
 
     Raises:
         UsageError: the file could not be written.

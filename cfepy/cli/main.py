@@ -33,7 +33,7 @@ from cfepy.writing.escapes import keep_output_safe, raw, safe_output
 ENDED_WELL = 0
 FOUND_PROBLEMS = 1
 BAD_USAGE = 2
-AGAIN_S = 0.001  # wall time until an interrupt that was dropped comes again
+AGAIN_S = 0.001  # wall time until a dropped interrupt is raised again
 ROOMS = {
     "run": ("run", "check", "new"),
     "board": ("boards", "board"),
@@ -44,7 +44,9 @@ ROOMS = {
     "files": ("tbl", "log"),
     "shell": ("completion",),
 }
-"""The commands of each room of this package; only the room in question is asked, since setting up all takes 10 ms."""
+"""The commands of each subpackage. Only the subpackage of the given command is loaded, since setting up all takes 10
+ms.
+"""
 TITLES = {
     "run": "Fly a mission",
     "board": "Fly a mission",
@@ -55,7 +57,7 @@ TITLES = {
     "files": "Files of cFE",
     "shell": "The shell",
 }
-"""Under which the commands of a room stand in the help."""
+"""Titles in the help, under which the commands of a subpackage are listed."""
 ORDER = (
     "Fly a mission",
     "ROS",
@@ -68,14 +70,14 @@ ORDER = (
     "Files of cFE",
     "The shell",
 )
-"""Of the titles in the help; those of add-ons of other packages come after them."""
+"""Order of the titles in the help; titles of other packages' add-ons follow."""
 
 
 def process() -> int:
-    """The whole process `cfepy`: `main`, and a quick end: to look for garbage once more takes a tenth of a boot.
+    """Run the whole process `cfepy`: `main`, and a quick exit. A last garbage collection would take a tenth of a boot.
 
-    Ctrl-C ends it at once before a command begins, and when all is done; so does an error of cfepy's own, of which the
-    traceback is printed as all else is.
+    Ctrl-C ends it at once before a command begins, and after it is done. So does an internal error of cfepy, whose
+    traceback is printed through the same safe output.
     """
     leave_on_interrupt()
     _prepare_streams()
@@ -85,7 +87,7 @@ def process() -> int:
         try:
             status = main()
         finally:
-            with contextlib.suppress(OSError, ValueError):  # told already
+            with contextlib.suppress(OSError, ValueError):  # reported already
                 sys.stdout.flush()
             leave_on_interrupt()
     except KeyboardInterrupt:
@@ -95,14 +97,14 @@ def process() -> int:
 
 
 def _print_error(kind: type[BaseException], error: BaseException, where: TracebackType | None) -> None:
-    """Print a traceback without the colours that Python gives it, which are escape sequences as any other."""
+    """Print a traceback without Python's colours, which are escape sequences."""
     import traceback
 
     sys.stderr.write("".join(traceback.format_exception(kind, error, where)))
 
 
 def _pass_on_interrupt(lost: sys.UnraisableHookArgs) -> None:
-    """A KeyboardInterrupt that came up in a callback or a finalizer, where Python drops it, comes again soon."""
+    """Raise a KeyboardInterrupt again soon, if it was raised in a callback or a finalizer, where Python drops it."""
     if lost.exc_type is not KeyboardInterrupt or not hasattr(signal, "setitimer"):
         sys.__unraisablehook__(lost)
         return
@@ -111,10 +113,10 @@ def _pass_on_interrupt(lost: sys.UnraisableHookArgs) -> None:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Do what the command line says.
+    """Carry out the command line.
 
     Args:
-        argv: the arguments without the program's name; those of the process when None.
+        argv: the arguments without the program's name; None for the arguments of the process.
 
     Returns:
         The exit status.
@@ -123,14 +125,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     with safe_output():
         try:
             return _obey(sys.argv[1:] if argv is None else argv)
-        except OSError:  # while it told of another error
+        except OSError:  # raised while another error was reported
             if leave_dead_terminal():
                 return INTERRUPTED
             raise
 
 
 def _obey(words: Sequence[str]) -> int:
-    """Do what the words say; the exit status."""
+    """Carry out the words. Returns the exit status."""
     if "_ARGCOMPLETE" in os.environ:
         _command(f"{__package__}.shell.completion").complete(parser_for)
     try:
@@ -163,17 +165,17 @@ def _obey(words: Sequence[str]) -> int:
 
 
 def _drop_output() -> None:
-    """Lead standard output nowhere, so that Python does not try to write the rest of it when the process ends."""
+    """Redirect standard output to the null device, so that Python does not write the rest of it at exit."""
     with contextlib.suppress(ValueError):  # an app closed it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _without_room(error: OSError) -> str:
-    """Name what was written when a disk had no more room and the error names no file; empty for another error."""
+    """Return which output failed if a disk is full and the error names no file; an empty text for another error."""
     if error.filename is not None or error.errno not in NO_ROOM:
         return ""
     try:
-        print(flush=True)  # standard output that had no room for a text has none for an empty line
+        print(flush=True)  # a full standard output has no room for an empty line either
     except OSError:
         _drop_output()
         return f"standard output cannot be written: {error.strerror}"
@@ -183,21 +185,21 @@ def _without_room(error: OSError) -> str:
 
 
 def _tell_out_of_memory(words: Sequence[str]) -> int:
-    """There is no more memory; what was asked for says which file wanted it."""
+    """Report that memory ran out; the command line shows which file needed it. Returns the exit status."""
     print(f"cfepy: out of memory in `cfepy {' '.join(words)}`; make its input smaller", file=sys.stderr)
     return BAD_USAGE
 
 
 @contextlib.contextmanager
 def terminable() -> Iterator[None]:
-    """Around a command: Ctrl-C, SIGTERM and SIGHUP end it, so findings are told and temporary folders taken away."""
+    """Let Ctrl-C, SIGTERM and SIGHUP end a command, so that it reports its findings and removes temporary folders."""
     before: dict[int, Any] = {}
     try:
         for each in ending_signals():
             if each != signal.SIGINT or signal.getsignal(each) is leave:
                 is_hangup = each == signal_number("SIGHUP")
                 before[each] = signal.signal(each, interrupt_once if is_hangup else signal.default_int_handler)
-    except ValueError:  # not the main thread: signals do not come here
+    except ValueError:  # not the main thread: signals do not arrive here
         pass
     try:
         yield
@@ -207,7 +209,7 @@ def terminable() -> Iterator[None]:
 
 
 def _command(module: str) -> Any:
-    """The module of a command. What is imported stays, so that garbage is not looked for in it, which takes as long."""
+    """Import and freeze a command's module: collecting garbage in it would take as long as the import."""
     if module in sys.modules:
         return sys.modules[module]
     with no_collection:
@@ -218,7 +220,7 @@ def _command(module: str) -> Any:
 
 
 class _Version(argparse.Action):
-    """Tells the version and ends; whether something is compiled is found out only then."""
+    """Prints the version and exits. It checks for compiled parts only then."""
 
     def __init__(self, option_strings: Sequence[str], dest: str, help: str) -> None:
         super().__init__(option_strings, argparse.SUPPRESS, nargs=0, help=help)
@@ -234,7 +236,7 @@ def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
     """Make a parser for a command line.
 
     Args:
-        words: of it; when they begin with a command, the parser has that command and its neighbours alone.
+        words: the command line. If it begins with a command, the parser has only that command and its neighbours.
 
     Raises:
         UsageError: the command belongs to an add-on that is not installed.
@@ -264,7 +266,7 @@ def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
         try:
             if plugin.commands:
                 plugin.add_commands(commands)
-        except UsageError as error:  # of another package
+        except UsageError as error:  # raised by another package
             if not rooms:
                 raise
             print(f"cfepy: {error}", file=sys.stderr)
@@ -273,7 +275,7 @@ def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
 
 
 def _with_new_commands(plugins: Iterable[Plugin]) -> list[Plugin]:
-    """Leave add-ons out whose commands others have, and say so."""
+    """Leave out add-ons whose commands exist already, and report them."""
     taken = {name for names in ROOMS.values() for name in names}
     usable = []
     for each in plugins:
@@ -287,7 +289,7 @@ def _with_new_commands(plugins: Iterable[Plugin]) -> list[Plugin]:
 
 
 def _groups(rooms: Mapping[str, Sequence[str]], plugins: Sequence[Plugin]) -> dict[str, list[str]]:
-    """The commands by the titles above them, in the order of the help."""
+    """Return the commands by the titles above them, in the order of the help."""
     groups: dict[str, list[str]] = {title: [] for title in ORDER}
     for each in plugins:
         if each.commands:
@@ -298,15 +300,16 @@ def _groups(rooms: Mapping[str, Sequence[str]], plugins: Sequence[Plugin]) -> di
 
 
 def _add_ons(plugins: Sequence[Plugin]) -> str:
-    """Name the add-ons of other packages for the help, which has the commands of cfepy's own."""
+    """Name the add-ons of other packages for the help; it lists the commands of cfepy's own add-ons anyway."""
     names = [each.name for each in plugins if each not in OWN]
     return f" Add-ons of other packages: {', '.join(names)}." if names else ""
 
 
 def _prepare_streams() -> None:
-    """A process that was started without standard output or error gets ones that go nowhere.
+    """Prepare standard output and error: open the null device if the process was started without them.
 
-    A text may hold bytes of a packet or a file that the encoding lacks: that must not stop the caller.
+    A text may hold bytes of a packet or a file that the encoding lacks; they are escaped, so that the caller does not
+    fail.
     """
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:

@@ -37,7 +37,7 @@ STATUS_HELP = """exit status:
   2    bad usage, or a mission that cannot boot
   130  ended by Ctrl-C, SIGTERM or SIGHUP (the report is still printed)"""
 
-# -- what decides a run ------------------------------------------------------------------------------------------------
+# -- the inputs of a run -----------------------------------------------------------------------------------------------
 
 
 def _add_launch_args(parser: Options) -> None:
@@ -213,15 +213,15 @@ RUN_OPTIONS: Mapping[str, Callable[[Options], None]] = {
     "processor_id": _add_processor_id,
     "beside": _add_beside,
 }
-"""What adds the option for each attribute of `RunPlan`, but for the words and the command, which are what is run."""
+"""Functions that add the option for each attribute of `RunPlan`, except the words and the command."""
 
 
 def add_run_options(parser: argparse.ArgumentParser, without: Sequence[str] = ()) -> None:
-    """What decides a run.
+    """Add the options that decide a run.
 
     Args:
-        parser: of the command.
-        without: attributes of `RunPlan` that the command says in another way.
+        parser: parser of the command.
+        without: attributes of `RunPlan` that the command sets in another way.
     """
     group = parser.add_argument_group("what decides the run")
     for name, add in RUN_OPTIONS.items():
@@ -230,15 +230,15 @@ def add_run_options(parser: argparse.ArgumentParser, without: Sequence[str] = ()
 
 
 def plan_of(arguments: argparse.Namespace, words: Sequence[str], command: str | None = None) -> RunPlan:
-    """The run that a command line asks for.
+    """Make the run plan of a command line.
 
     Args:
-        arguments: of the command line; what its command says in another way is as usual.
-        words: what follows the command; those of a launch are `launch_words`.
-        command: as of `RunPlan`; None is that of a mission, or of a node, if they begin with one.
+        arguments: the command line; attributes without an option keep their defaults.
+        words: the words after the command; for a launch, `launch_words`.
+        command: as for `RunPlan`. None means a mission or a node, whichever the words begin with.
 
     Raises:
-        UsageError: the schedule is none, or what is said of nodes in C++ is nowhere.
+        UsageError: the schedule is invalid, or the settings for nodes in C++ do not exist.
     """
     from cfepy.mission import cpp_nodes_source, is_node
     from cfepy.pilot import LAUNCH, NODE, RUN, RunPlan
@@ -261,10 +261,10 @@ def plan_of(arguments: argparse.Namespace, words: Sequence[str], command: str | 
 
 
 def plan_of_mission(arguments: argparse.Namespace) -> RunPlan:
-    """The run of a command with `add_mission_or_node`.
+    """Make the run plan of a command with `add_mission_or_node`.
 
     Raises:
-        UsageError: as of `plan_of`; words behind what is no node's .py.
+        UsageError: as for `plan_of`, or there are words after a mission that is not a node's .py.
     """
     from cfepy.pilot import NODE
 
@@ -275,20 +275,20 @@ def plan_of_mission(arguments: argparse.Namespace) -> RunPlan:
 
 
 def launch_words(arguments: argparse.Namespace) -> list[str]:
-    """The words of a command that takes a launch file and its arguments as roslaunch does, or with `--arg`."""
+    """Return the words of a command that takes a launch file and its arguments as roslaunch does, or with `--arg`."""
     return [*arguments.words, *(f"{name}:={value}" for name, value in arguments.launch_args)]
 
 
 def refuse_run_options(arguments: argparse.Namespace, why: str, but: Sequence[str] = ()) -> None:
-    """What is no mission to be flown takes no option of a run.
+    """Reject the options of a run for a target that is not a mission to be flown.
 
     Args:
-        arguments: of the command line.
-        why: why not: the end of a sentence that the option begins.
-        but: attributes of `RunPlan` that mean something all the same.
+        arguments: the command line.
+        why: the reason, as the end of a sentence that begins with the option.
+        but: attributes of `RunPlan` that are permitted.
 
     Raises:
-        UsageError: there is such an option.
+        UsageError: such an option is given.
     """
     for name, (option, usual) in _USUAL.items():
         if name not in but and getattr(arguments, name, usual) not in (usual, [], ""):
@@ -317,25 +317,25 @@ _USUAL: Mapping[str, tuple[str, object]] = {
     "processor_id": ("--processor-id", None),
     "beside": ("--with", None),
 }
-"""The option for each attribute, and its value when nothing is said."""
+"""The option for each attribute, and its default value."""
 
 
 def add_mission(parser: argparse.ArgumentParser, name: str = "mission", **said: Any) -> None:
-    """The mission that a command is about.
+    """Add the argument for the mission.
 
     Args:
-        parser: of the command.
-        name: of the argument.
-        said: what the command says in another way, as for `ArgumentParser.add_argument`.
+        parser: parser of the command.
+        name: name of the argument.
+        said: settings that override the defaults, as for `ArgumentParser.add_argument`.
     """
     parser.add_argument(name, action=MissionAction, **{"metavar": "MISSION", "help": MISSION_HELP, **said})
 
 
 def add_mission_or_node(parser: argparse.ArgumentParser, **said: Any) -> None:
-    """A mission, or a node's .py with its own arguments, as `plan_of_mission` takes them.
+    """Add the argument for a mission, or for a node's .py with its own arguments, as `plan_of_mission` reads them.
 
     Args:
-        parser: of the command.
+        parser: parser of the command.
         said: see `add_mission`.
     """
     add_mission(parser, **said)
@@ -356,7 +356,7 @@ LOOK_STATUS = """exit status:
 
 
 def add_looked_at(parser: argparse.ArgumentParser, with_bags: bool = False) -> None:
-    """The run that a command shows, and what decides it."""
+    """Add the argument for the run that a command shows, and the options that decide it."""
     what, metavar = ("a bag, " if with_bags else ""), ("RUN" if with_bags else "FILE|MISSION")
     add_mission(parser, "source", metavar=metavar, help=what + LOOKED_AT_HELP)
     add_run_options(parser)
@@ -365,7 +365,7 @@ def add_looked_at(parser: argparse.ArgumentParser, with_bags: bool = False) -> N
 
 
 def add_from_disk(parser: argparse.ArgumentParser) -> None:
-    """Which files the mission of a journal is made of."""
+    """Add the option that selects the files of a journal's mission."""
     parser.add_argument(
         "--from-disk",
         action="store_true",
@@ -373,65 +373,65 @@ def add_from_disk(parser: argparse.ArgumentParser) -> None:
     )
 
 
-# -- files, and where to begin and end --------------------------------------------------------------------------------
+# -- files, begin and end ----------------------------------------------------------------------------------------------
 
 
 def add_json(parser: Options, what: str) -> None:
-    """What a command finds, for programs; see `cfepy.cli.json_output`.
+    """Add the option for a command's findings in JSON; see `cfepy.cli.json_output`.
 
     Args:
-        parser: of the command.
-        what: is written.
+        parser: parser of the command.
+        what: the data that is written, for the help.
     """
     text = f"write {what} as JSON to a file, or with - to standard output and nothing else there"
     parser.add_argument("--json", metavar="FILE|-", help=text)
 
 
 def add_output(parser: argparse.ArgumentParser, text: str, default: str | None = None) -> None:
-    """The file or folder that a command makes.
+    """Add the option for the file or folder that a command makes.
 
     Args:
-        parser: of the command.
-        text: what it is without this option.
-        default: its value then.
+        parser: parser of the command.
+        text: the default, for the help.
+        default: the default value.
     """
     parser.add_argument("-o", "--output", metavar="PATH", default=default, help=f"where to write (default: {text})")
 
 
 def add_drawing(parser: argparse.ArgumentParser, kind: str, text: str) -> None:
-    """A file that is drawn or is to be drawn by others.
+    """Add the option for a drawing, or for the input of a drawing program.
 
     Args:
-        parser: of the command.
-        kind: its ending, which the option has as its name.
-        text: what it does.
+        parser: parser of the command.
+        kind: file name extension, which is also the name of the option.
+        text: the effect, for the help.
     """
     parser.add_argument(f"--{kind}", metavar="FILE|-", help=f"{text} to a file, or with - to standard output")
 
 
 def add_count(parser: argparse.ArgumentParser, what: str) -> None:
-    """After how many messages or packets a command ends."""
+    """Add the option for the number of messages or packets after which a command ends."""
     parser.add_argument("-n", "--count", type=count_of, metavar="N", help=f"end after so many {what}")
 
 
 def add_until(parser: argparse.ArgumentParser, text: str) -> None:
-    """Where to end.
+    """Add the option for the virtual time of the end.
 
     Args:
-        parser: of the command.
-        text: what ends.
+        parser: parser of the command.
+        text: the subject of the help text, such as "the run".
     """
     parser.add_argument("--until", type=seconds_of, metavar="SECONDS", help=f"{text} ends at this virtual time")
 
 
 def add_perfetto(parser: argparse.ArgumentParser) -> None:
-    """A file for Perfetto instead of a text."""
+    """Add the option for a file for Perfetto instead of a text."""
     text = "write a trace in the Trace Event Format, which ui.perfetto.dev opens, to this file"
     parser.add_argument("--perfetto", metavar="FILE", help=text)
 
 
 def add_from(parser: argparse.ArgumentParser) -> None:
-    """What is shown begins there."""
+    """Add the option for the virtual time at which the output begins."""
     parser.add_argument("--from", dest="from_s", type=seconds_of, metavar="SECONDS", help="begin at this virtual time")
 
 
@@ -439,7 +439,7 @@ def add_from(parser: argparse.ArgumentParser) -> None:
 
 
 def seconds_of(text: str) -> float:
-    """A time in s, for argparse: a number of seconds, or one with a unit, such as 600ms or 500us."""
+    """Parse a time in s, for argparse: a number of seconds, or one with a unit, such as 600ms or 500us."""
     number, per_s = next(((text.removesuffix(unit), per_s) for unit, per_s in _UNITS if text.endswith(unit)), (text, 1))
     try:
         seconds = float(number) / per_s
@@ -455,19 +455,19 @@ _UNITS = (("ns", 1_000_000_000), ("us", 1_000_000), ("ms", 1_000), ("s", 1))
 
 
 def stall_of(text: str) -> float:
-    """A time in s or 0, for argparse."""
+    """Parse a time in s or 0, for argparse."""
     return 0.0 if text in ("0", "0.0") else seconds_of(text)
 
 
 def count_of(text: str) -> int:
-    """How many, at least one, for argparse."""
+    """Parse a count of at least one, for argparse."""
     if not text.isdecimal() or int(text) == 0:
         raise argparse.ArgumentTypeError(f"invalid count {text!r}; expected 1 or more")
     return int(text)
 
 
 def launch_argument_of(text: str) -> tuple[str, str]:
-    """An argument of a launch file and its value, for argparse."""
+    """Parse an argument of a launch file and its value, for argparse."""
     name, mark, value = text.partition(":=")
     if not mark or not name:
         raise argparse.ArgumentTypeError(f"invalid launch argument {text!r}; expected NAME:=VALUE, such as rate:=20")
@@ -475,7 +475,7 @@ def launch_argument_of(text: str) -> tuple[str, str]:
 
 
 def setting_of(text: str) -> tuple[str, str]:
-    """A parameter and its value, for argparse."""
+    """Parse a parameter and its value, for argparse."""
     name, mark, value = text.partition("=")
     if not mark or not name.startswith("/"):
         raise argparse.ArgumentTypeError(
@@ -485,7 +485,7 @@ def setting_of(text: str) -> tuple[str, str]:
 
 
 def id_of(text: str) -> int:
-    """A number of a spacecraft or processor, for argparse."""
+    """Parse the number of a spacecraft or processor, for argparse."""
     try:
         return int(text, 0)
     except ValueError:
@@ -495,7 +495,7 @@ def id_of(text: str) -> int:
 
 
 def factor_of(text: str) -> float:
-    """How many times as fast as the wall clock, for argparse."""
+    """Parse a speed as a multiple of the wall clock, for argparse."""
     try:
         factor = float(text)
     except ValueError:

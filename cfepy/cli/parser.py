@@ -19,15 +19,15 @@ _PACKAGE = re.compile(r"\w[\w-]*")
 _CONTINUED = re.compile(r"\n {3,}(?=\S)")
 _ENTRY = re.compile(r" +\d+ +")
 FROM_ROS = {"rosrun": "node", "tf_echo": "tf echo", "view_frames": "tf frames", "rqt_graph": "graph"}
-"""What ROS calls some commands; names that are alike need no row."""
-_FEW = 2  # options that are shown in a usage; a command with more shows that there are some
+"""ROS's names of some commands. Names that are alike need no row."""
+_FEW = 2  # options that are shown in a usage; a command with more shows a placeholder
 
 
 class HelpFormatter(argparse.HelpFormatter):
-    """Wraps a list of exit statuses entry by entry, and all else as argparse does."""
+    """Wraps a list of exit statuses entry by entry, and all other text as argparse does."""
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
-        """A line that is indented deeply goes on with the entry before it."""
+        """Wrap a text; a deeply indented line continues the entry before it."""
         import textwrap
 
         lines: list[str] = []
@@ -38,14 +38,14 @@ class HelpFormatter(argparse.HelpFormatter):
         return "\n".join(lines)
 
     def _format_action_invocation(self, action: argparse.Action) -> str:
-        """Several words of one argument side by side, which argparse cannot do."""
+        """Show several words of one argument side by side, which argparse cannot do."""
         if not action.option_strings and isinstance(action.metavar, tuple):
             return " ".join(action.metavar)
         return super()._format_action_invocation(action)
 
 
 class MissionAction(argparse.Action):
-    """An argument that is a mission: a package and the name of a launch file in it are one mission in two words."""
+    """An argument that is a mission; a package and the name of a launch file in it are one mission in two words."""
 
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option_string: Any = None
@@ -54,21 +54,21 @@ class MissionAction(argparse.Action):
 
 
 class CommandParser(argparse.ArgumentParser):
-    """The parser of a command: options may stand between its words, which argparse by itself does not understand.
+    """The parser of a command: options may stand between its words, which argparse does not support.
 
     Attributes:
-        mixes: whether they may; where a shell asks what comes next, they may not.
+        mixes: True if they may. For shell completion it is False.
     """
 
     mixes = True
     _is_mixing = False
 
     def __init__(self, **settings: Any) -> None:
-        # An option that comes later must break no script, so none is taken by its first letters.
+        # A later option must not break a script, so abbreviations of options are not accepted.
         super().__init__(**{**settings, "allow_abbrev": False, "formatter_class": HelpFormatter})
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """A command with actions of its own leaves the mixing to them."""
+        """Parse the arguments. A command with actions of its own leaves the mixing of options and words to them."""
         if self._is_mixing:
             return super().parse_known_args(args, namespace)
         if not self.mixes:
@@ -77,12 +77,12 @@ class CommandParser(argparse.ArgumentParser):
             found, left = super().parse_known_args(args, namespace)
         else:
             found, left = self._mixed(self._with_missions_joined(args), namespace)
-        if left:  # told here, so that the usage shown is that of the command
+        if left:  # reported here, so that the message shows the usage of the command
             self._refuse(left)
         return found, left
 
     def _mixed(self, args: Sequence[str], namespace: Any) -> tuple[argparse.Namespace, list[str]]:
-        self.usage = self._usage().replace("%", "%%")  # now: while it mixes, argparse takes the words away
+        self.usage = self._usage().replace("%", "%%")  # now, because argparse removes the words while it mixes
         self._is_mixing = True
         try:
             return self.parse_known_intermixed_args(args, namespace)
@@ -90,7 +90,7 @@ class CommandParser(argparse.ArgumentParser):
             self._is_mixing = False
 
     def _with_missions_joined(self, args: Sequence[str]) -> list[str]:
-        """PACKAGE FILE in one word, where a mission may stand."""
+        """Join PACKAGE FILE to one word, where a mission may stand."""
         joined: list[str] = []
         takes_missions = any(isinstance(action, MissionAction) for action in self._actions)
         for word in args:
@@ -101,13 +101,13 @@ class CommandParser(argparse.ArgumentParser):
         return joined
 
     def _is_package(self, words: Sequence[str]) -> bool:
-        """Whether the last of these words may be a package: it looks like one, and is no value of an option."""
+        """Return True if the last word may be a package: it looks like one, and is not a value of an option."""
         option = self._option_string_actions.get(words[-2]) if len(words) > 1 else None
         is_value = option is not None and option.nargs != 0 and not isinstance(option, MissionAction)
         return _PACKAGE.fullmatch(words[-1]) is not None and not is_value and "--" not in words
 
     def _refuse(self, words: Sequence[str]) -> None:
-        """Tell what is left over; an option that is none gets a hint."""
+        """Report unexpected words, with a hint for an unknown option."""
         hints = (
             did_you_mean(word.partition("=")[0], self._option_string_actions, before="; ")
             for word in words
@@ -117,7 +117,7 @@ class CommandParser(argparse.ArgumentParser):
         self.error(f"unrecognized arguments: {' '.join(words)}{hint}")
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """As argparse does, which has this place for it, with a hint."""
+        """Check a choice as argparse does, and add a hint; argparse intends this method for that."""
         try:
             super()._check_value(action, value)
         except argparse.ArgumentError as error:
@@ -126,15 +126,15 @@ class CommandParser(argparse.ArgumentParser):
             raise argparse.ArgumentError(action, text) from None
 
     def print_help(self, file: Any = None) -> None:
-        """Print the help, which is all of cfepy: Python may give it colours."""
+        """Print the help with the colours that Python may add; all of it is cfepy's own text."""
         super().print_help(raw(sys.stdout if file is None else file))
 
     def print_usage(self, file: Any = None) -> None:
-        """Print the usage, as the help."""
+        """Print the usage in the same way as the help."""
         super().print_usage(raw(sys.stdout if file is None else file))
 
     def format_usage(self) -> str:
-        """The words of the command; its options are in its help."""
+        """Return the words of the command; its options are in its help."""
         return f"usage: {self._usage() if self.usage is None else self.usage.replace('%%', '%')}"
 
     def _usage(self) -> str:
@@ -146,7 +146,7 @@ class CommandParser(argparse.ArgumentParser):
         return formatter.format_help().removeprefix("usage: ")
 
     def format_help(self) -> str:
-        """As argparse does, with this usage."""
+        """Format the help as argparse does, with this usage."""
         _, _, rest = super().format_help().partition("\n\n")
         return f"{self.format_usage()}\n{rest}"
 
@@ -155,8 +155,8 @@ class RootParser(CommandParser):
     """The parser of `cfepy` itself, whose help has its commands in groups.
 
     Args:
-        groups: the commands of each, by its title.
-        settings: as of `ArgumentParser`.
+        groups: the commands of each group, by its title.
+        settings: as for `ArgumentParser`.
     """
 
     def __init__(self, groups: Mapping[str, Sequence[str]], **settings: Any) -> None:
@@ -164,14 +164,14 @@ class RootParser(CommandParser):
         self._groups = groups
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """As all parsers do; a tool of ROS that is called otherwise here is told."""
+        """Check a choice as all parsers do; for a ROS tool with another name here, name the command."""
         meant = FROM_ROS.get(value) if isinstance(action, argparse._SubParsersAction) else None
         if meant is not None:
             raise argparse.ArgumentError(action, f"invalid choice: {value!r}; did you mean {meant}?")
         super()._check_value(action, value)
 
     def format_help(self) -> str:
-        """The commands in their groups."""
+        """Format the help with the commands in their groups."""
         formatter = self._get_formatter()
         formatter.add_text(self.description)
         commands = next(action for action in self._actions if isinstance(action, argparse._SubParsersAction))

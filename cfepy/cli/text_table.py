@@ -17,10 +17,10 @@ class Table:
     """A table of text.
 
     Args:
-        title: above it.
-        columns: their heads.
+        title: title above it.
+        columns: the column titles.
         right: indices of the columns of numbers.
-        least: indices of the columns that a narrow terminal does without, the least important one first.
+        least: indices of the columns that a narrow terminal omits, the least important one first.
 
     Attributes:
         note: a line below it.
@@ -37,7 +37,7 @@ class Table:
         self.note = ""
 
     def add(self, *cells: object) -> None:
-        """Add a row; numbers of thousands get their comma, and a text is one line."""
+        """Add a row. Integers get thousands separators, and each text becomes one line."""
         self.rows.append(tuple(f"{cell:,}" if isinstance(cell, int) else visible_line(cell) for cell in cells))
 
 
@@ -69,7 +69,7 @@ def print_lines(names: Iterable[str]) -> None:
 
 
 def show_paragraph(text: str, stream: TextIO) -> None:
-    """Print a text that is no table, on a terminal with lines that end between words."""
+    """Print a text that is not a table; on a terminal, wrap lines between words."""
     text = visible(text)
     if stream.isatty():
         import textwrap
@@ -80,7 +80,7 @@ def show_paragraph(text: str, stream: TextIO) -> None:
 
 
 def _width(stream: TextIO) -> int:
-    """Columns of a terminal; COLUMNS of the environment counts more."""
+    """Return the columns of a terminal; the environment variable COLUMNS takes precedence."""
     said = os.environ.get("COLUMNS", "")
     if said.isdecimal() and int(said):
         return int(said)
@@ -91,7 +91,7 @@ def _width(stream: TextIO) -> int:
 
 
 def fitting(table: Table, width: int) -> list[int]:
-    """The columns that there is room for: without empty ones, and then without the least important, if need be."""
+    """Return the columns that fit: if necessary, first empty ones and then the least important ones are omitted."""
     widest = [max(len(row[at]) for row in (table.columns, *table.rows)) for at in range(len(table.columns))]
     empty = [at for at in range(len(table.columns)) if table.rows and not any(row[at] for row in table.rows)]
     shown = list(range(len(table.columns)))

@@ -1,6 +1,6 @@
-"""Records of a trace as text, a line each: virtual time, task, what happened.
+"""Records of a trace as text, a line each: virtual time, task, event.
 
-The time is that of the record where the trace notes it (`TimedRecords`); else that of the last move of the clock, and a
+The time is the record's own if the trace notes it (`TimedRecords`). Otherwise it is the last move of the clock, and a
 task that uses the CPU may be further.
 """
 
@@ -42,12 +42,12 @@ class TraceText:
         self._names = names_of(mission.spec)
 
     def lines(self, records: Sequence[bytes]) -> Iterator[str]:
-        """A line for each record but those that move the clock, without its end."""
+        """Yield a line without its line end for each record, except those that move the clock."""
         self._learn()
         times: Iterable[int | None] = records.times if isinstance(records, tr.TimedRecords) else repeat(None)
         for record, time_ns in zip(records, times, strict=False):
             if not record:
-                continue  # what the host does leaves no mark
+                continue  # host actions leave no mark
             if time_ns is not None:
                 self.now_ns = time_ns
             what = self._packet(record) if record[0] < _FIRST_MARK else self._mark(record)
@@ -55,7 +55,7 @@ class TraceText:
                 yield f"{self.now_ns // NS_PER_S}.{self.now_ns % NS_PER_S:09d} {self.task} {what}"
 
     def _learn(self) -> None:
-        """Tasks and pipes have names only as long as they live; a number stands for those that came and went."""
+        """Learn the names of tasks and pipes, which last only while they live; deleted ones show as numbers."""
         mission = self._mission
         if mission is None:
             return

@@ -1,4 +1,4 @@
-"""Messages that several commands share: a file cannot be written, or a run did not do what was asked."""
+"""Messages that several commands share: a file cannot be written, or a run did not do all that was asked of it."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from pathlib import Path
 from cfepy.status import UsageError
 
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
-"""What a disk says that is full or broken."""
+"""Errors of a full or broken disk."""
 
 
 @contextmanager
 def writing(file: str | Path, option: str) -> Iterator[None]:
-    """Around what writes a file.
+    """Convert errors of writing a file, as a context manager.
 
     Args:
         file: its path.
-        option: that named it.
+        option: the option that named it.
 
     Raises:
-        UsageError: in place of the OSError that says why it cannot be written.
+        UsageError: the file cannot be written; replaces the OSError.
     """
     try:
         yield
@@ -36,10 +36,10 @@ def writing(file: str | Path, option: str) -> Iterator[None]:
 
 
 def check_writable(file: str | Path, option: str) -> None:
-    """That a file can be written is better known before a run than after it; nothing is left there.
+    """Check before a run that a file can be written; leave no file behind.
 
     Raises:
-        UsageError: it cannot.
+        UsageError: it cannot be written.
     """
     is_new = not os.path.exists(file)
     with writing(file, option):
@@ -49,19 +49,19 @@ def check_writable(file: str | Path, option: str) -> None:
 
 
 def discard_half_written(file: str | Path, error: OSError) -> None:
-    """Remove a file that was cut off because there is no more room; a program must not take it for a whole one."""
+    """Remove a file that is truncated because the disk is full; a program must not take it for a whole one."""
     if error.errno in NO_ROOM and os.path.isfile(file):
         with suppress(OSError):
             os.unlink(file)
 
 
 def tell(texts: Iterable[object]) -> None:
-    """Write lines to standard error, after all that went to standard output."""
+    """Write lines to standard error, after all output to standard output."""
     sys.stdout.flush()
     for text in texts:
         print(f"cfepy: {text}", file=sys.stderr, flush=True)
 
 
 def note(text: str) -> None:
-    """A line for the user that is no failure goes the same way."""
+    """Write a message for the user that is not a failure; it takes the same way."""
     tell([text])

@@ -1,5 +1,6 @@
-"""What a command looks at: the run of a journal, which is replayed, or of a mission, launch file or node, which is
-flown; for values over time also a bag.
+"""The run that a command looks at: it is replayed from a journal, or flown from a mission, launch file or node.
+
+For values over time it can also be a bag.
 """
 
 from __future__ import annotations
@@ -22,10 +23,10 @@ from cfepy.units import NS_PER_S
 
 
 def flight_plan(arguments: argparse.Namespace) -> RunPlan:
-    """The run that a command line means, 10 s by default, also of a node.
+    """Make the plan of the run on the command line, 10 s by default, also for a node.
 
     Raises:
-        UsageError: the schedule is none.
+        UsageError: the schedule is invalid.
     """
     plan = plan_of(arguments, [arguments.source])
     return replace(plan, seconds=DEFAULT_S) if plan.seconds is None and plan.script is None else plan
@@ -37,11 +38,11 @@ class LookedAt:
 
     Attributes:
         flown: the run.
-        command: does it again.
+        command: the command that repeats it.
         schedule: the schedule of the run.
-        notes: what is good to know.
-        warnings: why it is not the run that is meant; none when it is.
-        plan: of a run that was flown; None for a replay.
+        notes: messages for the user.
+        warnings: why it is not the requested run; empty if it is.
+        plan: the plan of a run that was flown; None for a replay.
     """
 
     flown: Flown
@@ -52,7 +53,7 @@ class LookedAt:
     plan: RunPlan | None = None
 
     def status(self) -> int:
-        """The exit status of the command; notes and warnings go to standard error."""
+        """Print notes and warnings to standard error. Returns the exit status of the command."""
         stall = self.flown.stall
         tell((*self.flown.notes, *self.notes, *self.warnings, *([] if stall is None else [stall])))
         return FOUND_PROBLEMS if self.warnings or stall is not None else ENDED_WELL
@@ -67,10 +68,13 @@ def look_at(
     """Do the run that the command line names.
 
     Args:
-        arguments: of the command line.
-        attachments: what watches the run.
-        watched: makes the policy that is asked of the one that decides, of a schedule with some deviations from fifo.
-        trace: takes the records; None makes one.
+        arguments: the command line.
+        attachments: attachments that watch the run.
+        watched: wraps the policy of a schedule that is given as deviations from fifo.
+        trace: receives the records; None makes one.
+
+    Returns:
+        The run.
 
     Raises:
         UsageError: there is no such run, or an option is for the other kind of source.
@@ -87,11 +91,11 @@ def _refuse_from_disk(arguments: argparse.Namespace) -> None:
 
 
 def look_at_series(arguments: argparse.Namespace, words: Sequence[str]) -> tuple[SeriesSet, int]:
-    """The values over time of the run or the bag that the command line names, and the exit status of the command.
+    """Return the values over time of the run or the bag that the command line names, and the exit status.
 
     Args:
-        arguments: of the command line.
-        words: what is wanted of it, as `SeriesRecorder` takes them.
+        arguments: the command line.
+        words: the wanted values, as for `SeriesRecorder`.
 
     Raises:
         UsageError: there is no such run, bag or packet, or an option is for another kind of source.

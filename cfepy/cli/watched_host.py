@@ -1,6 +1,6 @@
 """The host's side of a run that a person watches: a display, Ctrl-C, the wall clock, this computer's ports.
 
-The run is cut into pieces for that. The pieces change nothing in it: its trace is that of a run in one piece.
+The run is cut into short steps for that. They do not affect it: its trace is the same as in one step.
 """
 
 from __future__ import annotations
@@ -29,42 +29,41 @@ if TYPE_CHECKING:
     from cfepy.cli.flight_add_ons import FlightAddOns
     from cfepy.io import Guest, HostNetwork
 
-PATIENCE_NS = 2 * NS_PER_S  # wall time after the second Ctrl-C in which no other has an effect
+PATIENCE_NS = 2 * NS_PER_S  # wall time after the second Ctrl-C during which further ones are ignored
 STDERR = 2
 
 MakeDisplay = Callable[[float], Display]
 
 
 def silent(seconds: float) -> Display:
-    """A display that shows nothing of a run of so many virtual seconds."""
+    """Make a display that shows nothing of a run of so many virtual seconds."""
     return SilentDisplay()
 
 
 def _show_lines_at_once() -> None:
-    """Write each line of a paced run when it comes, into a file or a pipe, too: somebody follows it there."""
+    """Flush each line of a paced run at once, also into a file or a pipe, because a reader may follow it there."""
     reconfigure = getattr(sys.stdout, "reconfigure", None)
     if reconfigure is not None:
         reconfigure(line_buffering=True)
 
 
 class WatchedHost(Host):
-    """Brings the display up to date between the pieces of a run; use as a context manager around it.
+    """Updates the display between the steps of a run; use as a context manager around it.
 
     Args:
-        interrupts: says whether Ctrl-C was pressed.
-        make_display: makes what shows the run, of its length in virtual seconds.
-        realtime: pace it to the wall clock, so many times as fast, with the mission's ports open; None runs as fast as
-            it goes.
-        ports: ports of this computer by those of the mission.
-        add_ons: what add-ons open around the run; None for nothing. It is closed at the end of the run.
-        pause: called between the pieces.
-        note: gets what the user should know before anything runs.
+        interrupts: reports whether Ctrl-C was pressed.
+        make_display: makes the display from the length of the run in virtual seconds.
+        realtime: speed as a multiple of the wall clock, with the mission's ports open; None runs as fast as possible.
+        ports: ports of this computer by the ports of the mission.
+        add_ons: add-ons around the run, or None. They are closed at the end of the run.
+        pause: called between the steps.
+        note: receives messages for the user before the run starts.
 
     Attributes:
-        console: for the mission; its lines go to the display.
+        console: the console for the mission; its lines go to the display.
 
-    When the display cannot be written to, the run ends as by Ctrl-C, and the error comes at the end of the context;
-    there is none if a terminal was closed.
+    If the display cannot be written to, the run ends as by Ctrl-C, and the context raises the error at its end. It
+    raises no error if a terminal was closed.
     """
 
     owns_process = True
@@ -102,7 +101,7 @@ class WatchedHost(Host):
         return self._interrupts.asked
 
     def __enter__(self) -> WatchedHost:
-        no_collection.__enter__()  # once around all pieces: no look for garbage between them
+        no_collection.__enter__()  # once around all steps: no garbage collection between them
         return self
 
     def __exit__(self, *error: Any) -> None:
@@ -115,7 +114,7 @@ class WatchedHost(Host):
             raise self._unshown
 
     def begin(self, run: LiveRun) -> None:
-        """What the user should know is said before anything runs."""
+        """Begin the run: show the notes for the user before it starts, and open the display and the ports."""
         super().begin(run)
         for each in run.notes:
             self._note(each)
@@ -135,21 +134,23 @@ class WatchedHost(Host):
             self._stop_showing(error)
 
     def stand(self) -> None:
-        """Time stands still between two pieces; what viewers ask is answered all the same."""
+        """Stand still between two steps; requests of viewers are answered all the same."""
         for each in self._guests:
             each.exchange()
 
     def wall_ns(self) -> int:
-        """See `Host.wall_ns`; from when it began."""
+        """Return the wall time in ns since the run began; see `Host.wall_ns`."""
         return self._watch.elapsed_ns()
 
     def take_break(self) -> bool:
-        """See `Host.take_break`. It may be an application that raised it: what it looks like is what it is."""
+        """Ask for the end of the run; see `Host.take_break`. An application that raises KeyboardInterrupt has the same
+        effect.
+        """
         self._interrupts.asked = True
         return True
 
     def give_up(self, why: BaseException) -> None:
-        """There is no report, since the thread that would write it does not come back."""
+        """End the process without a report, since the thread that would write it does not return."""
         with contextlib.suppress(Exception):
             sys.stdout.flush()
         os.write(
@@ -164,7 +165,7 @@ class WatchedHost(Host):
         self._bridge.close()
 
     def _stop_showing(self, error: OSError) -> None:
-        """Nothing can be shown any more: the run ends as by Ctrl-C, so that what it writes is whole."""
+        """End the run as by Ctrl-C if the display cannot be written to, so that its output files are complete."""
         self._display = SilentDisplay()
         self._interrupts.asked = True
         if not leave_dead_terminal():
@@ -181,22 +182,22 @@ class WatchedHost(Host):
         self._display.tell(text)
 
     def _free_piece(self, until_ns: int) -> None:
-        """As fast as it goes."""
+        """Run a step as fast as possible."""
         self._run_until(min(until_ns, self._mission.kernel.now + self._piece.ns))
 
     def pace(self, factor: float | None) -> None:
-        """From here on, so many times as fast as the wall clock; None is as fast as it goes."""
+        """Set the speed as a multiple of the wall clock; None is as fast as possible."""
         kernel, network = self._mission.kernel, self._network
         if factor is None:
             self._go = self._free_piece
             return
         run = self._run_until
         paced = Pacer(kernel, run, factor) if network is None else Pacer(kernel, run, factor, network.wait)
-        # One that falls behind would have ever more to catch up with in one piece.
+        # A run that falls behind would have ever more to catch up with in one step.
         self._go = lambda until_ns: paced.step(min(until_ns, kernel.now + self._piece.ns))
 
     def _connect(self) -> None:
-        """Real ports for the mission's; only a run in real time has them, and only it imports what they need."""
+        """Open real ports for the mission's ports. Only a run in real time has them and imports the code for them."""
         from cfepy.io import HostNetwork
 
         self._mission.kernel.context.be_prompt()
@@ -206,7 +207,7 @@ class WatchedHost(Host):
                 self._network.join(each)
 
     def _run_until(self, until_ns: int) -> None:
-        """A piece of the run; its length goes after what takes some 80 to 250 ms of wall time."""
+        """Run a step. Its length is adapted so that a step takes some 80 to 250 ms of wall time."""
         watch, length_ns = Stopwatch(), until_ns - self._mission.kernel.now
         self._mission.run_until(until_ns)
         self._piece.took(length_ns, watch.elapsed_ns())
@@ -217,12 +218,13 @@ class WatchedHost(Host):
 
 
 class Interrupts:
-    """What Ctrl-C, SIGTERM and SIGHUP do while a mission runs and ends; use as a context manager.
+    """Handles Ctrl-C, SIGTERM and SIGHUP while a mission runs and ends; use as a context manager.
 
-    The first one sets `asked`, for the run to end at the next occasion. The second one raises KeyboardInterrupt, for a
-    task that gives no occasion. Any more are ignored for a while: they would disturb the ending of tasks. After that
-    the next one ends the process, for a task that nothing can end, such as one that waits in a C library. A terminal
-    that is closed sends SIGHUP two or three times, from its system and its shell, so that only the first one counts.
+    The first signal sets `asked`, so that the run ends at the next opportunity. The second one raises
+    KeyboardInterrupt, for a task that gives no opportunity. Any more are ignored for a while, because they would
+    disturb the ending of tasks. After that the next one ends the process, for a task that cannot be ended, such as one
+    that waits in a C library. A terminal that is closed sends SIGHUP two or three times, from its system and its shell,
+    so that only the first one counts.
     """
 
     def __init__(self) -> None:
@@ -236,7 +238,7 @@ class Interrupts:
             for each in ending_signals():
                 self._before[each] = signal.signal(each, self._on_signal)
         except ValueError:
-            pass  # not the main thread: signals do not come here
+            pass  # not the main thread: signals do not arrive here
         return self
 
     def __exit__(self, *error: object) -> None:

@@ -1,4 +1,6 @@
-"""What a node calls once: `init_node`, command line, topics of the graph, `wait_for_message` (rospy.client)."""
+"""Functions that a node calls once: `init_node`, command line, topics of the graph, `wait_for_message`
+(rospy.client).
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,7 @@ from rospy_shim.types.names import SEP, command_line_params, program_arguments
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
 
-LOOK_NS = 10_000_000  # how often wait_for_message looks, as on ROS
+LOOK_NS = 10_000_000  # period at which wait_for_message looks, as on ROS
 
 
 class Client:
@@ -45,11 +47,11 @@ class Client:
         """Make this program a node of the graph.
 
         Args:
-            name: without a namespace; `__name:=` on the command line wins over it.
+            name: name without a namespace; `__name:=` on the command line takes precedence.
             argv: command line to take remappings from instead of sys.argv.
             anonymous: make the name unique.
             log_level: rospy.DEBUG to rospy.FATAL.
-            disable_rostime: do not follow /clock, whatever the parameter /use_sim_time says.
+            disable_rostime: do not follow /clock, regardless of the parameter /use_sim_time.
             disable_rosout: do not publish on /rosout.
             disable_signals: leave SIGINT and SIGTERM alone.
             xmlrpc_port: accepted.
@@ -98,13 +100,13 @@ class Client:
         return f"{name}_{universe.pid}_{(universe.clock.epoch_ns + universe.kernel.now) // 1_000_000}"
 
     def _load_params(self, argv: Sequence[str]) -> None:
-        """Private parameters of the mission file, then those of the command line."""
+        """Set the private parameters given in the mission file, and then the ones on the command line."""
         self._node.params.give(self._node.config.params)
         for name, value in self.load_command_line_node_params(argv).items():
             self._node.params.set_param(f"~{name}", value)
 
     def load_command_line_node_params(self, argv: Sequence[str]) -> dict[str, Any]:
-        """The private parameters that stand on a command line as `_name:=value`, the value in YAML.
+        """Return the private parameters on a command line, given as `_name:=value`, with the value in YAML.
 
         Raises:
             ROSInitException: an argument that has ":=" twice, or whose value is not YAML.
@@ -115,36 +117,36 @@ class Client:
             raise ROSInitException(f"invalid command-line parameters: {error}") from error
 
     def myargv(self, argv: Sequence[str] | None = None) -> list[str]:
-        """The command line without remappings and parameters."""
+        """Return the command line without remappings and parameters."""
         return program_arguments(self._node.argv() if argv is None else argv)
 
     def get_node_uri(self) -> str | None:
-        """An address that is unique to the node; None before `init_node`."""
+        """Return an address that is unique to the node; None before `init_node`."""
         return self._uri
 
     def set_node_uri(self, uri: str | None) -> None:
-        """Give the node another address."""
+        """Set another address of the node."""
         self._uri = uri
 
     def is_initialized(self) -> bool:
-        """Whether `init_node` has run."""
+        """Return True if `init_node` has run."""
         return self._node.initialized
 
     def set_initialized(self, initialized: bool) -> None:
-        """Say whether `init_node` has run."""
+        """Set whether `init_node` has run."""
         self._node.initialized = initialized
 
     def get_published_topics(self, namespace: str = SEP) -> list[list[str]]:
-        """[topic, type] of all topics below a namespace that have a publisher."""
+        """Return [topic, type] of all topics below a namespace that have a publisher."""
         return self._node.graph.published(namespace)
 
     def wait_for_message(self, topic: str, topic_type: Any, timeout: Any = None) -> Any:
-        """The next message of a topic, or its latched one.
+        """Wait for the next message of a topic, or return its latched one.
 
         Args:
             topic: its name.
             topic_type: its message class.
-            timeout: longest time, seconds or a Duration; None waits for as long as it takes.
+            timeout: longest time, seconds or a Duration; None waits without limit.
 
         Raises:
             ROSException: no message came in time.
@@ -176,5 +178,5 @@ class Client:
 
 
 def _till_look(after_ns: int) -> int:
-    """When rospy looks for the message of `wait_for_message`, from a time on after its beginning; not at once."""
+    """Return when `wait_for_message` looks next, in ns from its beginning; not at once."""
     return max(-(-after_ns // LOOK_NS), 1) * LOOK_NS

@@ -1,10 +1,10 @@
-"""How a publisher and a subscriber come together: at once, or after the time that a connection takes.
+"""Connecting a publisher and a subscriber: at once, or after the time that a connection takes.
 
-On ROS the master tells the subscriber of the publisher, and the subscriber connects to it, in a thread
-(rospy.impl.tcpros_pubsub). Until then neither counts the other, and what is published does not reach the subscriber.
-Then the publisher's side counts the connection, tells its listeners, and hands over its latched message, in this order.
-How long it takes is in the mission file (`connection_delay`), or open to the schedule (`connect=`). Only nodes connect:
-what cFE applications send and get on a topic goes over the bus at any time.
+On ROS the master notifies the subscriber of the publisher, and the subscriber connects to it, in a thread
+(rospy.impl.tcpros_pubsub). Until then neither counts the other, and published messages do not reach the subscriber.
+Then the publisher's side counts the connection, notifies its listeners, and hands over its latched message, in this
+order. The duration is set in the mission file (`connection_delay`), or left open to the schedule (`connect=`). Only
+nodes connect: messages of cFE applications on a topic pass over the bus at any time.
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 
 def delay_of(link: Link, subscription: Subscription) -> int:
-    """How long it takes until these two are connected, in virtual ns; with a node outside the network says it."""
+    """Return the virtual ns until these two are connected. It is 0 with a node outside, because the network decides
+    it.
+    """
     if link.is_outside or subscription.is_outside:
         return 0
     node = link.node
@@ -26,16 +28,16 @@ def delay_of(link: Link, subscription: Subscription) -> int:
 
 
 def begin(link: Link, subscription: Subscription, delay_ns: int, *, late: bool) -> None:
-    """Both are on the graph: connect them.
+    """Connect two sides that are both on the graph.
 
     Args:
         link: the publishing side.
         subscription: the subscribing side.
         delay_ns: virtual ns until they are connected; 0 connects them at once.
-        late: the publisher was there before, and may have a latched message.
+        late: the publisher existed before, and may have a latched message.
     """
     if subscription.is_outside and not late:
-        link.expect_peer(subscription)  # until its connection is there
+        link.expect_peer(subscription)  # until its connection exists
         return
     if not delay_ns:
         link.peer_joined(subscription, late=late)
@@ -45,7 +47,7 @@ def begin(link: Link, subscription: Subscription, delay_ns: int, *, late: bool) 
 
 
 def _finish(link: Link, subscription: Subscription, delay_ns: int) -> None:
-    """Connect them, unless one has left or the whole node is about to; a long message on its way is not cut."""
+    """Connect them, unless one has left or the whole node is about to. A long message on its way is not cut."""
     link.node.kernel.delay(delay_ns)
     link.acquire()
     try:

@@ -1,11 +1,11 @@
-"""What is left of a message that could not be serialized, and what becomes of the connections that it spoils.
+"""Remains of a message that could not be serialized, and the connections that they corrupt.
 
-A publisher of rospy has one buffer for all of its connections. When a field cannot be serialized, four bytes for the
-length, still zero, and the fields before it stay there, and the next good message goes out behind them. A subscriber
-reads a message of no bytes, cannot make one of its type of that, connects again with the rest still in its own buffer,
-takes that for a connection header, and gives up a second later (rospy.topics._PublisherImpl.publish,
+A publisher of rospy has one buffer for all of its connections. If a field cannot be serialized, four bytes for the
+length, still zero, and the preceding fields stay there, and the next good message is sent after them. A subscriber
+reads an empty message and cannot convert it to its type. It connects again with the rest still in its own buffer, takes
+that for a connection header, and gives up a second later (rospy.topics._PublisherImpl.publish,
 rospy.impl.tcpros_base.TCPROSTransport). It connects once more when the topic's publishers change. A subscriber of any
-type (AnyMsg) stays connected, and reads whatever the bytes say.
+type (AnyMsg) stays connected, and reads the bytes as they come.
 """
 
 from __future__ import annotations
@@ -30,27 +30,27 @@ _NOTE = (
 
 
 def half_of(message: Any) -> bytes:
-    """What `serialize` writes of a message before it fails."""
+    """Return the bytes that `serialize` writes of a message before it fails."""
     buff = BytesIO()
     try:
         message.serialize(buff)
-    except Exception:  # whatever made it fail before
+    except Exception:  # the error that made it fail before
         pass
     return buff.getvalue()
 
 
 class ByteStream:
-    """Messages cut out of the bytes of a connection, by the lengths in front of them.
+    """Splits the bytes of a connection into messages, by the lengths in front of them.
 
     Args:
-        octets: what came before the first message.
+        octets: the bytes before the first message.
     """
 
     def __init__(self, octets: bytes) -> None:
         self._octets = octets
 
     def read(self, message: bytes) -> list[bytes]:
-        """Take the bytes of one more message; what is complete now."""
+        """Add the bytes of one more message. Returns the messages that are complete now."""
         data = self._octets + _LENGTH.pack(len(message)) + message
         found = []
         while len(data) >= 4 and len(data) >= 4 + (size := _LENGTH.unpack_from(data)[0]):
@@ -76,18 +76,18 @@ class Leftovers:
 
     @property
     def streams(self) -> int:
-        """How many subscriptions of any type have lost count."""
+        """The number of subscriptions of any type that have lost the message boundaries."""
         return len(self._streams)
 
     def add(self, half: bytes) -> None:
-        """A message could not be serialized; this much of it was written."""
+        """Add the written part of a message that could not be serialized."""
         self._octets += _NO_LENGTH + half
         if not self._noted:
             self._noted = True
             self._link.node.universe.print_error(_NOTE.format(topic=self._link.name))
 
     def go_out(self, payload: bytes) -> None:
-        """A good message goes out to all, behind the leftovers."""
+        """Send a good message to all subscriptions, after the leftovers."""
         if self._octets:
             octets, self._octets = self._octets, b""
             for each in self._link.peers:
@@ -98,7 +98,9 @@ class Leftovers:
                 each.deliver(found, self._link.header)
 
     def goes_to(self, subscription: Subscription, payload: bytes) -> bool:
-        """A good message goes to one subscription, behind the leftovers; False when it does not arrive as it is."""
+        """Send a good message to one subscription, after the leftovers. Returns False if it does not arrive
+        unchanged.
+        """
         if self._octets:
             octets, self._octets = self._octets, b""
             self._spoil(subscription, octets)
@@ -109,7 +111,7 @@ class Leftovers:
         return stream is None and subscription in self._link.peers
 
     def _spoil(self, subscription: Subscription, octets: bytes) -> None:
-        """A subscription gets leftovers."""
+        """Send leftovers to a subscription."""
         if subscription.takes_any_type:
             self._streams[subscription] = ByteStream(octets)
             subscription.ignore(self._link)
@@ -117,7 +119,7 @@ class Leftovers:
             self._end(subscription, self._link.node.kernel.now)
 
     def cut(self, subscription: Subscription) -> None:
-        """The publisher ends a connection."""
+        """End a connection from the publisher's side."""
         if subscription in self._link.peers:
             self._end(subscription, self._link.node.kernel.now - GIVES_UP_NS)
 
@@ -127,12 +129,12 @@ class Leftovers:
         self._link.expect_peer(subscription)
 
     def forget(self, subscription: Subscription) -> None:
-        """A subscription is closed."""
+        """Forget a subscription that is closed."""
         self._ended.pop(subscription, None)
         self._streams.pop(subscription, None)
 
     def reconnect(self) -> None:
-        """The topic's publishers have changed: subscriptions that have given up connect again."""
+        """Reconnect the subscriptions that have given up, because the topic's publishers have changed."""
         link = self._link
         due = link.node.kernel.now - GIVES_UP_NS
         for each in [each for each, since in self._ended.items() if since <= due]:

@@ -1,8 +1,8 @@
 """`Link`: the publishing side of one node on one topic, shared by all of its handles (CFE_SB_TransmitMsg).
 
-The hot path is `Link.send`: one serialisation, one call of the bus. A message that does not fit in a packet goes out in
-segments. One without a subscriber goes into the trace alone, without virtual time or sequence number; in a run that is
-recorded the link is a `TappedLink`, which shows such messages to the recorder as well.
+The hot path is `Link.send`: one serialisation, one call of the bus. A message that does not fit in a packet is sent in
+segments. A message without a subscriber goes into the trace alone, without virtual time or sequence number. In a run
+that is recorded the link is a `TappedLink`, which shows such messages to the recorder as well.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
     from rospy_shim.graph.graph import Header
     from rospy_shim.types.msgs import MessageClass
 
-PACE_NS = 100_000  # between two looks whether a subscriber has room for the next segment
+PACE_NS = 100_000  # period of looking for room for the next segment
 PATIENCE = 100  # looks, before a segment is sent to a full queue and lost there
 FULL = 1 << 16  # more packets than any pipe holds
-_EMPTY_LAYOUT = 12  # bytes of a UInt8MultiArray before its data: those of an empty layout, and of their length
+_EMPTY_LAYOUT = 12  # bytes of a UInt8MultiArray before its data: an empty layout, and the length
 
 
 class SubscribeListener:
@@ -41,10 +41,10 @@ class SubscribeListener:
     __module__ = "rospy.topics"
 
     def peer_subscribe(self, topic_name: str, topic_publish: Callable[..., None], peer_publish: Any) -> None:
-        """A subscriber came; `topic_publish` sends a message to all, `peer_publish` to the new one only."""
+        """Take a new subscriber; `topic_publish` sends a message to all, `peer_publish` to the new one only."""
 
     def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
-        """A subscriber left, `num_peers` remain."""
+        """Take the loss of a subscriber; `num_peers` remain."""
 
 
 class Link(TopicSide):
@@ -69,7 +69,7 @@ class Link(TopicSide):
         self.shared = False  # with publishers of other nodes
         self.raw = False
         self.connected = False
-        self.expected: list[Subscription] = []  # those whose connection still takes some time
+        self.expected: list[Subscription] = []  # subscriptions whose connection still takes some time
         self.msg_id = 0
         bus = self._bus
         self._routes: dict[int, Route] = bus.routes
@@ -81,12 +81,12 @@ class Link(TopicSide):
         self._call_ns = node.call_ns
         self._count_items = getattr(data_class, "_count_items", None) if node.call_ns else None
         self._slot_ns = node.publish_slot_ns
-        self._slot = -1  # in which the last message went out
-        self.leftovers: Leftovers | None = None  # once a connection was spoilt
+        self._slot = -1  # the slot of the last message
+        self.leftovers: Leftovers | None = None  # set once a connection was corrupted
         self._room = bus.config.sb_max_msg_size - HEADER_BYTES
 
     def connect(self) -> None:
-        """The node is initialised: go on the graph.
+        """Go on the graph when the node is initialised.
 
         Raises:
             UsageError: the topic's MsgId belongs to another topic.
@@ -116,14 +116,14 @@ class Link(TopicSide):
         }
 
     def enable_latch(self) -> None:
-        """Keep the last message for subscribers to come."""
+        """Keep the last message for later subscribers."""
         self.is_latch = True
         self.header["latching"] = "1"
         if self.topic is not None:
             self.topic.latching = True
 
     def add_subscriber_listener(self, listener: SubscribeListener) -> None:
-        """Tell one more listener of subscribers that come and go."""
+        """Add a listener for new and lost subscribers."""
         self.subscriber_listeners.append(listener)
 
     def close(self) -> None:
@@ -141,7 +141,7 @@ class Link(TopicSide):
             self.topic = None
 
     def get_num_connections(self) -> int:
-        """How many pipes get the topic's messages: subscribing nodes, and cFE applications."""
+        """Return the number of pipes that get the topic's messages: subscribing nodes, and cFE applications."""
         route = self._routes.get(self.msg_id)
         if route is None or not (self.expected or self.leftovers):
             return len(route.active) if route is not None else 0
@@ -156,27 +156,27 @@ class Link(TopicSide):
 
     @property
     def connections(self) -> list[TopicConnection]:
-        """The nodes that subscribe."""
+        """The connections to subscribing nodes."""
         compiled = self.topic.compiled_subscribers if self.topic is not None else []
         peers: list[Node | CompiledNode] = [*(each.node for each in self.peers), *compiled]
         return [self.connection(node, OUTBOUND) for node in peers]
 
     def get_stats(self) -> tuple[str, int, list[tuple[int, int, int, bool]]]:
-        """The side as getBusStats gives it: topic, bytes, and for each connection number, bytes, messages, state."""
+        """Return the data of getBusStats: topic, bytes, and for each connection number, bytes, messages, state."""
         sent = self.message_data_sent
         return self.name, sent, [(each.id, sent, self.seq, True) for each in self.connections]
 
     def publish(self, message: Any, connection_override: Subscription | None = None) -> None:
-        """Publish a message as rospy's own code does, which does not look at its type.
+        """Publish a message as rospy's own code does, without a check of its type.
 
         Args:
             message: any message.
-            connection_override: the only subscription that is to get it.
+            connection_override: the only subscription that gets it, or None for all.
 
         Raises:
             ROSException: the topic is closed.
-            ROSSerializationException: a field holds what its type cannot carry.
-            AttributeError: it is no message.
+            ROSSerializationException: a field holds a value that its type cannot carry.
+            AttributeError: it is not a message.
         """
         if self.closed:
             raise ROSException("publish() to a closed topic")
@@ -187,7 +187,7 @@ class Link(TopicSide):
             self.latch = message
         if connection_override in self.peers:
             payload = self.serialize(message)
-            is_again = connection_override.is_outside and message is self.latch  # who only looks leaves no trace
+            is_again = connection_override.is_outside and message is self.latch  # an observer leaves no trace
             if not is_again:
                 self._unsent(self._unsent_head + payload)  # the bus does not carry it
             if self.leftovers is None or self.leftovers.goes_to(connection_override, payload):
@@ -197,7 +197,7 @@ class Link(TopicSide):
         """Publish a message.
 
         Raises:
-            ROSSerializationException: a field holds what its type cannot carry.
+            ROSSerializationException: a field holds a value that its type cannot carry.
         """
         if self._call_ns:
             self._charge(self._call_ns)
@@ -227,17 +227,19 @@ class Link(TopicSide):
             self.node.logs.logerr("publish on %s: %s", self.name, error)
 
     def _keep_back(self, message: Any) -> None:
-        """Record a message without a subscriber. As in rospy, a field that its type cannot carry is no error then."""
+        """Record a message without a subscriber. As in rospy, a field that its type cannot carry is not an error
+        then.
+        """
         try:
             payload = self._pack(message)
-        except Exception:  # whatever a generated class raises
+        except Exception:  # a generated class may raise any error
             payload = half_of(message)
         self._unsent(self._unsent_head + payload)
         if self.topic is not None:
             self.topic.unsent = True
 
     def _hold_back(self) -> None:
-        """On a board with a highest publishing rate: wait for a slot of time in which nothing went out yet."""
+        """Wait for a free time slot, on a board with a maximum publishing rate."""
         kernel = self.node.kernel
         slot = kernel.now // self._slot_ns
         while slot <= self._slot:
@@ -248,10 +250,10 @@ class Link(TopicSide):
         self._slot = slot
 
     def serialize(self, message: Any) -> bytes:
-        """The bytes of a message, with the next sequence number in its header.
+        """Return the bytes of a message, with the next sequence number in its header.
 
         Raises:
-            ROSSerializationException: a field holds what its type cannot carry.
+            ROSSerializationException: a field holds a value that its type cannot carry.
         """
         self.seq = seq = self.seq + 1
         try:
@@ -267,7 +269,9 @@ class Link(TopicSide):
         return payload
 
     def _serialize_another(self, message: Any, error: Exception) -> bytes:
-        """The bytes of a message of another type than the topic's; of one of the topic's, half stays behind."""
+        """Serialize a message of another type than the topic's; for one of the topic's type, keep the remains and
+        raise.
+        """
         if not isinstance(message, self.data_class):
             try:
                 return serialized(message)
@@ -284,7 +288,7 @@ class Link(TopicSide):
         return self.leftovers
 
     def _send_packet(self, message: Any, payload: bytes) -> None:
-        """A raw topic: the message's data are a whole packet; of one that came serialized, `payload` has them."""
+        """Send the message's data as a whole packet on a raw topic; a serialized message has them in `payload`."""
         packet = bytes(message.data) if hasattr(message, "layout") else payload[_EMPTY_LAYOUT:]
         msg_id = int.from_bytes(packet[:2], "big")
         if msg_id != self.msg_id:
@@ -294,7 +298,7 @@ class Link(TopicSide):
         self._bus.transmit_msg(packet)
 
     def _send_segments(self, payload: bytes) -> None:
-        """One long message; as with a socket that is full, the caller waits while a subscriber's queue is."""
+        """Send one long message. As with a full socket, the caller waits while a subscriber's queue is full."""
         count = -(-len(payload) // self._room)
         for subscription in self.peers:
             subscription.expect_segments(count)
@@ -308,7 +312,7 @@ class Link(TopicSide):
             self.release()
 
     def _note(self, index: int) -> None:
-        """Remember the sender of the next packet of the topic, since a packet cannot say."""
+        """Note the sender of the next packet of the topic, since a packet does not contain it."""
         route = self._routes.get(self.msg_id)
         if self.topic is not None and route is not None:
             self.topic.notes[(route.sequence + 1) & 0x3FFF] = (self.header, index)
@@ -325,7 +329,7 @@ class Link(TopicSide):
             kernel.delay(PACE_NS)
 
     def _has_room(self, packet: bytes, count: int = FULL) -> bool:
-        """Whether the bus and every pipe take a packet, or drop old messages for one of `count` packets."""
+        """Return True if the bus and every pipe take a packet, or drop old messages for one of `count` packets."""
         route = self._routes.get(self.msg_id)
         return route is None or (
             self._bus.has_room(packet)
@@ -337,35 +341,37 @@ class Link(TopicSide):
             )
         )
 
-    # -- subscribers that come and go --------------------------------------------------------------------------------
+    # -- new and lost subscribers --------------------------------------------------------------------------------------
 
     def give_latched(self, subscription: Subscription) -> None:
-        """Give a new subscriber the latched message, if there is one; a bad one costs it the connection."""
+        """Give a new subscriber the latched message, if there is one. A message that cannot be sent ends the
+        connection.
+        """
         if self.is_latch and self.latch is not None and not self.raw:
             try:
                 self.publish(self.latch, subscription)
-            except Exception as error:  # whatever serializing raises
+            except Exception as error:  # serializing may raise any error
                 self._refuse(subscription, error)
                 return
             if self.topic is not None:
                 self.topic.latched += 1
 
     def expect_peer(self, subscription: Subscription) -> None:
-        """A subscriber is about to connect; until then nothing that is published reaches it."""
+        """Expect a subscriber that is about to connect; until then published messages do not reach it."""
         self.expected.append(subscription)
         subscription.ignore(self)
 
     def peer_connected(self, subscription: Subscription) -> None:
-        """It has connected."""
+        """Count an expected subscriber as connected."""
         self.expected.remove(subscription)
         subscription.heed(self)
 
     def peer_joined(self, subscription: Subscription, *, late: bool = False) -> None:
-        """Tell the listeners of a new subscriber, which is connected at once.
+        """Notify the listeners of a new subscriber, which is connected at once.
 
         Args:
             subscription: the new one.
-            late: the publisher was there before it: a latched message follows what the listeners send.
+            late: the publisher existed before it: a latched message follows the messages of the listeners.
         """
         if self.subscriber_listeners:
             if late:
@@ -375,7 +381,7 @@ class Link(TopicSide):
             self.give_latched(subscription)
 
     def welcome(self, subscription: Subscription, *, late: bool) -> None:
-        """What rospy does with a new connection, in the one thread of a node that takes connections.
+        """Set up a new connection as rospy does, in the one thread of a node that accepts connections.
 
         Args:
             subscription: the new one.
@@ -391,7 +397,7 @@ class Link(TopicSide):
                 listener.peer_subscribe(self.name, self.publish, peer_publish)
             if late:
                 self.give_latched(subscription)
-        except Exception as error:  # whatever a listener raises
+        except Exception as error:  # a listener may raise any error
             self._refuse(subscription, error)
         finally:
             self.node.takes_connections.give()
@@ -402,11 +408,11 @@ class Link(TopicSide):
         self._spoilt().cut(subscription)
 
     def peer_left(self, subscription: Subscription, *, gone: bool = True) -> None:
-        """Tell the listeners, unless it was not connected.
+        """Notify the listeners, unless it was not connected.
 
         Args:
-            subscription: which left.
-            gone: it is closed; False when it only has no connection any more.
+            subscription: the lost one.
+            gone: it is closed; False if it has only lost its connection.
         """
         if self.leftovers is not None:
             self.leftovers.forget(subscription)
@@ -431,11 +437,11 @@ class TappedLink(Link):
         if self.topic is not None and self._on_unsent is not None and not self.get_num_connections():
             try:
                 self._on_unsent(self, self._pack(message))
-            except Exception:  # whatever a generated class raises
-                pass  # as `Link.send`, which does not look at a message without a subscriber
+            except Exception:  # a generated class may raise any error
+                pass  # as in `Link.send`, which does not check a message without a subscriber
         super().send(message)
 
 
 def link_class(node: Node) -> type[Link]:
-    """The class of a node's links."""
+    """Return the class of a node's links."""
     return Link if bus_of(node).on_unsent is None else TappedLink

@@ -1,8 +1,8 @@
-"""rospy's logging: `loginfo` and its kin, on the node's own `logging`, and where records go.
+"""rospy's logging: `loginfo` and related functions, on the node's own `logging`, and the outputs of records.
 
-Records go through the logger "rosout", so that a node can add handlers and set levels. They are shown on the console in
-the format of ROSCONSOLE_FORMAT and sent to the topic /rosout; as rospy does, `init_node` sets up the root logger too,
-whose records are for a log file, not for the console. The handlers' classes are made for each node on its own `logging`
+Records pass through the logger "rosout", so that a node can add handlers and set levels. They are shown on the console
+in the format of ROSCONSOLE_FORMAT and sent to the topic /rosout. As in rospy, `init_node` sets up the root logger too,
+whose records go to a log file, not to the console. The handlers' classes are made for each node on its own `logging`
 (rosgraph.roslogging.RosStreamHandler, rospy.impl.rosout.RosOutHandler). Every node offers the services `~get_loggers`
 and `~set_logger_level`.
 """
@@ -42,7 +42,7 @@ WARN = 4
 ERROR = 8
 FATAL = 16
 Site = tuple[str, int, int]
-"""Where a log function was called: file, line and byte code offset."""
+"""The call site of a log function: file, line and byte code offset."""
 _TOP = "rosout"
 OF_ROSPY = (
     "rosgraph",
@@ -58,11 +58,11 @@ OF_ROSPY = (
     "rospy.topics",
     "rosout",
 )
-"""Loggers that a node with rospy has, whether it has asked for them or not."""
+"""Loggers that every node with rospy has."""
 
 
 def make_stream_handler(node: Node) -> type:
-    """The class of the handler that writes to a node's console."""
+    """Make the class of the handler that writes to a node's console."""
     base: Any = node.logs.logging.Handler
     as_text = node.logs.logging.Formatter().format
 
@@ -71,8 +71,8 @@ def make_stream_handler(node: Node) -> type:
 
         Args:
             colorize: in colour, if the stream is a terminal.
-            stdout: stream for the others; None is sys.stdout as it is now.
-            stderr: stream for warnings and worse; None is sys.stderr as it is now.
+            stdout: stream for the others; None is the present sys.stdout.
+            stderr: stream for warnings and worse; None is the present sys.stderr.
         """
 
         def __init__(self, colorize: bool = True, stdout: Any = None, stderr: Any = None) -> None:
@@ -101,11 +101,11 @@ def make_stream_handler(node: Node) -> type:
 
 
 def _time(node: Node, shape: str | None = None) -> str:
-    """The mission's time, in a form of `time.strftime` if one is given; with simulated time behind it if that is used.
+    """Format the mission's time, followed by simulated time if the node uses it.
 
     Args:
-        node: whose time.
-        shape: the form; None shows seconds.
+        node: the node.
+        shape: a format of `time.strftime`; None shows seconds.
     """
     wall = _wall(node, shape)
     return wall if node.clock.is_wallclock() else f"{wall}, {node.clock.get_time():f}"
@@ -119,7 +119,7 @@ def _wall(node: Node, shape: str | None) -> str:
 
 
 def _filled(node: Node, form: str, level: str, message: str, record: Any) -> str:
-    """A line in the form that ROSCONSOLE_FORMAT gives (wiki.ros.org/rosconsole)."""
+    """Return a line in the format of ROSCONSOLE_FORMAT (wiki.ros.org/rosconsole)."""
     values = {
         "severity": level,
         "message": message,
@@ -143,7 +143,7 @@ def _filled(node: Node, form: str, level: str, message: str, record: Any) -> str
 
 
 def make_rosout_handler(node: Node) -> type:
-    """The class of the handler that publishes a node's records on /rosout."""
+    """Make the class of the handler that publishes a node's records on /rosout."""
     base: Any = node.logs.logging.Handler
 
     class RosOutHandler(base):  # type: ignore[misc]  # the base exists in the node's module universe only
@@ -161,7 +161,7 @@ def make_rosout_handler(node: Node) -> type:
 
 
 def _message(node: Node, text: str, record: Any) -> Any:
-    """A record as rosgraph_msgs/Log."""
+    """Return a record as rosgraph_msgs/Log."""
     log = node.library.message_class("rosgraph_msgs/Log")()
     log.header.stamp = MessageTime(*divmod(node.clock.now_ns(), NS_PER_S))
     log.level = _ROS_LEVELS.get(record.levelno, _ROS_LEVELS[20])
@@ -174,11 +174,11 @@ def _message(node: Node, text: str, record: Any) -> Any:
 
 
 def log_file(node: Node, name: str) -> str:
-    """Where a log file lies: what `__log:=` says, or a file in the folder of ROS's log files.
+    """Return the path of a log file, from `__log:=`, or in the folder of ROS's log files.
 
     Args:
         node: the node.
-        name: of the file there.
+        name: name of the file there.
     """
     path = node.names.get_mappings().get("__log")
     if path is None:
@@ -234,7 +234,7 @@ class Logs:
     # -- log functions -----------------------------------------------------------------------------------------------
 
     def _add(self, name: str, level: int) -> None:
-        """The four functions of a level. They look at the call site, so they are called by the node directly."""
+        """Add the four functions of a level. They look at the call site, so the node must call them directly."""
 
         def log(msg: Any, *args: Any, **kwargs: Any) -> None:
             self._log(level, msg, args, kwargs)
@@ -271,11 +271,11 @@ class Logs:
     # -- set-up ------------------------------------------------------------------------------------------------------
 
     def configure(self, level: int | None, publish: bool) -> None:
-        """`init_node`: show records, and publish them on /rosout.
+        """Show records, and publish them on /rosout; called by `init_node`.
 
         Args:
-            level: one of rosgraph_msgs/Log's, from which on records count; None is INFO.
-            publish: whether /rosout gets them.
+            level: the lowest level of records, one of rosgraph_msgs/Log's; None is INFO.
+            publish: publish them on /rosout.
         """
         environ, mappings = self._node.universe.environ, self._node.names.get_mappings()
         keep = "__log" in mappings or "ROS_LOG_DIR" in environ
@@ -293,9 +293,9 @@ class Logs:
             self.load_logging()
 
     def load_logging(self) -> Any:
-        """The node's `logging`, set up as far as `init_node` asked for it.
+        """Return the node's `logging`, set up as `init_node` asked for.
 
-        It is a third of what a small node costs, so nodes that neither log nor import it do without.
+        It is a third of the cost of a small node, so nodes that neither log nor import it do without.
         """
         logging = self._node.universe.importer.load_standard("logging")
         work, self._postponed = self._postponed, []
@@ -310,10 +310,10 @@ class Logs:
         return True
 
     def load_rosout_handlers(self, level: int | None) -> None:
-        """Have records published on /rosout.
+        """Publish records on /rosout.
 
         Args:
-            level: one of rosgraph_msgs/Log's, from which on records count; None leaves it as it is.
+            level: the lowest level of records, one of rosgraph_msgs/Log's; None leaves it unchanged.
         """
         logger = self.logging.getLogger(_TOP)
         logger.addHandler(self.RosOutHandler())
@@ -321,10 +321,10 @@ class Logs:
             logger.setLevel(LEVELS[level])
 
     def configure_logging(self, node_name: str, level: int = 20) -> None:
-        """rospy.core.configure_logging: set up the loggers, and keep a log file.
+        """Set up the loggers, and keep a log file (rospy.core.configure_logging).
 
         Args:
-            node_name: resolved name of the node; the file is called after it.
+            node_name: resolved name of the node; the file is named after it.
             level: accepted, and without effect, as in rospy.
 
         Raises:
@@ -345,7 +345,7 @@ class Logs:
         return log_file(self._node, f"{stem}.log")
 
     def _refit(self, logger: Any, handler: Any) -> None:
-        """Give a logger one handler in place of those that it has."""
+        """Give a logger one handler in place of its present ones."""
         for former in logger.handlers[:]:
             logger.removeHandler(former)
         logger.addHandler(handler)
@@ -360,7 +360,7 @@ class Logs:
 
 
 class LoggingOnce:
-    """Whether a call site logs for the first time (rospy.core.LoggingOnce)."""
+    """Decides whether a call site logs for the first time (rospy.core.LoggingOnce)."""
 
     __module__ = "rospy.core"
 
@@ -368,14 +368,14 @@ class LoggingOnce:
         self.called_caller_ids: set[object] = set()
 
     def __call__(self, caller_id: object) -> bool:
-        """Ask for a call site."""
+        """Return True for the first call of a call site."""
         first = caller_id not in self.called_caller_ids
         self.called_caller_ids.add(caller_id)
         return first
 
 
 class LoggingThrottle:
-    """Whether a call site last logged longer ago than a period, or later than now (rospy.core.LoggingThrottle).
+    """Decides whether a call site last logged longer ago than a period, or later than now (rospy.core.LoggingThrottle).
 
     Each node has a subclass that knows the node.
     """
@@ -387,7 +387,7 @@ class LoggingThrottle:
         self.last_logging_time_table: dict[object, int] = {}  # ns
 
     def __call__(self, caller_id: object, period: Any) -> bool:
-        """Ask for a call site, and a period in s.
+        """Return True if a call site may log; `period` is in s.
 
         Raises:
             ROSInitException: before `init_node`.
@@ -403,7 +403,7 @@ class LoggingThrottle:
 
 
 class LoggingIdentical:
-    """Whether a call site logs something else than the last time (rospy.core.LoggingIdentical)."""
+    """Decides whether a call site logs another text than the last time (rospy.core.LoggingIdentical)."""
 
     __module__ = "rospy.core"
 
@@ -411,7 +411,7 @@ class LoggingIdentical:
         self.last_logging_msg_table: dict[object, str] = {}
 
     def __call__(self, caller_id: object, msg: Any) -> bool:
-        """Ask for a call site and its text."""
+        """Return True if the text of a call site is new."""
         text = str(msg)
         new = self.last_logging_msg_table.get(caller_id) != text
         self.last_logging_msg_table[caller_id] = text
@@ -430,7 +430,7 @@ def _record(
     stack_info: bool = False,
     stacklevel: int = 1,
 ) -> Any:
-    """A record of `logging` that names the line of the node, and the function with its class as rospy does."""
+    """Make a record of `logging` that names the line of the node, and the function with its class as rospy does."""
     for _ in range(stacklevel - 1):
         frame = frame.f_back or frame
     if isinstance(exc_info, BaseException):
@@ -445,7 +445,7 @@ def _record(
 
 
 def _call_site() -> Site:
-    """Where the node called the log function from."""
+    """Return the place of the node's call of the log function."""
     frame = sys._getframe(2)
     return frame.f_code.co_filename, frame.f_lineno, frame.f_lasti
 
@@ -461,7 +461,7 @@ class LoggerServices:
         self._node = node
 
     def offer(self) -> None:
-        """`init_node`: offer them."""
+        """Offer them; called by `init_node`."""
         service, library = make_quiet_service(self._node), self._node.library
         self._logger = library.message_class("roscpp/Logger")
         service("~get_loggers", library.service_class("roscpp/GetLoggers"), self._get)

@@ -1,4 +1,4 @@
-"""What rospy adds to messages: arguments of `publish`, `AnyMsg`, numpy arrays (rospy.msg, rospy.numpy_msg)."""
+"""rospy's additions to messages: arguments of `publish`, `AnyMsg`, numpy arrays (rospy.msg, rospy.numpy_msg)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class AnyMsg(Message):
-    """Subscribes to any type: `_buff` holds the serialised message, `_connection_header` says what it is."""
+    """Subscribes to any type: `_buff` holds the serialised message, `_connection_header` its type."""
 
     __module__ = "rospy.msg"
     _md5sum = "*"
@@ -62,13 +62,13 @@ class AnyMsg(Message):
 
 
 def packer(data_class: MessageClass) -> Callable[[Any], bytes]:
-    """What serialises the messages of a class: its own fast function, or `serialize` of a class that genpy made."""
+    """Return the function that serialises a class's messages: its own fast one, or `serialize` of genpy's code."""
     own: Callable[[Any], bytes] | None = getattr(data_class, "_pack", None)
     return own if own is not None else serialized
 
 
 def unpacker(data_class: MessageClass) -> Callable[[bytes, int], Any]:
-    """What makes a message of a class from bytes at an offset; the counterpart of `packer`."""
+    """Return the function that makes a message of a class from bytes at an offset; the counterpart of `packer`."""
     own: Callable[[bytes, int], Any] | None = getattr(data_class, "_unpack", None)
     if own is not None:
         return own
@@ -77,7 +77,7 @@ def unpacker(data_class: MessageClass) -> Callable[[bytes, int], Any]:
 
 
 class _TextErrors:
-    """What code that genpy generated asks of the error handler "rosmsg": bytes that are no UTF-8 become U+FFFD."""
+    """The error handler "rosmsg" for code that genpy generated: bytes that are not UTF-8 become U+FFFD."""
 
     msg_type = ""  # set by that code
 
@@ -88,7 +88,7 @@ class _TextErrors:
 
 
 def _register_text_errors() -> None:
-    """Give Python's codecs the handler that genpy gives them when it is imported."""
+    """Register the codec error handler that genpy registers when it is imported."""
     try:
         codecs.lookup_error("rosmsg")
     except LookupError:
@@ -96,14 +96,14 @@ def _register_text_errors() -> None:
 
 
 def serialized(message: Any) -> bytes:
-    """What `serialize` of a message writes."""
+    """Return the bytes that `serialize` of a message writes."""
     buffer = io.BytesIO()
     message.serialize(buffer)
     return buffer.getvalue()
 
 
 def args_kwds_to_message(data_class: MessageClass, args: tuple[Any, ...], kwds: dict[str, Any]) -> Any:
-    """The message that the arguments of `publish` mean.
+    """Make the message from the arguments of `publish`.
 
     Args:
         data_class: type of the topic.
@@ -131,17 +131,17 @@ def args_kwds_to_message(data_class: MessageClass, args: tuple[Any, ...], kwds: 
 
 
 def _first_type(data_class: MessageClass) -> str:
-    """Type of the first field, with which rospy compares a message that is not of the topic's type."""
+    """Return the type of the first field; rospy compares a message of another type than the topic's with it."""
     types = data_class._slot_types
     return types[0] if types else ""
 
 
 def serialize_message(b: BinaryIO, seq: int, msg: Any) -> None:
-    """Write a message the way ROS puts it on a wire: its length, then its bytes.
+    """Write a message as ROS does on a connection: its length, then its bytes.
 
     Args:
-        b: where to.
-        seq: for the header, if the message has one.
+        b: the output.
+        seq: sequence number for the header, if the message has one.
         msg: the message.
     """
     if getattr(type(msg), "_has_header", False):
@@ -160,18 +160,18 @@ def deserialize_messages(
     max_msgs: int | None = None,
     start: int = 0,
 ) -> None:
-    """Read the messages that `serialize_message` wrote; what is left of one that is not complete stays.
+    """Read the messages that `serialize_message` wrote; the bytes of an incomplete one stay.
 
     Args:
-        b: bytes up to its position.
-        msg_queue: where the messages are added.
+        b: buffer with bytes up to its position.
+        msg_queue: receives the messages.
         data_class: their class.
         queue_size: messages that the queue keeps, the last ones; None for all.
         max_msgs: messages to read at most; None for all.
-        start: where in `b` they begin.
+        start: offset of the first message in `b`.
 
     Raises:
-        DeserializationError: the bytes are no messages of the class.
+        DeserializationError: the bytes are not messages of the class.
     """
     try:
         found = _cut(b, start, max_msgs)
@@ -203,7 +203,7 @@ def _cut(b: BinaryIO, start: int, most: int | None) -> list[bytes]:
 
 
 def numpy_msg(msg_type: Any) -> Any:
-    """A class of the same message type whose number arrays are numpy arrays.
+    """Make a class of the same message type whose number arrays are numpy arrays.
 
     Args:
         msg_type: a message class.

@@ -1,6 +1,6 @@
 """The modules `rospy`, `rospy.core`, `rospy.rostime`, ... of one node, and the names in each.
 
-They are made by name when a node first imports them, out of the node's own functions and classes.
+They are made by name when a node first imports them, from the node's own functions and classes.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ Makers = dict[str, Callable[[], Any]]
 Live = dict[str, tuple[object, str]]
 INNER = Path(__file__).parents[1] / "rospy_modules"
 """Modules of rospy that are ordinary code of nodes, executed afresh in each universe."""
-_SUBMODULES = ("logger_level_service_caller", "rosconsole", "service")  # of those in INNER, what `import rospy` shows
+_SUBMODULES = ("logger_level_service_caller", "rosconsole", "service")  # modules in INNER that `import rospy` shows
 _IMPORTED = (
     "roscpp.msg",
     "roscpp.srv",
     "rosgraph_msgs.msg",
     "std_msgs.msg",
-)  # by `import rospy`, as some scripts rely on
+)  # by `import rospy`; some scripts rely on it
 _CORE_TOOLS = (
     "NullHandler",
     "deprecated",
@@ -61,7 +61,7 @@ _GRAPH_NAMES = (
 
 
 class ModuleTables:
-    """The tables of one node; each method is one.
+    """The tables of names of one node; each method returns one.
 
     Args:
         node: the node.
@@ -73,7 +73,7 @@ class ModuleTables:
         self._get_master = get_master
 
     def exceptions(self) -> NameTable:
-        """`rospy.exceptions`."""
+        """Return the names of `rospy.exceptions`."""
         return pick(
             exceptions,
             (
@@ -90,7 +90,7 @@ class ModuleTables:
         )
 
     def client(self) -> NameTable:
-        """`rospy.client`."""
+        """Return the names of `rospy.client` that are in `rospy`, too."""
         own = (
             "init_node",
             "get_published_topics",
@@ -110,11 +110,11 @@ class ModuleTables:
         }
 
     def client_module(self) -> NameTable:
-        """`rospy.client`, of which not all is in `rospy`."""
+        """Return the names of `rospy.client`."""
         return {**self.client(), "_Unspecified": params.Unspecified, "_unspecified": params.UNSPECIFIED}
 
     def params(self) -> NameTable:
-        """The functions for parameters."""
+        """Return the functions for parameters."""
         functions = (
             "delete_param",
             "get_param",
@@ -127,7 +127,7 @@ class ModuleTables:
         return pick(self._node.params, functions)
 
     def top_of_core(self) -> NameTable:
-        """What `rospy` shows of `rospy.core`."""
+        """Return the names of `rospy.core` that are in `rospy`, too."""
         return {
             **pick(self._node.logs, _LOG_FUNCTIONS),
             "logerror": self._node.logs.logerr,
@@ -137,7 +137,7 @@ class ModuleTables:
         }
 
     def core(self) -> NameTable:
-        """`rospy.core`."""
+        """Return the names of `rospy.core`."""
         node = self._node
         hooks = (
             "add_client_shutdown_hook",
@@ -160,7 +160,7 @@ class ModuleTables:
         }
 
     def validators(self) -> NameTable:
-        """The checks of arguments."""
+        """Return the checks of arguments."""
         resolving = names.NameValidators(self._node.names.resolve_name)
         return {
             **pick(names, ("ParameterInvalid", "global_name", "isstring", "valid_name_validator_unresolved")),
@@ -168,7 +168,7 @@ class ModuleTables:
         }
 
     def bridge(self) -> NameTable:
-        """What code in INNER needs of the node itself; nodes have no use for it."""
+        """Return the names that code in INNER needs of the node itself; nodes have no use for them."""
         node = self._node
         return {
             "RosStreamHandler": node.logs.RosStreamHandler,
@@ -178,11 +178,11 @@ class ModuleTables:
         }
 
     def names_at_top(self) -> NameTable:
-        """What `rospy` shows of `rospy.names`."""
+        """Return the names of `rospy.names` that are in `rospy`, too."""
         return pick(self._node.names, ("get_caller_id", "get_name", "get_namespace", "remap_name", "resolve_name"))
 
     def names(self) -> NameTable:
-        """`rospy.names`."""
+        """Return the names of `rospy.names`."""
         own = (
             "get_mappings",
             "get_resolved_mappings",
@@ -200,7 +200,7 @@ class ModuleTables:
         }
 
     def rostime(self) -> NameTable:
-        """`rospy.rostime`."""
+        """Return the names of `rospy.rostime`."""
         functions = (
             "Duration",
             "Time",
@@ -217,11 +217,11 @@ class ModuleTables:
         return pick(self._node.clock, functions)
 
     def timer(self) -> NameTable:
-        """`rospy.timer`."""
+        """Return the names of `rospy.timer`."""
         return {"Rate": self._node.Rate, "TimerEvent": timer.TimerEvent, "sleep": self._node.clock.sleep}
 
     def topics(self) -> NameTable:
-        """What `rospy` shows of `rospy.topics`."""
+        """Return the names of `rospy.topics` that are in `rospy`, too."""
         return {
             "Publisher": self._node.Publisher,
             "Subscriber": self._node.Subscriber,
@@ -229,7 +229,7 @@ class ModuleTables:
         }
 
     def topics_module(self) -> NameTable:
-        """`rospy.topics`."""
+        """Return the names of `rospy.topics`."""
         return {
             **self.topics(),
             **pick(names, _NAME_CONSTANTS),
@@ -246,11 +246,11 @@ class ModuleTables:
         }
 
     def services(self) -> NameTable:
-        """What `rospy` shows of services."""
+        """Return the names of services that are in `rospy`."""
         return pick(self._node, ("Service", "ServiceProxy", "wait_for_service"))
 
     def services_module(self) -> NameTable:
-        """`rospy.impl.tcpros_service`."""
+        """Return the names of `rospy.impl.tcpros_service`."""
         return {
             **self.services(),
             "DEFAULT_BUFF_SIZE": subscription.DEFAULT_BUFF_SIZE,
@@ -260,23 +260,23 @@ class ModuleTables:
         }
 
     def msg(self) -> NameTable:
-        """`rospy.msg`."""
+        """Return the names of `rospy.msg`."""
         return pick(message, ("AnyMsg", "args_kwds_to_message", "deserialize_messages", "serialize_message"))
 
 
 def pick(source: object, wanted: Iterable[str]) -> NameTable:
-    """Attributes of an object by name."""
+    """Return attributes of an object by name."""
     return {name: getattr(source, name) for name in wanted}
 
 
 class RosModule(ModuleType):
-    """A module of rospy; some of its names are made at first use, others stand for what an object has right now.
+    """A module of rospy. Some of its names are made at first use, others refer to an object's present attributes.
 
     Args:
         name: full name.
-        ready: names and what they stand for.
-        late: names and what makes them.
-        live: names, and the attributes of objects that they are.
+        ready: names and their values.
+        late: names and functions that make their values.
+        live: names, and the attributes of objects that they refer to.
     """
 
     __all__: list[str]
@@ -338,7 +338,9 @@ class RosModules:
         }
 
     def find(self, name: str) -> Factory | None:
-        """What makes a module, by its full name ("rospy", "rospy.core", "rospy_shim.core"); None: it is not rospy's."""
+        """Return the factory of a module by its full name ("rospy", "rospy.core", "rospy_shim.core"); None if not
+        rospy's.
+        """
         package, _, part = name.partition(".")
         if package == "rospy_shim":
             return self._alias(part)
@@ -352,7 +354,9 @@ class RosModules:
         return (lambda universe: universe.importer.load_file(name, str(file))) if file.is_file() else None
 
     def _alias(self, part: str) -> Factory | None:
-        """`rospy_shim` is another name of `rospy`; what has no counterpart there is not found here."""
+        """Return the factory of a `rospy_shim` module, which is an alias of a rospy module; None without a
+        counterpart.
+        """
         name = f"rospy.{part}" if part else "rospy"
         return (lambda universe: universe.importer.load(name)) if self.find(name) is not None else None
 
@@ -420,13 +424,13 @@ class RosModules:
         return module
 
     def _submodules(self) -> Makers:
-        """The modules that `import rospy` shows, loaded when they are first looked at."""
+        """Return the modules that `import rospy` shows; they are loaded at first use."""
         load = self._node.universe.importer.load
         names = [*(part for part in self._tables if "." not in part), *_SUBMODULES]
         return {part: partial(load, f"rospy.{part}") for part in names}
 
     def _submodules_of_impl(self) -> Makers:
-        """What `rospy.impl` shows, loaded when it is first looked at."""
+        """Return the modules that `rospy.impl` shows; they are loaded at first use."""
         load = self._node.universe.importer.load
         names = [part.removeprefix("impl.") for part in self._tables if part.startswith("impl.")]
         names += [file.stem for file in sorted(INNER.joinpath("impl").glob("*.py"))]

@@ -1,6 +1,6 @@
 """One ROS node: the object behind the functions and classes of its own `rospy`.
 
-Every node of a mission has one; nothing is shared between two nodes but the graph.
+Every node of a mission has one; two nodes share only the graph.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ class Node:
         cfe: the handle of cFE's services.
         graph: the mission's ROS graph.
         universe: the module universe that the node's program runs in.
-        config: what the mission file says about it.
+        config: its configuration in the mission file.
         tasks: starts tasks in the name of the node's application.
         call_ns: virtual CPU time of a call.
-        publish_slot_ns: a publisher sends at most one message in each stretch of so many ns; 0 for no limit.
+        publish_slot_ns: a publisher sends at most one message in each interval of so many ns; 0 for no limit.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class Node:
         self.Rate = make_rate(self)
 
     def working(self, name: str, unpack: Callable[[bytes, int], Any]) -> Callable[[bytes, int], Any]:
-        """`unpack` for a topic or a service, with the time that the callbacks for what it unpacks take."""
+        """Return `unpack` of a topic or a service, extended by the configured computing time of its callbacks."""
         said = {self.names.resolve_name(each): time_ns for each, time_ns in self.config.compute.items()}
         time_ns, compute = said.get(name, 0), self.kernel.compute
         if not time_ns:
@@ -113,13 +113,13 @@ class Node:
         return self._timer
 
     def argv(self) -> list[str]:
-        """The node's `sys.argv` as it is now."""
+        """Return the node's present `sys.argv`."""
         return list(self.universe.importer.modules["sys"].argv)
 
     # -- the graph ---------------------------------------------------------------------------------------------------
 
     def go_on_graph(self) -> None:
-        """`init_node`: register the node, and what was made before."""
+        """Register the node, and its topics and services made so far; called by `init_node`."""
         self.initialized = True
         self.universe.name = self.names.name.lstrip("/")
         self.graph.register_node(self)
@@ -131,7 +131,7 @@ class Node:
             subscription.connect()
 
     def leave_graph(self) -> None:
-        """Shutdown: close all publishers and subscribers."""
+        """Close all publishers, subscribers and services at shutdown."""
         for subscription in list(self.subscriptions.values()):
             subscription.close()
         for link in list(self.links.values()):
@@ -141,7 +141,7 @@ class Node:
         self.graph.forget_node(self)
 
     def abandon(self) -> None:
-        """The program has ended, whatever way: nothing of it stays on the graph or on the bus."""
+        """Remove everything from the graph and the bus after the end of the program."""
         holders: list[Subscription | Service] = [*self.subscriptions.values(), *self.services]
         self.leave_graph()
         for holder in holders:
@@ -151,7 +151,7 @@ class Node:
                 pass  # ES has cleaned up before
 
     def link(self, name: str, data_class: MessageClass) -> Link:
-        """The publishing side of a topic, made when first asked for."""
+        """Return the publishing side of a topic; make it at first use."""
         link = self.links.get(name)
         if link is None or link.data_class._md5sum != data_class._md5sum:
             link = self.links[name] = link_class(self)(self, name, data_class)
@@ -160,7 +160,7 @@ class Node:
         return link
 
     def subscription(self, name: str, data_class: MessageClass) -> Subscription:
-        """The subscribing side of a topic, made when first asked for."""
+        """Return the subscribing side of a topic; make it at first use."""
         found = self.subscriptions.get(name)
         if found is None or found.data_class is not data_class:
             found = Subscription(self, name, data_class)
@@ -170,15 +170,15 @@ class Node:
         return found
 
     def topic_for(self, name: str, data_class: MessageClass, registration: str) -> TopicEntry | None:
-        """The topic to connect to; None when the node is shut down, when the master refuses the name, or when the
-        topic's type is another one.
+        """Return the topic to connect to.
 
-        The latter two are logged, and the rest of the graph goes on.
+        It is None if the node is shut down, if the master refuses the name, or if the topic has another type. The
+        latter two are logged, and the rest of the graph goes on.
 
         Args:
             name: resolved name.
             data_class: message class.
-            registration: what the node registers, "publication" or "subscription".
+            registration: the kind of registration, "publication" or "subscription".
 
         Raises:
             UsageError: the topic's MsgId belongs to another topic.
@@ -200,14 +200,14 @@ class Node:
         return None
 
     def is_refused(self, kind: str, name: str, registration: str) -> bool:
-        """Whether the master does not register a "topic" or "service" of a resolved name, which is logged then."""
+        """Return True if the master refuses the resolved name of a "topic" or "service"; the refusal is logged."""
         reason = refusal(kind, name)
         if reason is not None:
             self.logs.logfatal("unable to register %s [%s] with master: %s", registration, name, reason)
         return reason is not None
 
     def wait_for_service(self, service: str, timeout: Any = None) -> None:
-        """See `rospy_shim.client.service_proxy.wait_for_service`."""
+        """Wait until a node offers a service; see `rospy_shim.client.service_proxy.wait_for_service`."""
         wait_for_service(self, service, timeout)
 
     def require_initialized(self) -> None:
@@ -226,7 +226,7 @@ class Node:
         self.universe.importer.load("warnings").warn(text, category, stacklevel=_depth_of_rospy() + 1)
 
     def warn_of_illegal(self, name: str) -> None:
-        """Warn of a name that breaks ROS's rules."""
+        """Warn about a name that breaks ROS's rules."""
         if not is_legal_name(name):
             text = f"'{name}' is not a legal ROS graph resource name. This may cause problems with other ROS tools"
             self.warn(text, UserWarning)
@@ -234,7 +234,7 @@ class Node:
     # -- tasks -------------------------------------------------------------------------------------------------------
 
     def task_name(self, label: str) -> str:
-        """A name for a task or a pipe that nothing else in the mission has."""
+        """Return a name for a task or a pipe that is unique in the mission."""
         return self._tasks.name(label)
 
     def start_child(self, name: str, body: Callable[[], None]) -> None:
@@ -242,7 +242,7 @@ class Node:
         self._tasks.child(self, name, body)
 
     def start_task(self, label: str, body: Callable[[], None]) -> Task:
-        """Start a task of the node from whatever task, or from the host."""
+        """Start a task of the node from any task, or from the host."""
         return self._tasks.helper(self, label, body)
 
     def ask_to_shut_down(self, reason: str) -> None:
@@ -251,7 +251,7 @@ class Node:
             self.start_task("shutdown", lambda: self.life.interrupt(reason))
 
     def give_way(self) -> None:
-        """Another node has taken the name: what ROS's master then asks of this one."""
+        """Shut down as ROS's master asks of a node whose name another node has taken."""
         request = f"[{self.names.name}] Reason: new node registered with same name"
         self.universe.stdout.write(f"shutdown request: {request}\n")
         reason = f"external shutdown request from [/master]: [{request}]"
@@ -259,7 +259,7 @@ class Node:
 
 
 def _depth_of_rospy() -> int:
-    """How many of the innermost frames are rospy's own, this function's aside."""
+    """Return the number of rospy's innermost frames, without this function's."""
     frame, depth = sys._getframe(1), 0
     while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("rospy_shim."):
         frame, depth = frame.f_back, depth + 1

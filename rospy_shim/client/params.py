@@ -1,7 +1,7 @@
-"""Parameters: the functions through which a node reads and writes the mission's tree (`rospy_shim.parameters.tree`).
+"""Parameters: the functions by which a node reads and writes the mission's tree (`rospy_shim.parameters.tree`).
 
-Values are what XML-RPC can carry (`rospy_shim.parameters.values`): tuples become lists, bytes become Binary, None and
-big integers are refused with the same errors.
+Values are limited to those of XML-RPC (`rospy_shim.parameters.values`): tuples become lists, bytes become Binary, None
+and big integers are refused with the same errors.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _MISSING = ParameterTree.MISSING
 
 
 class Unspecified:
-    """What stands for "no default" (rospy.client._Unspecified); nodes hand it on from functions of their own."""
+    """The placeholder for "no default" (rospy.client._Unspecified); nodes pass it on from functions of their own."""
 
     __module__ = "rospy.client"
 
@@ -31,10 +31,10 @@ UNSPECIFIED = Unspecified()
 
 
 class Params:
-    """The parameter functions of one node (rospy.get_param and its kin).
+    """The parameter functions of one node (rospy.get_param and related functions).
 
     Args:
-        node: whose names they resolve.
+        node: the node, which resolves names.
         tree: the mission's parameters.
     """
 
@@ -43,14 +43,14 @@ class Params:
         self._tree = tree
 
     def get_param(self, param_name: str, default: Any = UNSPECIFIED) -> Any:
-        """The value of a parameter, or a namespace as a dictionary.
+        """Return the value of a parameter, or a namespace as a dictionary.
 
         Args:
             param_name: global, relative or private.
-            default: given back when there is none; also None counts.
+            default: the result if there is no such parameter; it may be None.
 
         Raises:
-            KeyError: there is none, and no default; it holds the name as it was asked for.
+            KeyError: there is no such parameter and no default; it holds `param_name`.
         """
         self._node.universe.charge()
         key = self._sent("getParam", self._node.names.resolve_name(param_name))[0]
@@ -62,11 +62,11 @@ class Params:
         return default
 
     def get_param_cached(self, param_name: str, default: Any = UNSPECIFIED) -> Any:
-        """As `get_param`; the tree is as near as a cache would be."""
+        """Return the same as `get_param`; the tree is as fast as a cache would be."""
         return self.get_param(param_name, default)
 
     def has_param(self, param_name: str) -> bool:
-        """Whether a parameter or namespace exists."""
+        """Return True if a parameter or namespace exists."""
         self._node.universe.charge()
         key = self._sent("hasParam", self._node.names.resolve_name(param_name))[0]
         return self._tree.find(key) is not _MISSING
@@ -84,17 +84,17 @@ class Params:
         key = self._node.names.resolve_name(param_name)
         key, value = self._sent("setParam", key, marshalled(param_value))
         if key != SEP or type(value) is dict:
-            self._tree.set(key, value)  # the master's refusal of another root is not looked at
+            self._tree.set(key, value)  # rospy ignores the master's refusal of a root that is not a dictionary
 
     def give(self, values: Mapping[str, Any]) -> None:
-        """Set the private parameters that the mission file has for the node; see `ParameterTree.give`."""
+        """Set the private parameters of the mission file for the node; see `ParameterTree.give`."""
         self._tree.give(self._node.names.get_name(), {name: marshalled(value) for name, value in values.items()})
 
     def delete_param(self, param_name: str) -> None:
         """Remove a parameter or namespace.
 
         Raises:
-            KeyError: there is none.
+            KeyError: there is no such parameter or namespace.
         """
         key = self._sent("deleteParam", self._node.names.resolve_name(param_name))[0]
         try:
@@ -103,7 +103,7 @@ class Params:
             raise KeyError(param_name) from None
 
     def search_param(self, param_name: str) -> str | None:
-        """The full name of the nearest parameter of that name, from the node's namespace upwards, or None.
+        """Return the full name of the nearest parameter of that name, from the node's namespace upwards, or None.
 
         Raises:
             ROSException: a private name.
@@ -116,14 +116,14 @@ class Params:
         return self._tree.search(self._node.names.get_name(), key)
 
     def get_param_names(self) -> list[str]:
-        """The full names of all parameters."""
+        """Return the full names of all parameters."""
         return self._tree.names()
 
     def _sent(self, method: str, *arguments: Any) -> tuple[Any, ...]:
-        """Arguments as the master has them after the trip over XML-RPC.
+        """Return the arguments as the master gets them over XML-RPC.
 
         Raises:
-            xmlrpc.client.Fault: of the node's own `xmlrpc.client`; XML has no such character.
+            xmlrpc.client.Fault: of the node's own `xmlrpc.client`; XML lacks a character of a text.
         """
         self._node.kernel.tell(self, method, arguments)
         try:
@@ -133,7 +133,7 @@ class Params:
         raise fault
 
     def _unpacked(self, value: Any) -> Any:
-        """A copy for the node; bytes and dates as its own xmlrpc.client has them."""
+        """Return a copy for the node, with bytes and dates in the classes of its own xmlrpc.client."""
         if type(value) is dict:
             return {key: self._unpacked(item) for key, item in value.items()}
         if type(value) is list:

@@ -1,7 +1,7 @@
 """`rospy.Time`, `rospy.Duration` and the functions that read the clock (rospy.rostime).
 
-The values are genpy's, under rospy's class names. ROS time is the mission's clock plus the epoch of the run or, when
-the parameter /use_sim_time is true, what the topic /clock says. Each node has classes of its own, because `Time.now`
+The values are genpy's, under rospy's class names. ROS time is the mission's clock plus the epoch of the run, or the
+time on the topic /clock if the parameter /use_sim_time is true. Each node has classes of its own, because `Time.now`
 belongs to one simulated computer.
 """
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def nanoseconds(duration: Any) -> int:
-    """A duration as rospy accepts it, in ns.
+    """Convert a duration that rospy accepts to ns.
 
     Args:
         duration: a genpy Duration, or seconds as a number.
@@ -55,7 +55,7 @@ class Time(genpy.Time):
 
     @staticmethod
     def now() -> Time:
-        """The present ROS time; the class that a node gets has a working one.
+        """Return the present ROS time; the class of a node has a working version.
 
         Raises:
             ROSInitException: always, outside a mission.
@@ -70,7 +70,7 @@ class RosClock:
     """ROS time of one node: the mission's clock, or simulated time, which a node sets through /clock (rospy.rostime).
 
     Args:
-        node: whose clock it is.
+        node: the node.
     """
 
     def __init__(self, node: Node) -> None:
@@ -79,7 +79,7 @@ class RosClock:
         self._epoch_ns = node.universe.clock.epoch_ns
         self._ready = False
         self._set: Time | None = None  # simulated time
-        self._plain = False  # ready, and the mission's clock counts: the one question of the fast path
+        self._plain = False  # ready, and the mission's clock counts: the only check of the fast path
         self._cond: Any = None
         self._changed = WaitList("a change of ROS time")
         self.Duration = Duration
@@ -93,13 +93,13 @@ class RosClock:
         kind = self.Time
 
         def shift(by_ns: int) -> None:
-            """The mission's clock was set, by so many ns."""
+            """Shift the mission's clock by so many ns."""
             nonlocal epoch_ns
             epoch_ns += by_ns
             self._epoch_ns = epoch_ns
 
         def get_rostime() -> Time:
-            """The present ROS time.
+            """Return the present ROS time.
 
             Raises:
                 ROSInitException: before `init_node`.
@@ -116,11 +116,11 @@ class RosClock:
         return get_rostime
 
     def get_time(self) -> float:
-        """The present ROS time in seconds."""
+        """Return the present ROS time in seconds."""
         return self.get_rostime().to_sec()
 
     def now_ns(self) -> int:
-        """The present ROS time in ns.
+        """Return the present ROS time in ns.
 
         Raises:
             ROSInitException: before `init_node`.
@@ -130,40 +130,40 @@ class RosClock:
         return self.wall_ns() if self._set is None else self._set.to_nsec()
 
     def wall_ns(self) -> int:
-        """What a clock on the wall shows, in ns: the mission's clock."""
+        """Return the time of the mission's clock in ns, which is the wall clock of a node."""
         return self._epoch_ns + self._kernel.now
 
     def at(self, when_ns: int) -> Time:
-        """An instant as a Time of this node."""
+        """Return an instant as a Time of this node."""
         return self.Time(*divmod(when_ns, NS_PER_S))
 
     def is_rostime_initialized(self) -> bool:
-        """Whether `init_node` has run."""
+        """Return True if `init_node` has run."""
         return self._ready
 
     def set_rostime_initialized(self, val: bool) -> None:
-        """What `init_node` calls."""
+        """Set whether `init_node` has run."""
         self._ready = val
         self._plain = bool(val) and self._set is None
 
     # -- simulated time ----------------------------------------------------------------------------------------------
 
     def is_wallclock(self) -> bool:
-        """Whether ROS time is the mission's clock, which is the wall clock to a node."""
+        """Return True if ROS time is the mission's clock, which is the wall clock of a node."""
         return self._set is None
 
     def _set_rostime(self, t: Any) -> None:
         """Set simulated time, which stands still until it is set again.
 
         Raises:
-            ValueError: `t` is no Time.
+            ValueError: `t` is not a Time.
         """
         if not isinstance(t, genpy.Time):
             raise ValueError(f"simulated time is a Time, not {t.__class__}")
         self._change(self.Time(t.secs, t.nsecs))
 
     def switch_to_wallclock(self) -> None:
-        """Simulated time is over."""
+        """End simulated time."""
         self._change(None)
 
     def _change(self, value: Time | None) -> None:
@@ -175,13 +175,13 @@ class RosClock:
                 self._cond.notify_all()
 
     def get_rostime_cond(self) -> Any:
-        """A `threading.Condition` that is notified at every change of simulated time."""
+        """Return a `threading.Condition` that is notified at every change of simulated time."""
         if self._cond is None:
             self._cond = self._node.universe.importer.load("threading").Condition()
         return self._cond
 
     def init_simtime(self) -> bool:
-        """`init_node`: from now on time is what /clock says, if the parameter /use_sim_time is true; 0 before."""
+        """Follow /clock from now on, if the parameter /use_sim_time is true; until its first message, time is 0."""
         self.set_rostime_initialized(True)
         if (
             self._set is None
@@ -203,18 +203,18 @@ class RosClock:
 
         Raises:
             ValueError: it is negative.
-            TypeError: it is no number.
+            TypeError: it is not a number.
         """
         self._node.universe.importer.load("time").sleep(duration)
 
     def sleep(self, duration: Any) -> None:
-        """rospy.sleep: let a time pass; on the mission's clock, shutdown does not cut it short.
+        """Let time pass (rospy.sleep). On the mission's clock, shutdown does not cut it short.
 
         Args:
-            duration: seconds or a Duration; nothing happens when it is negative.
+            duration: seconds or a Duration; a negative one returns at once.
 
         Raises:
-            TypeError: neither.
+            TypeError: it is neither.
             ROSTimeMovedBackwardsException: simulated time was set back.
             ROSInterruptException: simulated time is used, and the node is shut down.
         """

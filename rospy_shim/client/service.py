@@ -1,9 +1,10 @@
 """`rospy.Service`: a node offers a service, whose requests and answers are packets on the Software Bus.
 
-A service is a command MsgId for requests and a telemetry MsgId for answers. Behind the header stands the number of the
-call; in an answer also 1 for success, 0 for an error; then the serialised request or response, or the error's text, cut
-into segments when it is long. One task handles requests. When one comes while all of the service's tasks are in the
-handler, it gets another task until no request waits, so that handlers run side by side as in rospy.
+A service is a command MsgId for requests and a telemetry MsgId for answers. After the header comes the number of the
+call. In an answer, 1 for success or 0 for an error follows. Then comes the serialised request or response, or the
+error's text, cut into segments if it is long. One task handles requests. If a request comes while all of the service's
+tasks are in the handler, the service gets another task until no request waits, so that handlers run side by side as in
+rospy.
 """
 
 from __future__ import annotations
@@ -39,21 +40,21 @@ _outcome = struct.Struct("<IB")
 SERVE_TIMEOUT_NS = 500_000_000
 POLL = 0
 FOREVER_MS = -1
-PACE_NS = 100_000  # between two looks whether the callers have room for the next segment of an answer
+PACE_NS = 100_000  # period of looking for room for the next segment of an answer
 PATIENCE = 100  # looks
 WINDOW = 4  # packets of long requests and answers that may wait
-NO_CALL = -1  # the ground can put a packet of any length on the MsgId of a service
-MOST_BEGUN = 1000  # long requests or answers of which a segment is missing
+NO_CALL = -1  # the ground can send a packet of any length on the MsgId of a service
+MOST_BEGUN = 1000  # incomplete long requests or answers
 
 
 def request_packets(msg_id: int, number: int, body: bytes, most: int) -> Iterator[bytes]:
-    """The packets of a request; the bus fills in sequence count, length and checksum.
+    """Yield the packets of a request; the bus fills in sequence count, length and checksum.
 
     Args:
-        msg_id: of the service's requests.
-        number: of the call.
+        msg_id: MsgId of the service's requests.
+        number: number of the call.
         body: the serialised request.
-        most: bytes that a packet may have.
+        most: maximum bytes of a packet.
     """
     lead = _call.pack(number)
     for flags, piece in _pieces(body, most - REQUEST_LEAD):
@@ -61,14 +62,14 @@ def request_packets(msg_id: int, number: int, body: bytes, most: int) -> Iterato
 
 
 def answer_packets(msg_id: int, number: int, good: bool, body: bytes, most: int) -> Iterator[bytes]:
-    """The packets of an answer; the bus fills in sequence count, length and time.
+    """Yield the packets of an answer; the bus fills in sequence count, length and time.
 
     Args:
-        msg_id: of the service's answers.
-        number: of the call.
-        good: whether it succeeded.
+        msg_id: MsgId of the service's answers.
+        number: number of the call.
+        good: True if it succeeded.
         body: the serialised response, or the error's text.
-        most: bytes that a packet may have.
+        most: maximum bytes of a packet.
     """
     lead = _outcome.pack(number, good)
     for flags, piece in _pieces(body, most - ANSWER_LEAD):
@@ -76,7 +77,7 @@ def answer_packets(msg_id: int, number: int, good: bool, body: bytes, most: int)
 
 
 def call_of_request(packet: bytes) -> int:
-    """The number of the call that a request belongs to; `NO_CALL` if the packet is too short to have one."""
+    """Return the number of a request's call; `NO_CALL` if the packet is too short."""
     if len(packet) < REQUEST_LEAD:
         return NO_CALL
     number: int = _call.unpack_from(packet, REQUEST_LEAD - 4)[0]
@@ -84,7 +85,9 @@ def call_of_request(packet: bytes) -> int:
 
 
 def call_of_answer(packet: bytes) -> tuple[int, bool]:
-    """The number of the call that an answer belongs to, `NO_CALL` as above, and whether the call succeeded."""
+    """Return the number of an answer's call, or `NO_CALL` if the packet is too short, and True if the call
+    succeeded.
+    """
     if len(packet) < ANSWER_LEAD:
         return NO_CALL, False
     number, good = _outcome.unpack_from(packet, ANSWER_LEAD - 5)
@@ -92,10 +95,10 @@ def call_of_answer(packet: bytes) -> tuple[int, bool]:
 
 
 class Pieces:
-    """Puts segments together, those of each call for themselves.
+    """Reassembles segments, separately for each call.
 
     Args:
-        lead: bytes of a packet in front of the piece.
+        lead: bytes of a packet in front of the segment.
     """
 
     def __init__(self, lead: int) -> None:
@@ -103,7 +106,7 @@ class Pieces:
         self._parts: dict[int, list[bytes]] = {}
 
     def add(self, number: int, packet: bytes) -> bytes | None:
-        """Take a packet of a call; the whole request or answer if it is the last one."""
+        """Add a packet of a call. Returns the whole request or answer if it was the last one."""
         if number == NO_CALL:
             return None
         flags, piece = packet[2] & WHOLE, packet[self._lead :]
@@ -116,13 +119,13 @@ class Pieces:
             return None
         parts = self._parts.get(number)
         if parts is None:
-            return None  # its beginning came before this side was there
+            return None  # its beginning came before this side existed
         parts.append(piece)
         return b"".join(self._parts.pop(number)) if flags == LAST else None
 
 
 def _pieces(body: bytes, room: int) -> Iterator[tuple[int, bytes]]:
-    """What goes into each packet, with its sequence flags."""
+    """Yield the contents of each packet, with its sequence flags."""
     size = len(body)
     if size <= room:
         yield WHOLE, body
@@ -132,10 +135,10 @@ def _pieces(body: bytes, room: int) -> Iterator[tuple[int, bytes]]:
 
 
 def response_of(response: Any, response_class: MessageClass) -> Any:
-    """The response that a handler's return value means.
+    """Make the response from a handler's return value.
 
     Args:
-        response: a response, or what it is made of: a list or tuple, a dictionary, or the value of its only field.
+        response: a response, or its contents: a list or tuple, a dictionary, or the value of its only field.
         response_class: its class.
 
     Raises:
@@ -157,7 +160,9 @@ def response_of(response: Any, response_class: MessageClass) -> Any:
 
 
 def room_of(pipe: Pipe, packet: bytes) -> int:
-    """How many packets may wait in a pipe when another is sent; of long messages only a few, as they fill the bus."""
+    """Return how many packets may wait in a pipe for another to be sent; only a few of long messages, as they fill
+    the bus.
+    """
     return pipe.depth if packet[2] & WHOLE == WHOLE else min(pipe.depth, WINDOW)
 
 
@@ -175,16 +180,14 @@ class Service:
         buff_size: int = DEFAULT_BUFF_SIZE,
         error_handler: Callable[..., Any] | None = None,
     ) -> None:
-        """Offer a service.
+        """Offer a service. Before `init_node`, it is offered from then on.
 
         Args:
-            name: of the service.
+            name: name of the service.
             service_class: its type.
-            handler: takes the request and returns what `response_of` understands.
+            handler: takes the request and returns a value that `response_of` accepts.
             buff_size: accepted.
             error_handler: takes (error, type, value, traceback) of an exception in the handler; None logs it.
-
-        Before `init_node`, it is offered from then on.
 
         Raises:
             ServiceException: the node offers it already.
@@ -205,8 +208,8 @@ class Service:
         self.uri = f"rosrpc://{node.universe.host_name}:{node.universe.pid}"
         self._done = False
         self._pipe = NO_PIPE
-        self._tasks = 0  # that serve
-        self._busy = 0  # of them in the handler
+        self._tasks = 0  # tasks that serve
+        self._busy = 0  # tasks in the handler
         self._pieces = Pieces(REQUEST_LEAD)
         self._unpack = node.working(self.resolved_name, unpacker(self.request_class))
         self._pack = packer(self.response_class)
@@ -220,7 +223,7 @@ class Service:
         node.services.append(self)
 
     def connect(self) -> None:
-        """The node is initialised: offer the service, unless the master refuses its name."""
+        """Offer the service when the node is initialised, unless the master refuses its name."""
         self._refused = self._node.is_refused("service", self.resolved_name, "service")
         if not self._refused:
             self._entry = self._node.graph.register_service(self)
@@ -244,11 +247,11 @@ class Service:
             bus.subscribe_ex(self._entry.request_id, self._pipe, 0, depth)
 
     def error_handler(self, error: Exception, exc_type: Any, exc_value: Any, tb: Any) -> None:
-        """Log an exception in the handler; the traceback is a list in brackets, as rospy has it."""
+        """Log an exception in the handler; the traceback is a list in brackets, as in rospy."""
         self._node.logs.logerr("Error processing request: %s\n%s", error, traceback_parts(error))
 
     def shutdown(self, reason: str = "") -> None:
-        """Offer the service no longer; callers whose requests wait get an error."""
+        """Stop offering the service; callers whose requests wait get an error."""
         if self._done:
             return
         self._done = True
@@ -276,24 +279,24 @@ class Service:
     # -- in its tasks ------------------------------------------------------------------------------------------------
 
     def attend(self) -> None:
-        """A request waits: see to it that a task is free for it."""
+        """Provide a free task for a waiting request."""
         if self._busy >= self._tasks and not self._done:
             self._tasks += 1
             self._node.start_task(self.resolved_name, self._help)
 
     def has_room(self, packet: bytes) -> bool:
-        """Whether a packet of a request may be sent; none before the first task has made the pipe."""
+        """Return True if a packet of a request may be sent; False before the first task has made the pipe."""
         pipe = self._node.cfe.sb.find_pipe(self._pipe)
         return pipe is not None and len(pipe.items) < room_of(pipe, packet)
 
     def _serve(self) -> None:
-        """The first task: it stays as long as the service is offered."""
+        """Serve as the first task, as long as the service is offered."""
         self._tasks += 1
         self._work(FOREVER_MS)
         self.give_back()
 
     def _help(self) -> None:
-        """Another task: it ends when no request waits."""
+        """Serve as a further task until no request waits."""
         self._open(self._node.kernel.current.name)
         self._work(POLL)
 
@@ -319,7 +322,7 @@ class Service:
             self.attend()
 
     def give_back(self) -> None:
-        """Give the pipe back."""
+        """Delete the pipe."""
         pipe, self._pipe = self._pipe, NO_PIPE
         if pipe != NO_PIPE and self._node.cfe.sb.find_pipe(pipe) is not None:
             self._node.cfe.sb.delete_pipe(pipe)
@@ -340,10 +343,10 @@ class Service:
         self._answer(number, good, body)
 
     def _result(self, number: int, data: bytes) -> tuple[bool, bytes]:
-        """Call the handler: whether it went well, and the serialised response or the error's text."""
+        """Call the handler. Returns True and the serialised response, or False and the error's text."""
         try:
             request = self._unpack(data, 0)
-        except Exception as error:  # a caller outside may send any bytes, and the type's own code raises what it likes
+        except Exception as error:  # an external caller may send any bytes, and the type's code may raise any error
             return False, f"service cannot process request: {error}".encode()
         call = self._entry.calls.get(number)
         request._connection_header = call.header if call is not None else {}
@@ -366,27 +369,27 @@ class Service:
             bus.transmit_msg(packet)
 
     def _wait_for_room(self, packet: bytes) -> None:
-        """Let the callers take what they have; each of them reads the answers to all."""
+        """Give the callers time to take their packets; each of them receives the answers to all."""
         find = self._node.cfe.sb.find_pipe
         for _ in range(PATIENCE):
-            pipes = [find(call.pipe) for call in list(self._entry.calls.values())]  # they come and go
+            pipes = [find(call.pipe) for call in list(self._entry.calls.values())]  # callers come and go
             if all(pipe is None or len(pipe.items) < room_of(pipe, packet) for pipe in pipes):
                 return
             self._node.kernel.delay(PACE_NS)
 
 
 class QuietService(Service):
-    """A service that every node has and few call: it costs no pipe, task or MsgId before the first call."""
+    """A service that every node has but few use: it costs no pipe, task or MsgId before the first call."""
 
     def _begin(self) -> None:
-        """Nothing; `attend` starts a task at the first call."""
+        """Do nothing; `attend` starts a task at the first call."""
 
 
 def make_service(node: Node) -> type[Service]:
-    """The class `rospy.Service` of a node."""
+    """Make the class `rospy.Service` of a node."""
     return type("Service", (Service,), {"__module__": Service.__module__, "_node": node})
 
 
 def make_quiet_service(node: Node) -> type[QuietService]:
-    """The class of a node's services that wait for their first call."""
+    """Make the class of a node's services that wait for their first call."""
     return type("Service", (QuietService,), {"__module__": Service.__module__, "_node": node})

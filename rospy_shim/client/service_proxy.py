@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from rospy_shim.graph.graph import Header, ServiceEntry
     from rospy_shim.types.msgs import ServiceClass
 
-LOOK_MS = 500  # how often a caller looks whether the service is still there
-POLL_NS = 300_000_000  # how often wait_for_service looks, as on ROS
-PACE_NS = 100_000  # how often a caller looks whether the service has room for its request
+LOOK_MS = 500  # period at which a caller checks that the service still exists
+POLL_NS = 300_000_000  # period at which wait_for_service looks, as on ROS
+PACE_NS = 100_000  # period at which a caller looks for room for its request
 NO_LIMIT = 0xFFFF
 POLL = 0
 _NOTE = (
@@ -34,7 +34,7 @@ _NOTE = (
 
 
 class PersistentConnection(IntEnum):
-    """State of the connection of a persistent proxy, as rospy would have one."""
+    """State of the connection of a persistent proxy, as in rospy."""
 
     NONE = 0
     OPEN = 1
@@ -44,7 +44,7 @@ class PersistentConnection(IntEnum):
 
 
 class AnswerPipes:
-    """The pipes in which a node waits for answers. One is kept from call to call, ready for the same service.
+    """The pipes of a node for answers. One is kept from call to call, ready for the same service.
 
     Args:
         node: the node.
@@ -55,10 +55,10 @@ class AnswerPipes:
         self._spare: tuple[int, int] | None = None  # pipe, and the MsgId that it has subscribed to
 
     def open(self, answer_id: int) -> int:
-        """A pipe that gets the answers of a service.
+        """Return a pipe that gets the answers of a service.
 
         Raises:
-            CfeError: the bus has no room for another pipe or subscriber.
+            CfeError: the bus has no room for another pipe or subscription.
         """
         bus = self._node.cfe.sb
         spare, self._spare = self._spare, None
@@ -76,7 +76,7 @@ class AnswerPipes:
         return pipe
 
     def close(self, answer_id: int, pipe: int) -> None:
-        """The call is over. A pipe is kept as long as the service has room for callers on the bus."""
+        """Release the pipe of a call. It is kept as long as the service has room for callers on the bus."""
         bus = self._node.cfe.sb
         if bus.find_pipe(pipe) is None:
             return
@@ -98,9 +98,10 @@ class ServiceProxy:
         """Prepare to call a service.
 
         Args:
-            name: of the service.
+            name: name of the service.
             service_class: its type.
-            persistent: told to the service; the bus needs no connection that stays, but what spoils one on ROS does it.
+            persistent: reported to the service. The bus needs no persistent connection, but the errors that corrupt one
+                on ROS have the same effect.
             headers: added to the `_connection_header` of the requests.
         """
         self.resolved_name = self._node.names.resolve_name(name)
@@ -117,18 +118,18 @@ class ServiceProxy:
         }
         self._pack = packer(self.request_class)
         self._unpack = unpacker(self.response_class)
-        self._connection = PersistentConnection.NONE  # that stays
+        self._connection = PersistentConnection.NONE  # of a persistent proxy
 
     def __call__(self, *args: Any, **kwds: Any) -> Any:
-        """See `call`."""
+        """Call the service; see `call`."""
         return self.call(*args, **kwds)
 
     def call(self, *args: Any, **kwds: Any) -> Any:
-        """Call the service with a request, or with its fields; the response.
+        """Call the service with a request, or with its fields. Returns the response.
 
         Raises:
             TypeError, AttributeError: the arguments do not make a request.
-            SerializationError: a field holds what its type cannot carry.
+            SerializationError: a field holds a value that its type cannot carry.
             ServiceException: there is no such service, or it failed.
             ROSInterruptException: the node was shut down meanwhile.
         """
@@ -164,7 +165,7 @@ class ServiceProxy:
         return response
 
     def _packed(self, request: Any) -> bytes:
-        """The bytes of a request; of one that cannot be serialized, half stays in the buffer of the connection."""
+        """Serialize a request. If it fails, half of it stays in the buffer of the connection."""
         if self.persistent:
             self._connection = max(self._connection, PersistentConnection.OPEN)
         try:
@@ -176,14 +177,14 @@ class ServiceProxy:
             raise
 
     def _read(self, answer: bytes) -> Any:
-        """Make the response of its bytes.
+        """Make the response from its bytes.
 
         Raises:
-            ServiceException: they are not a response, as a service outside of the mission may send.
+            ServiceException: they are not a response; a service outside of the mission may send any bytes.
         """
         try:
             return self._unpack(answer, 0)
-        except Exception as error:  # the type's own code raises what it likes
+        except Exception as error:  # the type's code may raise any error
             raise self._unreadable(error) from None
 
     def _unreadable(self, error: Exception) -> ServiceException:
@@ -196,17 +197,17 @@ class ServiceProxy:
         return ServiceException(f"transport error completing service call: {what}")
 
     def _wait_in_vain(self) -> NoReturn:
-        """The service could not read the request that came behind half of another one, and does not answer."""
+        """Wait forever: the service could not read a request that follows half of another one, and does not answer."""
         life, waits = self._node.life, WaitList(f"an answer of service {self.resolved_name}, which got half a request")
         while not life.is_shutdown():
             life.wait(waits, FOREVER)
         raise ROSInterruptException("node shutdown interrupted service call")
 
     def _read_half(self) -> None:
-        """Read a response behind half of another one, as a message of no bytes.
+        """Read a response that follows half of another one, as an empty message.
 
         Raises:
-            ServiceException: it cannot be one.
+            ServiceException: an empty message is not a response.
         """
         try:
             self.response_class().deserialize(b"")
@@ -222,10 +223,10 @@ class ServiceProxy:
             )
 
     def _exchange(self, entry: ServiceEntry, body: bytes) -> tuple[bool, bytes, bool]:
-        """Send a request and wait for the answer that carries its number.
+        """Send a request and wait for the answer with its number.
 
         Returns:
-            whether it went well; the answer; whether half a response stays in the buffer of the service's connection.
+            True if it succeeded; the answer; True if half a response stays in the buffer of the service's connection.
         """
         node = self._node
         pipes, answer_id = node.answer_pipes, entry.answer_id
@@ -268,7 +269,7 @@ class ServiceProxy:
                 return good, answer
 
     def _check_both(self, entry: ServiceEntry) -> None:
-        """Whether both nodes are still there to go on with a call."""
+        """Check that both nodes still exist to go on with a call."""
         if self._node.life.over:
             raise ROSInterruptException("node shutdown interrupted service call")
         if self._node.graph.services.get(self.resolved_name) is not entry:
@@ -280,7 +281,7 @@ class ServiceProxy:
             self._connection = PersistentConnection.CLOSED
 
     def wait_for_service(self, timeout: Any = None) -> None:
-        """Wait until the service is there; see the function of that name."""
+        """Wait until the service is offered; see the function of that name."""
         wait_for_service(self._node, self.resolved_name, timeout)
 
 
@@ -290,8 +291,8 @@ def wait_for_service(node: Node, service: str, timeout: Any = None) -> None:
     Args:
         node: the caller.
         service: its name.
-        timeout: longest time, seconds or a Duration; None waits for as long as it takes. It looks every 0.3 s, and
-            comes back with such a look.
+        timeout: longest time, seconds or a Duration; None waits without limit. It looks every 0.3 s, and returns after
+            such a look.
 
     Raises:
         ValueError: the timeout is 0.
@@ -303,7 +304,7 @@ def wait_for_service(node: Node, service: str, timeout: Any = None) -> None:
         raise ValueError("timeout must be non-zero")
     name, kernel = node.names.resolve_name(service), node.kernel
     deadline = None if limit is None else kernel.now + limit
-    # After the last look it sleeps on, and then does not look again.
+    # After the last look it sleeps once more, without another look.
     while not node.life.is_shutdown() and (deadline is None or kernel.now < deadline):
         if name in node.graph.services:
             return
@@ -314,5 +315,5 @@ def wait_for_service(node: Node, service: str, timeout: Any = None) -> None:
 
 
 def make_service_proxy(node: Node) -> type[ServiceProxy]:
-    """The class `rospy.ServiceProxy` of a node."""
+    """Make the class `rospy.ServiceProxy` of a node."""
     return type("ServiceProxy", (ServiceProxy,), {"__module__": ServiceProxy.__module__, "_node": node})

@@ -1,7 +1,7 @@
-"""The end of a node: causes of a shutdown, and functions that run then (rospy.core's shutdown functions, rospy.spin).
+"""The end of a node: causes of a shutdown, and hooks that run then (rospy.core's shutdown functions, rospy.spin).
 
-A shutdown comes from the node itself, from ES (CFE_ES_RunLoop says no), or from the end of the mission, which stands
-for the Ctrl-C that ends a roslaunch.
+A shutdown comes from the node itself, from ES (CFE_ES_RunLoop returns false), or from the end of the mission, which
+stands for the Ctrl-C that ends a roslaunch.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from cfepy.rtos import WaitList
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
 
-LOOK_NS = 100_000_000  # how often a node asks ES whether it shall go on
+LOOK_NS = 100_000_000  # period at which a node asks ES whether to go on
 SPIN_NS = 500_000_000
 
 
@@ -44,11 +44,11 @@ class Life:
 
     @property
     def over(self) -> bool:
-        """Whether the node is shut down; as `is_shutdown`, without asking ES."""
+        """True if the node is shut down; as `is_shutdown`, without asking ES."""
         return self._flag
 
     def is_shutdown(self) -> bool:
-        """Whether the node is shut down, which ES may have asked for (CFE_ES_RunLoop)."""
+        """Return True if the node is shut down, which ES may have asked for (CFE_ES_RunLoop)."""
         if self._call_ns:
             self._kernel.charge(self._call_ns)
         if self._kernel.now >= self._look_at:
@@ -56,7 +56,7 @@ class Life:
         return self._flag
 
     def is_shutdown_requested(self) -> bool:
-        """Whether a shutdown has begun."""
+        """Return True if a shutdown has begun."""
         return self._requested
 
     def _look(self) -> None:
@@ -67,7 +67,7 @@ class Life:
             self.signal_shutdown("cFE asks the application to exit")
 
     def add_client_shutdown_hook(self, h: Callable[[], object]) -> None:
-        """rospy.on_shutdown: have a function called when the node shuts down, while it still is on the graph.
+        """Add a function that is called when the node shuts down, while it is still on the graph (rospy.on_shutdown).
 
         Raises:
             TypeError: it cannot be called.
@@ -79,7 +79,7 @@ class Life:
             self._client_hooks.append(h)
 
     def add_preshutdown_hook(self, h: Callable[[str], object]) -> None:
-        """Have a function called with the reason, after the client's hooks.
+        """Add a function that is called with the reason, after the client's hooks.
 
         Raises:
             TypeError: it cannot be called.
@@ -88,7 +88,7 @@ class Life:
         self._add(self._preshutdown_hooks, h)
 
     def add_shutdown_hook(self, h: Callable[[str], object]) -> None:
-        """Have a function called with the reason, once `is_shutdown` is true.
+        """Add a function that is called with the reason, once `is_shutdown` is true.
 
         Raises:
             TypeError: it cannot be called.
@@ -103,10 +103,10 @@ class Life:
             hooks.append(hook)
 
     def signal_shutdown(self, reason: str) -> None:
-        """Shut the node down: run the hooks, leave the graph, wake those that wait.
+        """Shut the node down: run the hooks, leave the graph, wake waiting tasks.
 
         Args:
-            reason: handed to the hooks.
+            reason: passed to the hooks.
         """
         if self._requested:
             return
@@ -123,7 +123,7 @@ class Life:
             self._kernel.wake_all(waits)
 
     def _run(self, hook: Callable[..., object], *args: str) -> None:
-        """One hook; its exception is shown and the next one runs all the same."""
+        """Run one hook. Its exception is shown, and the next one runs all the same."""
         try:
             hook(*args)
         except Exception as error:
@@ -150,10 +150,10 @@ class Life:
         finally:
             self.wait_lists.remove(waits)
 
-    # -- asked from outside ------------------------------------------------------------------------------------------
+    # -- requests from outside -----------------------------------------------------------------------------------------
 
     def register_signals(self) -> None:
-        """SIGINT and SIGTERM shut the node down; a handler that it has set before runs too."""
+        """Let SIGINT and SIGTERM shut the node down; a handler that it has set before runs too."""
         table = self._node.universe.signals
         for number in (signal.SIGINT, signal.SIGTERM):
             former = table.get(number)
@@ -170,9 +170,9 @@ class Life:
         return on_signal
 
     def interrupt(self, reason: str) -> None:
-        """The mission ends: what Ctrl-C is to a node. Rospy's handler runs first, one set before `init_node` last.
+        """Act as Ctrl-C does, at the end of the mission. Rospy's handler runs first, one set before `init_node` last.
 
-        With `disable_signals` it is the node's own business: a KeyboardInterrupt in its main thread.
+        With `disable_signals` the node must handle it: a KeyboardInterrupt in its main thread.
         """
         if self._node.universe.signals.get(signal.SIGINT) in self._own_handlers:
             self.signal_shutdown(reason)

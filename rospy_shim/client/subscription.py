@@ -1,7 +1,7 @@
-"""`Subscription`: from a packet in a pipe to a node's callbacks; what all handles of a node on one topic share.
+"""`Subscription`: from a packet in a pipe to a node's callbacks; shared by all handles of a node on one topic.
 
-It has one pipe and one child task, which calls the callbacks in the order in which they were registered, all with the
-same message object, as rospy's receiving thread does. With a queue size, a full pipe loses the oldest message; without,
+It has one pipe and one child task, which calls the callbacks in the order of their registration, all with the same
+message object, as rospy's receiving thread does. With a queue size, a full pipe loses the oldest message. Without one,
 it loses the newest, and the bus reports it.
 """
 
@@ -53,11 +53,11 @@ class Subscription(TopicSide):
         self.buff_size = DEFAULT_BUFF_SIZE
         self.tcp_nodelay = False
         self.callbacks: list[tuple[Callable[..., Any], Any]] = []
-        self._calls: list[tuple[Callable[..., Any], Any]] = []  # those, behind one that measures; replaced, not changed
+        self._calls: list[tuple[Callable[..., Any], Any]] = []  # those, after one that measures; replaced, not changed
         self.connected = False
-        self.latest: Any = None  # kept while a latching publisher is there
-        self._backlog: list[tuple[int, bytes, Header]] = []  # behind the packet with that sequence count
-        self.has_begun = False  # latched messages of publishers that were there are given at the beginning
+        self.latest: Any = None  # kept while there is a latching publisher
+        self._backlog: list[tuple[int, bytes, Header]] = []  # after the packet with that sequence count
+        self.has_begun = False  # latched messages of existing publishers are given at the beginning
         self._late: list[Link] = []  # publishers that give their latched message at another time
         self._attention = False  # the task has other work than receiving
         self._segments = 1  # packets of the longest message so far
@@ -66,7 +66,7 @@ class Subscription(TopicSide):
         self._unreadable = 0  # messages
 
     def _paid(self, unpack: Callable[[bytes, int], Any]) -> Callable[[bytes, int], Any]:
-        """`unpack` with the virtual time of a call for each message in arrays, which genpy makes one by one."""
+        """Return `unpack` with the virtual time of a call for each message in arrays, which genpy makes one by one."""
         unpack = self.node.working(self.name, unpack)
         count, cost, charge = getattr(self.data_class, "_count_items", None), self.node.call_ns, self.node.kernel.charge
         if count is None or not cost:
@@ -86,7 +86,7 @@ class Subscription(TopicSide):
             queue_size: messages; -1 or None is as many as the platform allows.
 
         Raises:
-            ROSException: it is 0, or no integer.
+            ROSException: it is 0, or not an integer.
         """
         most = queue_size if type(queue_size) is int else None
         if queue_size is not most:
@@ -97,7 +97,7 @@ class Subscription(TopicSide):
         self._size_pipe()
 
     def expect_segments(self, count: int) -> None:
-        """A message of so many packets comes: the queue is to hold as many messages as before."""
+        """Expect a message of so many packets: enlarge the queue to hold as many messages as before."""
         if count > self._segments:
             self._segments = count
             self._size_pipe()
@@ -112,12 +112,14 @@ class Subscription(TopicSide):
         return pipe
 
     def _depth(self) -> int:
-        """Packets that the pipe holds."""
+        """Return the number of packets that the pipe holds."""
         most: int = self._bus.config.os_queue_max_depth
         return most if self.queue_size is None else min(self.queue_size * self._segments, most)
 
     def is_cut_short(self, pipe: Pipe) -> bool:
-        """Whether a pipe is its own and holds less than was asked for, so that the rest should wait elsewhere."""
+        """Return True if a pipe is its own and holds less than was asked for, so that the rest should wait
+        elsewhere.
+        """
         size = self.queue_size
         return size is not None and pipe.depth < size * self._segments and self._find_pipe() is pipe
 
@@ -125,18 +127,18 @@ class Subscription(TopicSide):
         """Check a buffer size; a packet is always read as a whole.
 
         Raises:
-            ROSException: it is no positive integer.
+            ROSException: it is not a positive integer.
         """
         if not isinstance(buff_size, int) or buff_size <= 0:
             raise ROSException("buffer size must be a positive integer")
         self.buff_size = buff_size
 
     def set_tcp_nodelay(self, tcp_nodelay: bool) -> None:
-        """Remember the wish; the bus never delays."""
+        """Keep the setting; the bus never delays."""
         self.tcp_nodelay = tcp_nodelay
 
     def add_callback(self, callback: Callable[..., Any], argument: Any) -> None:
-        """Call this too, at once with a latched message that has come already.
+        """Add a callback, and call it at once with a latched message that has arrived already.
 
         Raises:
             ROSException: the subscription is closed.
@@ -150,7 +152,7 @@ class Subscription(TopicSide):
             self._call(callback, argument, self.latest)
 
     def remove_callback(self, callback: Callable[..., Any], argument: Any) -> None:
-        """Do not call this any more."""
+        """Remove a callback."""
         for each in ("callbacks", "_calls"):
             kept = list(getattr(self, each))
             if (callback, argument) in kept:
@@ -158,7 +160,7 @@ class Subscription(TopicSide):
             setattr(self, each, kept)
 
     def connect(self) -> None:
-        """The node is initialised: go on the graph.
+        """Go on the graph when the node is initialised.
 
         Raises:
             UsageError: the topic's MsgId belongs to another topic.
@@ -173,7 +175,7 @@ class Subscription(TopicSide):
             self.node.start_child(name, lambda: self._serve(topic))
 
     def _open(self, topic: TopicEntry, name: str) -> None:
-        """Make the pipe and join the topic; what comes from now on waits for the task."""
+        """Make the pipe and join the topic; messages from now on wait for the task."""
         bus = self._bus
         self._pipe = bus.create_pipe(self._depth(), name)
         self._size_pipe()
@@ -187,7 +189,7 @@ class Subscription(TopicSide):
             connecting.begin(link, self, delays.get(link, 0), late=True)
 
     def _measure(self) -> None:
-        """Have each message go through the statistics first (rospy.impl.statistics)."""
+        """Pass each message through the statistics first (rospy.impl.statistics)."""
         statistics = self.node.universe.importer.load("rospy.impl.statistics").SubscriberStatisticsLogger(self)
         pack = packer(self.data_class)
         received: dict[str, int] = {}  # bytes by sender
@@ -200,7 +202,7 @@ class Subscription(TopicSide):
         self._calls = [(count, None), *self._calls]
 
     def close(self) -> None:
-        """Leave the graph. The task that serves it ends when it is back from its callbacks, and this is done."""
+        """Leave the graph. The serving task ends when it has returned from its callbacks."""
         topic, self.topic = self.topic, None
         if self.node.subscriptions.get(self.name) is self:
             del self.node.subscriptions[self.name]
@@ -211,12 +213,12 @@ class Subscription(TopicSide):
             if pipe != NO_PIPE:
                 self._bus.unsubscribe(topic.msg_id, pipe)
                 topic.tell_left(self._bus, pipe)
-        self.closed = True  # not before: the task gives the pipe back as soon as it sees that
+        self.closed = True  # not earlier: the task deletes the pipe as soon as it sees this
         self._call_attention()
 
     @property
     def connections(self) -> list[TopicConnection]:
-        """The nodes that publish."""
+        """The connections to publishing nodes."""
         compiled = self.topic.compiled_publishers if self.topic is not None else []
         peers: list[Node | CompiledNode] = [*(each.node for each in self.peers), *compiled]
         return [self.connection(node, INBOUND) for node in peers]
@@ -229,36 +231,38 @@ class Subscription(TopicSide):
         return [each for each in self.topic.links if self not in each.expected]
 
     def ignore(self, link: Link) -> None:
-        """This publisher is not connected yet."""
+        """Ignore a publisher that is not connected yet."""
         self.is_welcomed_by(link)
         pipe = self._find_pipe()
         if pipe is not None:
             pipe.ignore(link.node.owner)
 
     def heed(self, link: Link) -> None:
-        """Now it is."""
+        """Accept a publisher that has connected."""
         pipe = self._find_pipe()
         if pipe is not None:
             pipe.heed(link.node.owner)
 
     def get_stats(self) -> tuple[str, list[tuple[int, int, int, int, bool]]]:
-        """The side as getBusStats gives it: topic, and for each connection number, bytes, messages, drops, state."""
-        rows = zip(self.connections, self.peers, strict=False)  # nobody counts what compiled nodes sent
+        """Return the data of getBusStats: topic, and for each connection number, bytes, messages, drops, state."""
+        rows = zip(self.connections, self.peers, strict=False)  # messages of compiled nodes are not counted
         return self.name, [(each.id, link.message_data_sent, link.seq, -1, True) for each, link in rows]
 
     def deliver(self, payload: bytes, header: Header) -> None:
-        """Give this subscriber alone a message: a latched one, or one of a SubscribeListener."""
+        """Give a message to this subscriber alone: a latched one, or one of a SubscribeListener."""
         route = self._bus.routes.get(self.topic.msg_id) if self.topic is not None else None
         self._backlog.append((route.sequence if route is not None else 0, payload, header))
         self._call_attention()
 
     @property
     def takes_any_type(self) -> bool:
-        """Whether it reads messages without understanding them."""
+        """True if it reads messages of any type."""
         return self.data_class._type == "*"
 
     def is_welcomed_by(self, link: Link) -> None:
-        """The listeners of a publisher hear of this subscription first; it gives its latched message then."""
+        """Let the listeners of a publisher see this subscription first; the publisher gives its latched message
+        then.
+        """
         if link not in self._late:
             self._late.append(link)
 
@@ -281,7 +285,7 @@ class Subscription(TopicSide):
             self.give_back()
 
     def _take_latched(self, topic: TopicEntry) -> None:
-        """As for a new subscriber of a latching publisher in ROS: of all that came before, only the last counts."""
+        """Take latched messages as a new subscriber in ROS does: of all earlier messages, only the last counts."""
         self.has_begun = True
         at_once = [link for link in topic.links if link.is_latch and link not in self._late]
         if at_once and not self.closed:
@@ -291,13 +295,13 @@ class Subscription(TopicSide):
                 link.give_latched(self)
 
     def give_back(self) -> None:
-        """Give the pipe back."""
+        """Delete the pipe."""
         pipe, self._pipe = self._pipe, NO_PIPE
         if pipe != NO_PIPE and self._bus.find_pipe(pipe) is not None:
             self._bus.delete_pipe(pipe)
 
     def _receive(self, topic: TopicEntry) -> None:
-        """Packet after packet; the loop that every received message passes through."""
+        """Receive packet after packet; every received message passes through this loop."""
         receive, pipe = self._bus.receive_buffer, self._pipe
         unpack = self._unpack if not topic.raw else self._packet_as_message
         while True:
@@ -330,7 +334,7 @@ class Subscription(TopicSide):
                     self._bad_callback(callback, error)
 
     def _attend(self) -> bool:
-        """Handle what came up between two messages; False when the task is to end."""
+        """Handle work between two messages. Returns False if the task is to end."""
         self._attention = False
         pipe = self._find_pipe()
         if pipe is not None:
@@ -344,7 +348,7 @@ class Subscription(TopicSide):
         return not self.closed
 
     def _has_earlier(self, count: int) -> bool:
-        """Whether the pipe has a packet that was sent before, or with, a sequence count."""
+        """Return True if the pipe has a packet that was sent before, or with, a sequence count."""
         pipe = self._find_pipe()
         return pipe is not None and bool(pipe.items) and (count - sequence_of(pipe.items[0][0])) & 0x3FFF < 0x2000
 
@@ -361,7 +365,7 @@ class Subscription(TopicSide):
             self._call(callback, argument, message)
 
     def _tell_unreadable(self, error: Exception) -> None:
-        """Log a message that cannot be read; of many, the first ones and then ever fewer."""
+        """Log a message that cannot be read: each of the first ones, and ever fewer of the others."""
         self._unreadable = count = self._unreadable + 1
         if count <= MOST_TOLD:
             self.node.logs.logerr("cannot read a message on %s: %s", self.name, error)
@@ -376,7 +380,7 @@ class Subscription(TopicSide):
         return whole
 
     def _packet_as_message(self, packet: bytes, at: int) -> Any:
-        """A raw topic: the message's data are the whole packet."""
+        """Make a message from a packet of a raw topic; its data are the whole packet."""
         message = self.data_class()
         message.data = packet
         return message
@@ -391,8 +395,8 @@ class Subscription(TopicSide):
             self._bad_callback(callback, error)
 
     def _bad_callback(self, callback: Callable[..., Any], error: Exception) -> None:
-        """An exception in a callback is logged, and the next message comes all the same."""
+        """Log an exception in a callback; the next message is delivered all the same."""
         where = error.__traceback__
         text = traceback_text(error.with_traceback(where.tb_next if where is not None else None))
-        name = _ADDRESS.sub("0x0", str(callback))  # an address would be another one in each run
+        name = _ADDRESS.sub("0x0", str(callback))  # an address would differ in each run
         self.node.logs.logerr("bad callback: %s\n%s", name, text)

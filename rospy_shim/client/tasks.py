@@ -1,8 +1,8 @@
 """Tasks of a node: child tasks of its cFE application, OSAL tasks for Python's threads.
 
-ES lets only the main task of an application create child tasks (CFE_ES_CreateChildTask), and starts them 50 ms later.
-What a thread or callback starts is therefore a plain OSAL task (OS_TaskCreate), which ES ends with the application all
-the same.
+ES lets only the main task of an application create child tasks (CFE_ES_CreateChildTask), and starts them 50 ms later. A
+task that a thread or callback starts is therefore a plain OSAL task (OS_TaskCreate), which ES ends with the application
+all the same.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ class NodeTasks:
 
     Args:
         cfe: the handle of cFE's services.
-        kernel: the simulated computer's.
-        number: gives a number that no task of the mission has yet.
+        kernel: the kernel of the simulated computer.
+        number: returns a number that no task of the mission has yet.
 
     Attributes:
         owner: the application, as found in `Task.owner`.
@@ -45,7 +45,7 @@ class NodeTasks:
         self.owner = self._main.owner
 
     def name(self, label: str) -> str:
-        """A name of at most 19 characters that nothing else in the mission has."""
+        """Return a name of at most 19 characters that is unique in the mission."""
         tail = label.rpartition("/")[2][:_LABEL]
         number = self._number()
         return f"{self._app[: 19 - len(tail) - len(str(number)) - 2]}.{tail}.{number}"
@@ -53,7 +53,8 @@ class NodeTasks:
     def child(self, node: Node, name: str, body: Callable[[], None]) -> None:
         """Start a task for a pipe; both have the same name.
 
-        On ROS the first message may come as soon as the subscriber is made: ES's delay is no promise to the node.
+        On ROS the first message may come as soon as the subscriber is made, so ES's delay is not guaranteed to the
+        node.
         """
         entry = _in_universe(node.universe, body)
         if self._kernel.current is not self._main:
@@ -72,7 +73,7 @@ class NodeTasks:
         """Start a thread of the node's program.
 
         Raises:
-            RuntimeError: OSAL has no task left; as Python says it.
+            RuntimeError: OSAL has no task left; the text is Python's.
         """
         name = self.name(label)
         begun: list[Task] = []
@@ -85,7 +86,7 @@ class NodeTasks:
             self._cfe.os.task_create(name, first, self._stack_size, priority)
         except OsalError as error:
             raise RuntimeError(f"can't start new thread: {error}") from error
-        # One that has begun may have ended by now, and is no longer among the tasks.
+        # A task that has begun may have ended by now, and is no longer among the tasks.
         return begun[0] if begun else next(task for task in reversed(self._kernel.tasks) if task.name == name)
 
     def helper(self, node: Node, label: str, body: Callable[[], None]) -> Task:
@@ -95,7 +96,7 @@ class NodeTasks:
 
 
 def _in_universe(universe: Universe, body: Callable[[], None]) -> Callable[[], None]:
-    """A task's entry that makes it a thread of the node."""
+    """Return a task's entry that makes it a thread of the node."""
 
     def entry() -> None:
         universe.adopt_current()

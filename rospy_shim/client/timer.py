@@ -1,7 +1,7 @@
-"""`rospy.Rate` and `rospy.Timer`: a loop pacer that keeps to its grid, and a thread that calls back at a period.
+"""`rospy.Rate` and `rospy.Timer`: a loop pacer that keeps to its grid, and a thread that calls back periodically.
 
 A loop that is late catches up; one that is more than two periods late starts a new grid, all in integers. A timer is a
-`threading.Thread` of the node's own `threading`, so that an exception in the callback ends it the way Python shows it,
+`threading.Thread` of the node's own `threading`. So an exception in the callback ends it with Python's usual output,
 and nodes can join it (rospy.timer).
 """
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class TimerEvent(NamedTuple):
-    """What a timer tells its callback; the three `last_` values are None the first time."""
+    """The argument of a timer's callback; the three `last_` values are None the first time."""
 
     last_expected: Time | None
     last_real: Time | None
@@ -31,7 +31,7 @@ TimerEvent.__module__ = "rospy.timer"
 
 
 def make_timer(node: Node) -> type:
-    """The class `rospy.Timer` of a node."""
+    """Make the class `rospy.Timer` of a node."""
     threading = node.universe.importer.load("threading")
     base: Any = threading.Thread
 
@@ -42,7 +42,7 @@ def make_timer(node: Node) -> type:
             period: a Duration.
             callback: takes a TimerEvent.
             oneshot: call it once.
-            reset: go on when simulated time is set back; without it the timer then ends with the exception.
+            reset: go on when simulated time is set back; otherwise the timer ends with the exception.
         """
 
         def __init__(self, period: Duration, callback: Any, oneshot: bool = False, reset: bool = False) -> None:
@@ -56,11 +56,11 @@ def make_timer(node: Node) -> type:
             self.start()
 
         def shutdown(self) -> None:
-            """No further call."""
+            """Stop calling."""
             self._shutdown = True
 
         def run(self) -> None:
-            """The thread."""
+            """Run the thread."""
             clock, life = node.clock, node.life
             rate = node.Rate(NS_PER_S / self._period.to_nsec(), reset=self._reset)
             expected = clock.get_rostime() + self._period
@@ -131,7 +131,7 @@ class Rate:
         self._last_ns = value.to_nsec()
 
     def remaining(self) -> Duration:
-        """The time that is left of the present period."""
+        """Return the remaining time of the present period."""
         now = self._node.clock.now_ns()
         return Duration(0, self._period_ns - (now - min(now, self._last_ns)))
 
@@ -156,7 +156,7 @@ class Rate:
         self._last_ns = end if now - end <= 2 * period else now
 
     def _sleep_on_simulated_time(self) -> None:
-        """As `sleep`, on a clock that others set, also back."""
+        """Sleep as `sleep` does, on a clock that others set, also back."""
         clock, now = self._clock, self._clock.now_ns()
         self._last_ns = min(now, self._last_ns)
         try:
@@ -171,5 +171,5 @@ class Rate:
 
 
 def make_rate(node: Node) -> type[Rate]:
-    """The class `rospy.Rate` of a node."""
+    """Make the class `rospy.Rate` of a node."""
     return type("Rate", (Rate,), {"__module__": Rate.__module__, "_node": node})

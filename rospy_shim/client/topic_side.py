@@ -1,4 +1,4 @@
-"""What the two sides of a topic have in common: the handles that share one, its connections and its lock
+"""Common base of the two sides of a topic: its shared handles, its connections and its lock
 (rospy.topics._TopicImpl).
 """
 
@@ -18,7 +18,7 @@ INBOUND, OUTBOUND, BIDIRECTIONAL = "i", "o", "b"  # rospy.impl.transport
 
 
 class TopicConnection(NamedTuple):
-    """A node at the other side, under the names by which libraries such as actionlib look for it."""
+    """A connection to a node at the other side, with the names that libraries such as actionlib use."""
 
     id: int
     endpoint_id: str  # a subscriber's name, or a publisher's URI
@@ -31,12 +31,12 @@ class TopicConnection(NamedTuple):
     done: bool = False
 
     def get_transport_info(self) -> str:
-        """What rosnode prints of a connection."""
+        """Return rosnode's text for a connection."""
         return f"TCPROS connection on port {self.id} to [cfepy:{self.id} on socket {self.id}]"
 
 
 def bus_of(node: Any) -> Any:
-    """The Software Bus as a node calls it; while schedules are explored, something stands before it."""
+    """Return the Software Bus as a node calls it; an exploration may replace it by a wrapper."""
     return node.cfe.sb
 
 
@@ -49,7 +49,7 @@ class TopicSide:
         data_class: message class.
 
     Attributes:
-        is_outside: the node is outside of the mission.
+        is_outside: True if the node is outside of the mission.
     """
 
     is_outside = False
@@ -60,7 +60,7 @@ class TopicSide:
         self.data_class = data_class
         self.ref_count = 0  # handles
         self.closed = False
-        self.topic: TopicEntry | None = None  # None until connected, and when the node is shut down or the types differ
+        self.topic: TopicEntry | None = None  # None until connected, and if the node is shut down or the types differ
         self._mutex = Mutex(node.kernel, name)
         self._ids: dict[str, int] = {}
         self._bus = bus_of(node)
@@ -72,30 +72,32 @@ class TopicSide:
 
     @property
     def connections(self) -> list[TopicConnection]:
-        """The nodes at the other side."""
+        """The connections to nodes at the other side."""
         return []
 
     def connection(self, peer: Node | CompiledNode, direction: str) -> TopicConnection:
-        """The connection to another node; its number stays the same."""
+        """Return the connection to another node; its number stays the same."""
         name, message = peer.names.name, self.data_class
         number = self._ids.get(name) or self._ids.setdefault(name, next(self.node.connection_numbers))
         endpoint = name if direction == OUTBOUND else str(peer.client.get_node_uri())
         return TopicConnection(number, endpoint, name, direction, self.name, message._type, message._md5sum)
 
     def get_num_connections(self) -> int:
-        """How many are at the other side."""
+        """Return the number of connections."""
         return len(self.connections)
 
     def has_connections(self) -> bool:
-        """Whether any node is at the other side."""
+        """Return True if any node is at the other side."""
         return self.get_num_connections() > 0
 
     def has_connection(self, endpoint_id: str) -> bool:
-        """Whether a node is at the other side: a subscriber by its name, a publisher by its URI."""
+        """Return True if a node is at the other side: a subscriber by its name, a publisher by its URI."""
         return any(each.endpoint_id == endpoint_id for each in self.connections)
 
     def get_stats_info(self) -> list[tuple[int, str, str, str, str, bool, str]]:
-        """The connections as getBusInfo gives them: number, other side, direction, transport, topic, state, text."""
+        """Return the data of getBusInfo: number, other side, direction, transport, topic, state, text of each
+        connection.
+        """
         return [
             (each.id, each.endpoint_id, each.direction, each.transport_type, self.name, True, each.get_transport_info())
             for each in self.connections
@@ -106,5 +108,5 @@ class TopicSide:
         self._mutex.take()
 
     def release(self) -> None:
-        """Give that lock back."""
+        """Release that lock."""
         self._mutex.give()

@@ -1,7 +1,7 @@
-"""`rospy.topics` of a node: the handles by which it publishes and subscribes, and what it publishes and subscribes to.
+"""`rospy.topics` of a node: its handles for publishing and subscribing, and the lists of its topics.
 
-Handles of one node on one topic share a side of it, a `Link` or a `Subscription`. The manager's lists are read by tools
-and bridges such as rosapi (rospy.impl.registration).
+Handles of one node on one topic share a side of it, a `Link` or a `Subscription`. Tools and bridges such as rosapi read
+the manager's lists (rospy.impl.registration).
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class TopicHandle:
         """Check the arguments and resolve the name.
 
         Raises:
-            ValueError: an empty name, a class that is no message class, or a private name before `init_node`.
+            ValueError: an empty name, a class that is not a message class, or a private name before `init_node`.
         """
         if not name or not isinstance(name, str):
             raise ValueError("topic name is not a non-empty string")
@@ -64,7 +64,7 @@ class TopicHandle:
         self.reg_type = reg_type
 
     def get_num_connections(self) -> int:
-        """How many are at the other side."""
+        """Return the number of connections."""
         self._node.universe.charge()
         return self.impl.get_num_connections() if self.impl is not None else 0
 
@@ -88,13 +88,13 @@ class Publisher(TopicHandle):
         """Publish on a topic.
 
         Args:
-            name: of the topic.
+            name: name of the topic.
             data_class: message class.
-            subscriber_listener: is told of subscribers that come and go.
+            subscriber_listener: notified of new and lost subscribers.
             tcp_nodelay: accepted.
-            latch: subscribers that come later get the last message.
+            latch: later subscribers get the last message.
             headers: added to the connection header.
-            queue_size: accepted; a warning reminds of it, as in rospy, when it is left out.
+            queue_size: accepted; if it is missing, a warning is printed, as in rospy.
 
         Raises:
             ValueError: see `TopicHandle`.
@@ -117,11 +117,11 @@ class Publisher(TopicHandle):
                     link.peer_joined(subscription)
 
     def publish(self, *args: Any, **kwds: Any) -> None:
-        """Send a message, given as such or by its fields.
+        """Send a message, given directly or by its fields.
 
         Raises:
             ROSException: before `init_node`, or after `unregister`.
-            ROSSerializationException: a field holds what its type cannot carry.
+            ROSSerializationException: a field holds a value that its type cannot carry.
             TypeError: the arguments do not make a message of the topic's type.
         """
         link = self.impl
@@ -146,7 +146,7 @@ class Publisher(TopicHandle):
 
 
 def make_publisher(node: Node) -> type[Publisher]:
-    """The class `rospy.Publisher` of a node."""
+    """Make the class `rospy.Publisher` of a node."""
     return type("Publisher", (Publisher,), {"__module__": Publisher.__module__, "_node": node})
 
 
@@ -169,18 +169,18 @@ class Subscriber(TopicHandle):
         """Subscribe to a topic.
 
         Args:
-            name: of the topic.
+            name: name of the topic.
             data_class: message class, or AnyMsg.
             callback: takes the message, and `callback_args` unless that is None.
             callback_args: second argument of the callback.
             queue_size: messages that may wait before the oldest ones are dropped; None is as many as the platform
-                allows. The last subscriber of a node on a topic that says one decides.
+                allows. The last subscriber of a node on a topic that sets it decides.
             buff_size: checked, and without effect.
             tcp_nodelay: accepted.
 
         Raises:
             ValueError: see `TopicHandle`.
-            ROSException: a queue or buffer size that is no positive integer.
+            ROSException: a queue or buffer size that is not a positive integer.
             UsageError: the topic's MsgId belongs to another topic.
         """
         super().__init__(name, data_class, "sub")
@@ -211,7 +211,7 @@ class Subscriber(TopicHandle):
 
 
 def make_subscriber(node: Node) -> type[Subscriber]:
-    """The class `rospy.Subscriber` of a node."""
+    """Make the class `rospy.Subscriber` of a node."""
     return type("Subscriber", (Subscriber,), {"__module__": Subscriber.__module__, "_node": node})
 
 
@@ -244,39 +244,39 @@ class TopicManager:
         return {*self.pubs, *self.subs}
 
     def get_topics(self) -> set[str]:
-        """Names of all topics of the node."""
+        """Return the names of all topics of the node."""
         return self.topics
 
     def get_publications(self) -> list[list[str]]:
-        """[topic, type] of what the node publishes."""
+        """Return [topic, type] of the published topics."""
         return [[name, side.type] for name, side in self.pubs.items()]
 
     def get_subscriptions(self) -> list[list[str]]:
-        """[topic, type] of what the node subscribes to."""
+        """Return [topic, type] of the subscribed topics."""
         return [[name, side.type] for name, side in self.subs.items()]
 
     def has_publication(self, resolved_name: str) -> bool:
-        """Whether the node publishes a topic."""
+        """Return True if the node publishes a topic."""
         return resolved_name in self.pubs
 
     def has_subscription(self, resolved_name: str) -> bool:
-        """Whether the node subscribes to a topic."""
+        """Return True if the node subscribes to a topic."""
         return resolved_name in self.subs
 
     def get_publisher_impl(self, resolved_name: str) -> Link | None:
-        """The publishing side of a topic."""
+        """Return the publishing side of a topic, or None."""
         return self.pubs.get(resolved_name)
 
     def get_subscriber_impl(self, resolved_name: str) -> Subscription | None:
-        """The subscribing side of a topic."""
+        """Return the subscribing side of a topic, or None."""
         return self.subs.get(resolved_name)
 
     def get_impl(self, reg_type: str, resolved_name: str) -> Link | Subscription | None:
-        """A side of a topic.
+        """Return a side of a topic, or None.
 
         Args:
             reg_type: "pub" or "sub".
-            resolved_name: of the topic.
+            resolved_name: name of the topic.
 
         Raises:
             TypeError: another `reg_type`.
@@ -284,7 +284,7 @@ class TopicManager:
         return self.pubs.get(resolved_name) if _is_pub(reg_type) else self.subs.get(resolved_name)
 
     def acquire_impl(self, reg_type: str, resolved_name: str, data_class: MessageClass) -> Link | Subscription:
-        """A side of a topic, made when there is none, that one more handle uses.
+        """Return a side of a topic for one more handle; make it if there is none.
 
         Raises:
             TypeError: another `reg_type`.
@@ -295,7 +295,7 @@ class TopicManager:
         return side
 
     def release_impl(self, reg_type: str, resolved_name: str) -> None:
-        """A handle is done with a side, which is closed when it was the last one.
+        """Release a handle's side of a topic; it is closed if the handle was the last one.
 
         Raises:
             TypeError: another `reg_type`.
@@ -307,15 +307,15 @@ class TopicManager:
                 side.close()
 
     def get_pub_sub_info(self) -> list[Any]:
-        """All connections, as getBusInfo of the slave API gives them."""
+        """Return all connections, in the form of getBusInfo of the slave API."""
         return [row for side in (*self.pubs.values(), *self.subs.values()) for row in side.get_stats_info()]
 
     def get_pub_sub_stats(self) -> tuple[list[Any], list[Any]]:
-        """What went through the publishing and the subscribing sides, as getBusStats gives it."""
+        """Return the numbers of the publishing and the subscribing sides, in the form of getBusStats."""
         return [side.get_stats() for side in self.pubs.values()], [side.get_stats() for side in self.subs.values()]
 
     def check_all(self) -> None:
-        """Nothing to do: a node that has left the bus is gone from the connections."""
+        """Do nothing: a node that has left the bus is gone from the connections."""
 
     def close_all(self) -> None:
         """Close all sides."""
@@ -333,5 +333,5 @@ def _is_pub(reg_type: str) -> bool:
 
 
 def offered(node: Node) -> dict[str, Service]:
-    """The services that a node offers, by name."""
+    """Return the services that a node offers, by name."""
     return {service.resolved_name: service for service in node.services}

@@ -1,6 +1,6 @@
-"""What all nodes of a mission share: the graph of topics and services, and their MsgIds.
+"""The part of ROS that all nodes of a mission share: the graph of topics and services, and their MsgIds.
 
-What belongs here stands for what ROS's master knows of a running system. The functions that a node calls are in
-`rospy_shim.client`, the master's XML-RPC interface is in `rospy_shim.master`. The central file is
+A module belongs here if it holds knowledge of ROS's master about a running system. The functions that a node calls
+belong to `rospy_shim.client`, the master's XML-RPC interface belongs to `rospy_shim.master`. The central file is
 `rospy_shim/graph/graph.py`.
 """

@@ -1,8 +1,9 @@
-"""Compiled nodes: roscpp nodes that are cFE applications, and what the graph knows of them.
+"""Compiled nodes: roscpp nodes that are cFE applications, as the graph knows them.
 
-Such a node tells the application ROS what it publishes, hears and offers, with a request as of a service, and gets the
-MsgId of each name; it asks for parameters in the same way (`rospy_shim.graph.compiled_params`). Everything else it
-learns from the Software Bus, as on a flight computer without that application.
+Such a node reports its publications, subscriptions and services to the application ROS, with a request in the form of a
+service request, and gets the MsgId of each name. It asks for parameters in the same way
+(`rospy_shim.graph.compiled_params`). It learns everything else from the Software Bus, as on a flight computer without
+that application.
 """
 
 from __future__ import annotations
@@ -34,37 +35,37 @@ PIPE_ID_MASK = 0xFFFFFFFF
 
 
 class Concern(IntEnum):
-    """What a request is about."""
+    """The subject of a request."""
 
     PUBLISHER = 0
     SUBSCRIBER = 1
     SERVER = 2
     CLIENT = 3
-    GONE = 4  # added to the others: no longer
+    GONE = 4  # added to the others: ends it
     SUBSCRIBED = 8  # a subscriber's pipe is on the bus now: it wants the latched messages
-    ENDED = 32  # the node ends by itself; 16 to 31 are about parameters
-    TYPE = 33  # what the messages of a topic are
+    ENDED = 32  # the node ends itself; 16 to 31 are about parameters
+    TYPE = 33  # the type of a topic's messages
 
 
 class Enrolled(NamedTuple):
-    """What a node is told of a name."""
+    """The answer to a node about a name."""
 
     msg_id: int
     raw: bool = False
     latched: bool = False
-    pipes: tuple[int, ...] = ()  # that hear the topic, or the requests of the service
+    pipes: tuple[int, ...] = ()  # that receive the topic, or the requests of the service
 
     def packed(self) -> bytes:
-        """Its bytes: the MsgId, a byte of flags, and the pipes."""
+        """Return the bytes: the MsgId, a byte of flags, and the pipes."""
         return struct.pack(f"<HB{len(self.pipes)}I", self.msg_id, self.raw | self.latched << 1, *self.pipes)
 
 
 class DeclaredType:
-    """A type as a compiled node names it: there is no class for it.
+    """A type as a compiled node declares it, without a class.
 
     Args:
         name: "package/Name"; "*" for any.
-        md5sum: of its definition.
+        md5sum: md5sum of its definition.
         definition: its full text; empty for a service.
     """
 
@@ -75,10 +76,10 @@ class DeclaredType:
 
 
 class CompiledService:
-    """A service that a compiled node offers, as those who call it see it.
+    """A service that a compiled node offers, for its callers.
 
     Args:
-        node: which one.
+        node: the node.
         name: resolved name of the service.
         declared: its type.
     """
@@ -91,15 +92,15 @@ class CompiledService:
         self.uri = f"rosrpc://cfepy:{node.pid}"
 
     def has_room(self, packet: bytes) -> bool:
-        """Whether a packet of a request may be sent."""
+        """Return True if a packet of a request may be sent."""
         pipe = self.node.bus.find_pipe(self.node.pipe)
         return pipe is not None and len(pipe.items) < room_of(pipe, packet)
 
     def attend(self) -> None:
-        """Nothing: the node takes its requests when it spins."""
+        """Do nothing: the node takes its requests when it spins."""
 
     def shutdown(self, reason: str = "") -> None:
-        """Nothing: another node offers the service now, and this one is called no more."""
+        """Do nothing: another node offers the service now, and this one gets no more calls."""
 
 
 class _Names(NamedTuple):
@@ -114,7 +115,7 @@ class _Client(NamedTuple):
     uri: str
 
     def get_node_uri(self) -> str:
-        """Where the node answers: `rospy_shim.master` does in its place."""
+        """Return the URI of the node, where `rospy_shim.master` answers for it."""
         return self.uri
 
 
@@ -123,14 +124,15 @@ class CompiledNode:
 
     Args:
         name: its full name.
-        pipe: through which it hears everything.
+        pipe: the pipe through which it receives everything.
         bus: the Software Bus.
-        pid: the number that stands for its process, and the port in its URIs.
+        pid: its process number, which is also the port in its URIs.
 
     Attributes:
-        config: with the name of its application.
-        published, subscribed: types by topic.
-        latched: topics of which a publisher latches, in a run that is watched.
+        config: holds the name of its application.
+        published: types of published topics, by topic.
+        subscribed: types of subscribed topics, by topic.
+        latched: topics with a latching publisher, in a run that is watched.
     """
 
     def __init__(self, name: str, pipe: int, bus: SoftwareBus, pid: int) -> None:
@@ -148,12 +150,12 @@ class CompiledNode:
 
     @property
     def is_alive(self) -> bool:
-        """Whether its application still runs."""
+        """True if its application still runs."""
         return self.bus.find_pipe(self.pipe) is not None
 
 
 class CompiledSender(NamedTuple):
-    """The publishing side of a compiled node on a topic, as watches of the bus see it; a `Link` in their terms."""
+    """The publishing side of a compiled node on a topic, for observers of the bus; it corresponds to a `Link`."""
 
     node: CompiledNode
     topic: TopicEntry
@@ -174,7 +176,7 @@ class CompiledSender(NamedTuple):
         return self.topic.compiled_header(self.node)
 
     def latch(self) -> None:
-        """A publisher latches."""
+        """Note that a publisher latches."""
         self.node.latched.add(self.topic.name)
 
 
@@ -184,8 +186,9 @@ class CompiledNodes:
     Args:
         graph: the mission's ROS graph.
         bus: the Software Bus.
-        ended: takes application and exit status of a node that ends by itself; in how many ns it is to start again.
-        pids: gives the numbers of processes.
+        ended: takes application and exit status of a node that ends itself; returns the ns until it starts again, or
+            None.
+        pids: assigns the process numbers.
     """
 
     def __init__(
@@ -199,7 +202,7 @@ class CompiledNodes:
         self._pieces = Pieces(REQUEST_LEAD)
 
     def answer(self, packet: bytes) -> Iterator[bytes]:
-        """The packets that answer a request; none until the last packet of a long one."""
+        """Return the packets that answer a request; none until the last packet of a long one."""
         number = call_of_request(packet)
         request = self._pieces.add(number, packet)
         if request is None:
@@ -211,7 +214,7 @@ class CompiledNodes:
         return answer_packets(MASTER_TLM_MID, number, good, body, self._bus.config.sb_max_msg_size)
 
     def sender(self, app: str, msg_id: int) -> CompiledSender | None:
-        """The publishing side of an application on the topic with a MsgId; None if it has none."""
+        """Return the publishing side of an application on the topic with a MsgId; None if it has none."""
         for node in self._graph.compiled.values():
             if node.config.app == app:
                 topics = (self._graph.topics[name] for name in node.published if name in self._graph.topics)
@@ -221,7 +224,7 @@ class CompiledNodes:
         return None
 
     def forget_ended(self) -> None:
-        """Nodes whose applications have ended leave the graph."""
+        """Remove nodes from the graph whose applications have ended."""
         for node in [each for each in self._graph.compiled.values() if not each.is_alive]:
             del self._graph.compiled[node.names.name]
             self._pids.give(node.pid)
@@ -232,10 +235,10 @@ class CompiledNodes:
                 del services[name]
 
     def _answer(self, body: bytes) -> bytes:
-        """Take what a node says or asks.
+        """Handle a request of a node.
 
         Raises:
-            UsageError: the name has no MsgId, or another type; a parameter's value cannot be.
+            UsageError: the name has no MsgId, or another type, or a parameter's value is invalid.
         """
         pipe, kind = struct.unpack_from("<IB", body)
         who, name, *rest = _texts(body, 5)
@@ -248,12 +251,12 @@ class CompiledNodes:
         return self._enter(pipe, kind, who, name, DeclaredType(*rest)).packed()
 
     def _end(self, app: str, status: str) -> bytes:
-        """Whether an application that ends is to start again, and after how many ms."""
+        """Return whether an application that ends is to start again, and after how many ms."""
         again = self._ended(app, int(status))
         return struct.pack("<BI", again is not None, (again or 0) // NS_PER_MS)
 
     def _type_of(self, name: str) -> bytes:
-        """Type, md5sum and definition of a topic's messages, and whether a publisher latches: four texts."""
+        """Return type, md5sum and definition of a topic's messages, and whether a publisher latches, as four texts."""
         topic = self._graph.topic(name)
         latching = "1" if any(link.is_latch for link in topic.links) else "0"
         texts = (topic.type or ANYTYPE, topic.md5sum or ANYTYPE, topic.definition, latching)
@@ -296,7 +299,7 @@ class CompiledNodes:
         return Enrolled(topic.msg_id, topic.raw, pipes=self._pipes_on(topic.msg_id))
 
     def _pipes_on(self, msg_id: int) -> tuple[int, ...]:
-        """The ids of all pipes that hear a MsgId; those of outlets are told as packets have them."""
+        """Return the ids of all pipes that receive a MsgId; ids of outlets are cut to their form in packets."""
         route = self._bus.routes.get(msg_id)
         return () if route is None else tuple(each.pipe.pipe_id & PIPE_ID_MASK for each in route.destinations)
 
@@ -337,7 +340,7 @@ class CompiledNodes:
         return Enrolled(answer_id, pipes=self._pipes_on(answer_id | COMMAND_BIT))
 
     def _give_latched(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
-        """Python nodes' latched messages, for the one subscription that has just come."""
+        """Send Python nodes' latched messages to the one subscription that has just come."""
         topic, number = self._graph.topic(name), int(declared._type)
         for link in topic.links:
             if link.is_latch and link.latch is not None and not topic.raw:
@@ -355,13 +358,13 @@ class CompiledNodes:
 
 
 def tell_subscription(bus: SoftwareBus, msg_id: int, pipe: int, kind: int) -> None:
-    """Let compiled publishers know of a subscription that the Software Bus does not report.
+    """Notify compiled publishers of a subscription that the Software Bus does not report.
 
     Args:
         bus: the Software Bus.
-        msg_id: of the topic.
-        pipe: that hears it, or heard it; also an outlet's.
-        kind: SUBSCRIPTION or UNSUBSCRIPTION: the bus reports no end of a subscription, and nothing of outlets.
+        msg_id: MsgId of the topic.
+        pipe: the subscribed or unsubscribed pipe, which may be an outlet's.
+        kind: SUBSCRIPTION or UNSUBSCRIPTION: the bus reports no end of a subscription, and no subscription of outlets.
     """
     if bus.reporting:
         bus.transmit_msg(ONESUB_TLM.packet(SubType=kind, MsgId=msg_id, Pipe=pipe & PIPE_ID_MASK))

@@ -1,7 +1,7 @@
 """Parameters of compiled nodes: they ask the application ROS, so that all nodes of a mission see one parameter server.
 
-A request is that of `rospy_shim.graph.compiled`, values are JSON. A node that keeps a value (getParamCached) is told of
-changes by a notice to all: an answer to call 0, whose body is the name that has changed.
+A request has the form of `rospy_shim.graph.compiled`; values are JSON. A node that caches a value (getParamCached) gets
+changes by a notice to all: an answer to call 0, whose body is the name of the changed parameter.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _YES, _NO = b"\1", b"\0"
 
 
 class ParameterConcern(IntEnum):
-    """What a request about parameters asks for; roscfe's ParameterCall."""
+    """The operation of a request about parameters; roscfe's ParameterCall."""
 
     GET = 16
     SET = 17
@@ -35,8 +35,8 @@ class ParameterConcern(IntEnum):
     DELETE = 19
     SEARCH = 20
     NAMES = 21
-    GIVE = 22  # those of the node's table, where there are none
-    WATCH = 23  # as GET, and changes are to be told
+    GIVE = 22  # parameters of the node's table, if not set already
+    WATCH = 23  # as GET, with notices of changes
 
 
 class CompiledParams:
@@ -44,7 +44,7 @@ class CompiledParams:
 
     Args:
         tree: the mission's parameters.
-        bus: takes the notices.
+        bus: receives the notices.
     """
 
     def __init__(self, tree: ParameterTree, bus: SoftwareBus) -> None:
@@ -64,11 +64,11 @@ class CompiledParams:
         tree.on_change(self._tell)
 
     def takes(self, kind: int) -> bool:
-        """Whether a request is about parameters."""
+        """Return True if a request is about parameters."""
         return kind in self._does
 
     def answer(self, kind: int, who: str, name: str, text: str) -> bytes:
-        """The body of an answer.
+        """Return the body of an answer.
 
         Args:
             kind: a `ParameterConcern`.
@@ -77,7 +77,7 @@ class CompiledParams:
             text: its value as JSON, or the namespace in which a search begins.
 
         Raises:
-            UsageError: the value is none of XML-RPC's, or the tables are full.
+            UsageError: XML-RPC cannot carry the value, or the tables are full.
         """
         try:
             return self._does[kind](who, name, text)
@@ -94,7 +94,7 @@ class CompiledParams:
 
     def _set(self, who: str, name: str, text: str) -> bytes:
         (value,) = through_xml("setParam", who, marshalled(of_json(text)))
-        if name != SEP or type(value) is dict:  # the master's refusal of another root is not looked at
+        if name != SEP or type(value) is dict:  # the master's refusal of another root is ignored
             self._tree.set(name, value)
         return _YES
 
@@ -120,7 +120,7 @@ class CompiledParams:
         return _YES
 
     def _tell(self, name: str) -> None:
-        """A parameter has changed; those who keep it are to ask again."""
+        """Send a notice of a changed parameter; nodes that cache it are to ask again."""
         changed = f"{name.rstrip(SEP)}{SEP}"
         if any(f"{each}{SEP}".startswith(changed) or changed.startswith(f"{each}{SEP}") for each in self._watched):
             for packet in answer_packets(MASTER_TLM_MID, 0, True, name.encode(), self._bus.config.sb_max_msg_size):

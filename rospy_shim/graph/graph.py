@@ -1,4 +1,4 @@
-"""The ROS graph of a mission: nodes, topics with their MsgIds, who publishes and who subscribes (ROS's master).
+"""The ROS graph of a mission: nodes, topics with their MsgIds, publishers and subscribers (ROS's master).
 
 A topic has one MsgId (`rospy_shim.graph.msg_ids`).
 """
@@ -26,19 +26,21 @@ if TYPE_CHECKING:
     from rospy_shim.types.msgs import MessageClass, ServiceClass
 
 Header = dict[str, str]
-"""What ROS tells the two ends of a connection: caller, type, md5sum, topic, ..."""
+"""A connection header of ROS for the two ends of a connection: caller, type, md5sum, topic, ..."""
 
 
 MOST_NAMES = 1_000
-"""Publishers, and subscribers, of a topic that the tables name; tools outside have a new name for each start."""
+"""Maximum number of publishers, and of subscribers, of a topic in the tables; external tools use a new name at each
+start.
+"""
 
 
 class TopicRow(NamedTuple):
     """A topic in the mission's tables.
 
     `dropped` counts long messages that lost a segment in a full pipe; the bus itself counts the other losses.
-    `held_back` counts messages that had to wait because the board publishes no faster. `definition` is the type's full
-    text. `latched` counts messages that were given to one new subscriber alone, `unsent` says that there were some
+    `held_back` counts messages that waited for the board's publishing rate. `definition` is the type's full text.
+    `latched` counts messages that were given to one new subscriber alone. `unsent` is true if there were messages
     without a subscriber.
     """
 
@@ -61,7 +63,7 @@ class TopicEntry:
         self.name = name
         self.msg_id = msg_id
         self.raw = raw
-        self.type = ""  # of the node that came first, as long as any is there
+        self.type = ""  # of the first node, as long as there is any node
         self.md5sum = ""
         self.definition = ""
         self._members = 0
@@ -69,19 +71,19 @@ class TopicEntry:
         self.subscriptions: list[Subscription] = []
         self.compiled_publishers: list[CompiledNode] = []
         self.compiled_subscribers: list[CompiledNode] = []
-        self.publisher_names: list[str] = []  # all publishers that there ever were, for the tables
+        self.publisher_names: list[str] = []  # all publishers so far, for the tables
         self.subscriber_names: list[str] = []
-        self.header: Header | None = None  # of the only publisher; None when a message must be looked up in `notes`
+        self.header: Header | None = None  # of the only publisher; None if a message must be looked up in `notes`
         self._shared = False  # there were two publishers at a time; packets of one that left may still wait in pipes
         self.latching = False
-        self.latched = 0  # messages that one new subscriber got, which came after they were published
+        self.latched = 0  # messages that one new subscriber got after they were published
         self.unsent = False  # whether there were messages without a subscriber
         self.held_back = 0  # messages that waited for the board's publishing rate
-        self.lost = 0  # long messages of which a segment is missing, once per subscriber
+        self.lost = 0  # long messages with a missing segment, once per subscriber
         self.notes: dict[int, tuple[Header, int]] = {}  # by sequence count: publisher, and number of the segment
 
     def join(self, data_class: MessageClass | DeclaredType) -> bool:
-        """A node wants to connect: whether the message's type is the topic's. The first one that comes decides."""
+        """Connect a node. Returns False if its type differs from the topic's, which the first node decides."""
         if self._members == 0 or not self.type:
             concrete = data_class._type != "*"
             self.type, self.md5sum = (data_class._type, data_class._md5sum) if concrete else (self.type, "")
@@ -92,72 +94,72 @@ class TopicEntry:
         return True
 
     def leave(self) -> None:
-        """A node that joined is gone."""
+        """Disconnect a node that had joined."""
         self._members -= 1
 
     def add_link(self, link: Link) -> None:
-        """A publisher came."""
+        """Add a publisher."""
         self.links.append(link)
         _remember(self.publisher_names, link.node.names.name)
         self._refresh()
         self._reconnect()
 
     def remove_link(self, link: Link) -> None:
-        """A publisher left."""
+        """Remove a publisher."""
         if link in self.links:
             self.links.remove(link)
             self._refresh()
             self._reconnect()
 
     def _reconnect(self) -> None:
-        """The master tells subscribers of the publishers: they connect to those to which they have no connection."""
+        """Let subscribers connect to publishers without a connection, as after a notification of the master."""
         for link in self.links:
             if link.leftovers is not None:
                 link.leftovers.reconnect()
 
     def add_compiled_publisher(self, node: CompiledNode) -> None:
-        """A compiled node publishes; a packet of it is one that no other publisher has noted."""
+        """Add a compiled publisher; packets that no other publisher has noted are attributed to it."""
         self.compiled_publishers.append(node)
         _remember(self.publisher_names, node.names.name)
         self._shared = True
         self._refresh()
 
     def add_compiled_subscriber(self, node: CompiledNode) -> None:
-        """A compiled node subscribes."""
+        """Add a compiled subscriber."""
         self.compiled_subscribers.append(node)
         _remember(self.subscriber_names, node.names.name)
 
     def leave_compiled(self, node: CompiledNode) -> None:
-        """A compiled node that joined has ended."""
+        """Remove a compiled node that has ended."""
         for side in (self.compiled_publishers, self.compiled_subscribers):
             if node in side:
                 side.remove(node)
                 self.leave()
 
     def add_subscription(self, subscription: Subscription) -> None:
-        """A subscriber came."""
+        """Add a subscriber."""
         self.subscriptions.append(subscription)
         _remember(self.subscriber_names, subscription.node.names.name)
 
     def remove_subscription(self, subscription: Subscription) -> None:
-        """A subscriber left."""
+        """Remove a subscriber."""
         if subscription in self.subscriptions:
             self.subscriptions.remove(subscription)
             for link in self.links:
                 link.peer_left(subscription)
 
     def tell_left(self, bus: SoftwareBus, pipe: int) -> None:
-        """A subscriber's pipe hears the topic no more; compiled publishers are told."""
+        """Notify compiled publishers that a subscriber's pipe has left the topic."""
         if self.compiled_publishers:
             tell_subscription(bus, self.msg_id, pipe, UNSUBSCRIPTION)
 
     def tell_came(self, bus: SoftwareBus, pipe: int) -> None:
-        """A subscriber outside hears the topic from now on; compiled publishers are told."""
+        """Notify compiled publishers of a new outside subscriber."""
         if self.compiled_publishers:
             tell_subscription(bus, self.msg_id, pipe, SUBSCRIPTION)
 
     def compiled_header(self, node: CompiledNode) -> Header:
-        """The connection header of a compiled publisher."""
+        """Return the connection header of a compiled publisher."""
         about = {"md5sum": self.md5sum, "message_definition": self.definition, "topic": self.name, "type": self.type}
         return {"callerid": node.names.name, "latching": str(int(self.name in node.latched)), **about}
 
@@ -169,7 +171,7 @@ class TopicEntry:
         self.latching = any(link.is_latch for link in self.links)
 
     def sender_of(self, packet: bytes) -> Header:
-        """The connection header of the publisher that sent a packet."""
+        """Return the connection header of the publisher that sent a packet."""
         if self.header is not None:
             return self.header
         note = self.notes.get(sequence_of(packet))
@@ -180,18 +182,18 @@ class TopicEntry:
 
 
 class ServiceCall(NamedTuple):
-    """A service call under way: the caller's pipe for the answer, and what the request says of it."""
+    """A pending service call: the caller's pipe for the answer, and the request's connection header."""
 
     pipe: int
     header: Header
 
 
 class ServiceEntry:
-    """A service that is offered.
+    """An offered service.
 
     Args:
         service: handles its requests.
-        ids: gives it its MsgIds when they are first asked for.
+        ids: assigns its MsgIds at their first use.
     """
 
     def __init__(self, service: Service | CompiledService, ids: MsgIds) -> None:
@@ -209,11 +211,11 @@ class ServiceEntry:
 
     @property
     def request_id(self) -> int:
-        """MsgId of its requests: that of its answers with the command bit."""
+        """MsgId of its requests: the MsgId of its answers with the command bit."""
         return self.answer_id | COMMAND_BIT
 
     def begin(self, call: ServiceCall) -> int:
-        """The number of a new call."""
+        """Begin a call. Returns its number."""
         self._count = number = self._count + 1
         self.calls[number] = call
         return number
@@ -223,7 +225,7 @@ class Graph:
     """All nodes and topics of one mission.
 
     Args:
-        config: what the mission file says about ROS.
+        config: the mission file's ROS section.
     """
 
     def __init__(self, config: RosConfig) -> None:
@@ -238,7 +240,7 @@ class Graph:
         self.ids = MsgIds(config)
 
     def topic(self, name: str) -> TopicEntry:
-        """The topic of a resolved name.
+        """Return the topic of a resolved name.
 
         Raises:
             UsageError: its MsgId belongs to another topic.
@@ -250,7 +252,7 @@ class Graph:
         return topic
 
     def register_node(self, node: Node) -> None:
-        """A node has its name; one that has the same name already is shut down, as ROS does it."""
+        """Register a node under its name; an earlier node with the same name is shut down, as in ROS."""
         name = node.names.name
         former = self.nodes.get(name)
         self.nodes[name] = node
@@ -258,12 +260,12 @@ class Graph:
             former.give_way()
 
     def forget_node(self, node: Node) -> None:
-        """A node is gone."""
+        """Remove a node that is gone."""
         if self.nodes.get(node.names.name) is node:
             del self.nodes[node.names.name]
 
     def register_service(self, service: Service | CompiledService) -> ServiceEntry:
-        """A node offers a service; one of another node under that name is shut down, as ROS forgets it.
+        """Register a service; another node's service of that name is shut down, as ROS forgets it.
 
         Raises:
             ServiceException: the same node offers it already.
@@ -279,12 +281,12 @@ class Graph:
         return entry
 
     def caller(self, name: str) -> tuple[Node, ServiceClass]:
-        """The node from which a service is called for a test or a tool, and the class of the service.
+        """Return the node from which a test or a tool can call a service, and the class of the service.
 
-        That is the node that offers it, so that none has to be added; of a compiled one, any node in Python.
+        That is the node that offers it, so that no node has to be added; for a compiled one, any node in Python.
 
         Args:
-            name: resolved name of a service that is offered.
+            name: resolved name of an offered service.
 
         Raises:
             ServiceException: a compiled node offers it, and there is no node in Python.
@@ -299,13 +301,13 @@ class Graph:
         return service.node, service.service_class
 
     def forget_service(self, service: Service) -> None:
-        """A service is offered no longer."""
+        """Remove a service."""
         entry = self.services.get(service.resolved_name)
         if entry is not None and entry.service is service:
             del self.services[service.resolved_name]
 
     def published(self, namespace: str) -> list[list[str]]:
-        """[name, type] of the topics below a namespace that a node publishes."""
+        """Return [name, type] of the published topics below a namespace."""
         prefix = namespace.rstrip("/") + "/"
         return [
             [topic.name, topic.type] for topic in self.topics.values() if topic.links and topic.name.startswith(prefix)

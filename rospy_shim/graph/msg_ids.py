@@ -1,8 +1,8 @@
-"""MsgIds of topics and services: the mission file's choice, the lock file's, or else made from a hash of the name.
+"""MsgIds of topics and services: from the mission file, from the lock file, or from a hash of the name.
 
-A hash is the same in every run, but 1791 ids are few: among 50 topics two meet in every other mission. So there is a
-lock file, in which every name has an id of its own (`locked`), and runs without a mission folder, in which a name whose
-id is taken gets the next free one.
+A hash is the same in every run, but 1791 ids are few: among 50 topics two collide in every other mission. So there is a
+lock file, in which every name has its own id (`locked`). In a run without a mission folder, a name whose id is taken
+gets the next free one.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class MsgIds:
     """The MsgIds of one mission and their owners.
 
     Args:
-        config: ids that the mission file and its lock file give.
+        config: ids of the mission file and its lock file.
     """
 
     def __init__(self, config: RosConfig) -> None:
@@ -41,10 +41,10 @@ class MsgIds:
         self._claimed: dict[str, int] = {}
 
     def of_topic(self, name: str) -> int:
-        """The MsgId of a topic, by its resolved name.
+        """Return the MsgId of a topic, by its resolved name.
 
         Raises:
-            UsageError: it belongs to another topic or service, or there are no more.
+            UsageError: it belongs to another topic or service, or no id is left.
         """
         pinned, known = self._config.topics.get(name), self._config.locked_topics.get(name)
         if pinned is not None:
@@ -63,21 +63,23 @@ class MsgIds:
         )
 
     def of_service(self, name: str) -> int:
-        """The MsgId of a service's answers, by its resolved name: the next free one if that of its name is taken."""
+        """Return the MsgId of a service's answers, by its resolved name: the next free one if the id of its name is
+        taken.
+        """
         known = self._config.locked_services.get(name)
         return self.claim(service_label(name)) if known is None else known
 
     def claimed(self) -> tuple[list[str], list[str]]:
-        """Names of topics and of services that have an id that no file gives them."""
+        """Return the names of topics and of services that have an id without a file's entry."""
         services = [label.removeprefix(_SERVICE) for label in self._claimed if label.startswith(_SERVICE)]
         return [label for label in self._claimed if not label.startswith(_SERVICE)], services
 
     def services(self) -> dict[int, str]:
-        """The services that have MsgIds, by that of their answers."""
+        """Return the services that have MsgIds, by the MsgId of their answers."""
         return {id_: label.removeprefix(_SERVICE) for id_, label in self._names.items() if label.startswith(_SERVICE)}
 
     def claim(self, label: str) -> int:
-        """The id that a name falls on, or the next free one, from now on its own."""
+        """Claim the id of a name's hash, or the next free one. Returns the id."""
         msg_id = self._claimed.get(label)
         if msg_id is None:
             msg_id = msg_id_of(label)
@@ -89,14 +91,15 @@ class MsgIds:
 
 
 def locked(config: RosConfig, topics: Iterable[str], services: Iterable[str]) -> tuple[dict[str, int], dict[str, int]]:
-    """The MsgIds for a lock file: those that are locked already stay, new names follow in their order.
+    """Compute the MsgIds for a lock file: existing entries stay, new names follow in their order.
 
     Args:
-        config: what the mission file and the present lock file say.
-        topics, services: resolved names that the mission has.
+        config: the entries of the mission file and the present lock file.
+        topics: resolved names of the mission's topics.
+        services: resolved names of the mission's services.
 
     Returns:
-        MsgIds by name, of the topics that the mission file does not pin and of the services' answers.
+        MsgIds by name: of the topics that the mission file does not pin, and of the services' answers.
 
     Raises:
         UsageError: there are more names than MsgIds.
@@ -112,10 +115,10 @@ def locked(config: RosConfig, topics: Iterable[str], services: Iterable[str]) ->
 
 
 def next_free(msg_id: int, taken: Mapping[int, str]) -> int:
-    """The first free id after `msg_id`; after the last id the search goes on at the first.
+    """Return the first free id after `msg_id`; after the last id the search continues at the first.
 
     Raises:
-        UsageError: there is none.
+        UsageError: no id is free.
     """
     for step in range(1, _HOW_MANY):
         found = FIRST_MSG_ID + (msg_id + step - FIRST_MSG_ID) % _HOW_MANY
@@ -125,7 +128,7 @@ def next_free(msg_id: int, taken: Mapping[int, str]) -> int:
 
 
 def msg_id_of(name: str) -> int:
-    """The MsgId that a name falls on by itself: 0x0901 to 0x0FFF, from a hash."""
+    """Return the MsgId of a name's hash: 0x0901 to 0x0FFF."""
     if name == ROSOUT:
         return ROSOUT_MSG_ID
     digest = hashlib.blake2b(name.encode(), digest_size=8).digest()
@@ -133,5 +136,5 @@ def msg_id_of(name: str) -> int:
 
 
 def service_label(name: str) -> str:
-    """What a service is called among the names that have MsgIds: a topic may be called the same."""
+    """Return the label of a service among the names with MsgIds; a topic may have the same name."""
     return f"{_SERVICE}{name}"

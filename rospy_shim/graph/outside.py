@@ -1,8 +1,9 @@
 """ROS nodes outside of the mission, as its graph sees them: with publishers, subscribers and services like all others.
 
-`OutsideGraph` is what programs on this computer do to the graph, in plain values, so that a journal has all of it and a
-replay does it again (`cfepy.mission.host_actions`). What the mission has for them goes to `OutsideGraph.way_out`; a
-replay has none. Nothing here waits for them: a message for an outside subscriber is handed on at once.
+`OutsideGraph` performs the actions of programs on this computer on the graph. Their arguments are plain values, so that
+a journal records them and a replay repeats them (`cfepy.mission.host_actions`). The mission's output for these programs
+goes to `OutsideGraph.way_out`, which is None in a replay. Nothing here waits for them: a message for an outside
+subscriber is passed on at once.
 """
 
 from __future__ import annotations
@@ -37,40 +38,43 @@ if TYPE_CHECKING:
     from rospy_shim.master import Switchboard
     from rospy_shim.master.xmlrpc_calls import Answer
 
-PACE_NS = 100_000  # between two looks whether a service has room for the next packet of a request
+PACE_NS = 100_000  # period of looking for room for the next packet of a request
 PRIORITY = 100  # of a task that calls a compiled node's service, as a node's
 
 
 class WayOut(Protocol):
-    """What takes things out of the mission. It is called in the mission's tasks, and must not wait."""
+    """Receives the mission's output. It is called in the mission's tasks, and must not wait."""
 
     def message(self, topic: str, publisher: str, subscriber: str, payload: bytes) -> None:
-        """A message for an outside subscriber. `publisher` is "" for one that no ROS node has sent."""
+        """Take a message for an outside subscriber. `publisher` is "" if the sender is not a ROS node."""
 
     def packet(self, topic: str, packet: bytes) -> None:
-        """A packet of cFE applications that is shown as a topic."""
+        """Take a packet of cFE applications that is shown as a topic."""
 
     def request(self, service: str, number: int, header: Header, body: bytes) -> None:
-        """A request for an outside service; `number` is that of the call."""
+        """Take a request for an outside service; `number` is the number of the call."""
 
     def answer(self, number: int, good: bool, body: bytes) -> None:
-        """The answer to a call from outside: the serialised response, or an error's text."""
+        """Take the answer to a call from outside: the serialised response, or an error's text."""
 
 
 class OutsideGraph:
-    """What outside nodes do to the graph of a mission.
+    """The actions of outside nodes on the graph of a mission.
 
     Args:
         graph: the graph.
         switchboard: finds the master and the nodes of the mission.
         cfe: the services.
-        kernel: the simulated computer's.
+        kernel: the kernel of the simulated computer.
 
     Attributes:
-        nodes, links, subscriptions, services: what outside nodes have in the graph.
-        way_out: takes what goes out; None drops it.
-        ways_out: takes what goes out to nodes with a way of their own, by their names. Those of one way reach each
-            other without the mission.
+        nodes: the outside nodes in the graph.
+        links: their publishers.
+        subscriptions: their subscribers.
+        services: their services.
+        way_out: receives the output; None drops it.
+        ways_out: receives the output for nodes with their own way out, by their names. Nodes with the same way out
+            reach each other without the mission.
     """
 
     def __init__(self, graph: Graph, switchboard: Switchboard, cfe: Cfe, kernel: Kernel) -> None:
@@ -84,9 +88,9 @@ class OutsideGraph:
         self._switchboard = switchboard
         self._cfe = cfe
         self._kernel = kernel
-        self._entering = ""  # the outside node of which a message comes in
+        self._entering = ""  # the outside node whose message comes in
         self._pieces: dict[str, Pieces] = {}  # of long requests, by service
-        # By service and its number: the caller's number, and the caller; None when it does not wait any more.
+        # By service and its number: the caller's number, and the caller; None if it does not wait any more.
         self._calls: dict[str, dict[int, tuple[int, str] | None]] = {}
         self._outlets: dict[str, Outlet] = {}  # by service
         self._shown: dict[str, Outlet] = {}  # by topic
@@ -108,10 +112,10 @@ class OutsideGraph:
         }
 
     def do(self, name: str, *values: Any) -> Any:
-        """Do one thing; names and values are those of the methods below.
+        """Perform one action; names and values are those of the methods below.
 
         Raises:
-            KeyError: there is no such thing, topic, node or service.
+            KeyError: there is no such action, topic, node or service.
             UsageError: a topic's MsgId belongs to another topic.
             CfeError: the bus is full.
         """
@@ -120,15 +124,15 @@ class OutsideGraph:
     # -- the master --------------------------------------------------------------------------------------------------
 
     def _ask(self, node: str, body: bytes) -> Answer:
-        """A request that changes something, as XML-RPC carries it; the answer.
+        """Perform a changing request in the form of XML-RPC. Returns the answer.
 
         Args:
-            node: a node of the mission, which is asked; "" for the master.
+            node: the node of the mission that gets the request; "" for the master.
             body: method and arguments.
         """
         try:
             arguments, method = loads(body, use_builtin_types=True)
-        except Exception as error:  # of the parser, which raises a dozen kinds for what is no request
+        except Exception as error:  # the parser raises a dozen kinds of errors for an invalid request
             return -1, f"this is not a request: {error}", 0
         api = self._switchboard.api_of(node) if node else self._switchboard.master
         if api is None:
@@ -145,11 +149,11 @@ class OutsideGraph:
         return node
 
     def _topic(self, name: str) -> TopicEntry:
-        """The topic of a name, which nodes of the mission may not have.
+        """Return the topic of a name, which nodes of the mission may not have.
 
         Raises:
-            UsageError: its MsgId belongs to another topic, or too many names come from outside: each has its MsgId for
-                the rest of the run, of which the mission needs some for itself.
+            UsageError: its MsgId belongs to another topic, or too many names come from outside. Each takes a MsgId for
+                the rest of the run, and the mission needs some for itself.
         """
         if name not in self._graph.topics:
             self._count_name(name)
@@ -161,7 +165,7 @@ class OutsideGraph:
         self._names.add(name)
 
     def _publish(self, topic: str, name: str, uri: str, kind: str, md5sum: str, definition: str, latching: bool) -> str:
-        """The mission is connected with an outside publisher; "" when it is, else why not."""
+        """Connect the mission with an outside publisher. Returns the error, or ""."""
         entry, declared = self._topic(topic), DeclaredType(kind, md5sum, definition)
         self._publish_no_more(topic, name)
         if not entry.join(declared):
@@ -178,7 +182,7 @@ class OutsideGraph:
     def _forget_node(self, name: str) -> None:
         """Forget an outside node that has nothing in the graph any more, if there are many.
 
-        Tools have a new name for each start.
+        Tools use a new name at each start.
         """
         if len(self.nodes) <= MOST_NAMES:
             return
@@ -188,7 +192,7 @@ class OutsideGraph:
             self.nodes.pop(name, None)
 
     def _message(self, topic: str, name: str, payload: bytes) -> bool:
-        """A message from an outside publisher; whether the bus took it."""
+        """Enter a message from an outside publisher. Returns True if the bus took it."""
         self._entering = name
         try:
             return self.links[topic, name].enter(payload)
@@ -196,7 +200,9 @@ class OutsideGraph:
             self._entering = ""
 
     def _subscribe(self, topic: str, name: str, uri: str, kind: str, md5sum: str, publisher: str) -> str:
-        """An outside subscriber is connected with a node of the mission, "" for its cFE applications; why not."""
+        """Connect an outside subscriber with a node of the mission, "" for its cFE applications. Returns the error,
+        or "".
+        """
         entry = self._topic(topic)
         subscription = self.subscriptions.get((topic, name))
         if subscription is None:
@@ -208,7 +214,7 @@ class OutsideGraph:
             )
             self.subscriptions[topic, name] = subscription
             for each in entry.links:
-                if not each.is_outside:  # what comes from there comes at once
+                if not each.is_outside:  # its messages come at once
                     each.expect_peer(subscription)
         subscription.publishers.append(publisher)
         node = self._graph.nodes.get(publisher)
@@ -222,7 +228,7 @@ class OutsideGraph:
         return ""
 
     def _give_latched(self, topic: str, publisher: str, subscription: OutsideSubscription) -> None:
-        """An outside subscriber has another way than an outside publisher: what that has latched comes from here."""
+        """Send the latched message of an outside publisher to a subscriber with another way out."""
         link = self.links.get((topic, publisher))
         if link is None or self._way_to(publisher) is self._way_to(subscription.node.names.name):
             return
@@ -230,11 +236,11 @@ class OutsideGraph:
             subscription.deliver(link.latch, link.header)
 
     def _way_to(self, name: str) -> WayOut | None:
-        """The way out to an outside node."""
+        """Return the way out to an outside node."""
         return self.ways_out.get(name, self.way_out)
 
     def _reaches(self, name: str) -> bool:
-        """Whether the publisher of which a message comes in reaches an outside node by itself."""
+        """Return True if the publisher of the entering message reaches an outside node without the mission."""
         return self._entering != "" and self._way_to(self._entering) is self._way_to(name)
 
     def _out_to(self, topic: str, subscriber: str) -> Callable[[str, bytes], None]:
@@ -246,7 +252,7 @@ class OutsideGraph:
         return out
 
     def _subscribe_no_more(self, topic: str, name: str, publisher: str) -> None:
-        """One of its connections is gone; with the last one the subscriber is."""
+        """Remove one of a subscriber's connections; with the last one the subscriber is removed."""
         subscription = self.subscriptions.get((topic, name))
         if subscription is None:
             return
@@ -258,7 +264,7 @@ class OutsideGraph:
             self._forget_node(name)
 
     def _show(self, topic: str, msg_id: int) -> None:
-        """Somebody outside hears packets of cFE applications."""
+        """Show packets of cFE applications to the outside."""
         if topic not in self._shown:
 
             def take(packet: bytes) -> None:
@@ -275,10 +281,10 @@ class OutsideGraph:
     # -- services of the mission -------------------------------------------------------------------------------------
 
     def _call(self, service: str, number: int, caller: str, body: bytes) -> None:
-        """An outside node calls a service of the mission.
+        """Call a service of the mission for an outside node.
 
         Raises:
-            KeyError: there is none of that name.
+            KeyError: there is no such service.
             CfeError: too many calls of it wait, each of which may take a task.
         """
         entry = self._graph.services[service]
@@ -312,7 +318,7 @@ class OutsideGraph:
             self._kernel.spawn(f"call of {service}", send, PRIORITY)
 
     def _listen(self, service: str, entry: ServiceEntry) -> None:
-        """Hear the answers of a service of the mission."""
+        """Receive the answers of a service of the mission."""
         outlet = self._outlets.get(service)
         if outlet is None:
             self._calls[service] = {}
@@ -337,7 +343,7 @@ class OutsideGraph:
             self._outlets[service] = Outlet(self._cfe.sb, entry.answer_id, f"answers of {service}", take)
 
     def _forget_call(self, service: str, number: int, caller: str) -> None:
-        """The caller does not wait for the answer any more."""
+        """Drop a call whose caller does not wait for the answer any more."""
         calls = self._calls.get(service, {})
         for inner in [each for each, outer in calls.items() if outer == (number, caller)]:
             calls[inner] = None  # the service still works on it
@@ -345,7 +351,7 @@ class OutsideGraph:
     # -- services of outside nodes -----------------------------------------------------------------------------------
 
     def _serve(self, service: str, name: str, uri: str, address: str, kind: str, md5sum: str) -> bool:
-        """An outside node offers a service; False when the mission has one of that name."""
+        """Offer a service of an outside node. Returns False if the mission has one of that name."""
         former = self._graph.services.get(service)
         if former is not None and not isinstance(former.service, OutsideService):
             return False
@@ -387,7 +393,7 @@ class OutsideGraph:
             self._forget_node(made.node.names.name)
 
     def _answer(self, service: str, number: int, good: bool, body: bytes) -> bool:
-        """The answer of an outside service; False when nobody waits for it."""
+        """Send the answer of an outside service. Returns False if no call waits for it."""
         entry = self._graph.services.get(service)
         if entry is None or number not in entry.calls:
             return False

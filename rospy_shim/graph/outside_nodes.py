@@ -1,7 +1,7 @@
-"""Nodes outside of the mission, as the two sides of a topic or a service see theirs.
+"""Nodes outside of the mission, with the interface of the two sides of a topic or a service.
 
 They stand for programs on the computer that the run is on. Nothing here waits for them: a message for an outside
-subscriber is handed on at once.
+subscriber is passed on at once.
 """
 
 from __future__ import annotations
@@ -35,19 +35,19 @@ if TYPE_CHECKING:
 
 
 class OutsideNode:
-    """A node outside of the mission, as the two sides of a topic see theirs.
+    """A node outside of the mission, with the interface that the two sides of a topic need.
 
     Args:
         name: its full name.
-        uri: where it answers.
+        uri: its URI.
         graph: the mission's ROS graph.
         cfe: the services.
-        kernel: the simulated computer's.
+        kernel: the kernel of the simulated computer.
     """
 
     call_ns = publish_slot_ns = pid = 0
     owner = None
-    config = SimpleNamespace(app="host")  # in whose name its messages are sent, as the watches of the bus see it
+    config = SimpleNamespace(app="host")  # the sender of its messages, for observers of the bus
 
     def __init__(self, name: str, uri: str, graph: Graph, cfe: Cfe, kernel: Kernel) -> None:
         self.names = SimpleNamespace(name=name)
@@ -58,18 +58,18 @@ class OutsideNode:
         self.kernel = kernel
 
     def working(self, name: str, unpack: Any) -> Any:
-        """Its callbacks take none of the mission's time."""
+        """Return `unpack` unchanged: its callbacks take none of the mission's time."""
         return unpack
 
 
 class OutsideLink(Link):
-    """The publishing side of an outside node: what came from it is sent on the bus.
+    """The publishing side of an outside node: it sends the node's messages on the bus.
 
     Args:
         node: the publisher.
         topic: the topic, which it has joined.
         declared: type of the messages.
-        latching: it latches.
+        latching: True if it latches.
     """
 
     is_outside = True
@@ -95,9 +95,9 @@ class OutsideLink(Link):
             self.topic = None
 
     def has_room(self, payload: bytes) -> bool:
-        """Whether the bus and every subscriber take a message now, or drop an older one for it.
+        """Return True if the bus and every subscriber take a message now, or drop an older one for it.
 
-        One whose queue is longer than a pipe can be drops none: what the pipe does not hold can wait outside.
+        A subscriber whose queue size exceeds its pipe drops none: further messages can wait outside.
         """
         count = -(-len(payload) // self._room) or 1
         route = self._routes.get(self.msg_id)
@@ -112,7 +112,7 @@ class OutsideLink(Link):
         return drops and not any(each.is_cut_short(pipe) for each in self.peers)
 
     def enter(self, payload: bytes) -> bool:
-        """A message came; False when the bus did not take it."""
+        """Enter a message. Returns False if the bus did not take it."""
         self.seq += 1
         self.message_data_sent += len(payload)
         if self.is_latch:
@@ -142,11 +142,13 @@ class OutsideLink(Link):
         return packets
 
     def serialize(self, message: Any) -> bytes:
-        """A latched message, which is kept as it came."""
+        """Return a latched message, which is kept serialised."""
         return bytes(message)
 
     def give_latched(self, subscription: Subscription) -> None:
-        """Another outside node is connected with the publisher itself."""
+        """Give the latched message to a subscriber of the mission; another outside node gets it from the publisher
+        itself.
+        """
         if self.is_latch and self.latch is not None and not self.raw and not subscription.is_outside:
             subscription.deliver(self.latch, self.header)
             if self.topic is not None:
@@ -154,13 +156,13 @@ class OutsideLink(Link):
 
 
 class OutsideSubscription(Subscription):
-    """The subscribing side of an outside node: what it hears goes out.
+    """The subscribing side of an outside node: it passes its messages to the outside.
 
     Args:
         node: the subscriber.
         topic: the topic, which it has joined.
         declared: type that it wants.
-        outsiders: says whether a message comes from an outside node that has sent it to this one already.
+        outsiders: returns True if a message comes from an outside node that has sent it to this one already.
         out: takes publisher and message.
     """
 
@@ -179,7 +181,7 @@ class OutsideSubscription(Subscription):
         super().__init__(as_node, topic.name, as_class)
         self.topic = topic
         self.has_begun = True
-        self.publishers: list[str] = []  # with which it is connected
+        self.publishers: list[str] = []  # to which it is connected
         self._outsiders = outsiders
         self._out = out
         self._raw = topic.raw
@@ -189,7 +191,7 @@ class OutsideSubscription(Subscription):
         topic.tell_came(node.cfe.sb, self._outlet.pipe_id)
 
     def expect_segments(self, count: int) -> None:
-        """Nothing waits here."""
+        """Do nothing: there is no queue here."""
 
     def ignore(self, link: Link) -> None:
         self._outlet.ignore(link.node.owner)
@@ -230,11 +232,11 @@ class OutsideService(CompiledService):
     """A service that an outside node offers.
 
     Args:
-        node: which one.
+        node: the node.
         name: resolved name of the service.
         declared: its type.
-        uri: where it is called, rosrpc://HOST:PORT.
-        open_outlet: makes what takes its requests; a service that nobody calls needs no MsgId.
+        uri: its URI, rosrpc://HOST:PORT.
+        open_outlet: makes the outlet for its requests; a service without calls needs no MsgId.
     """
 
     def __init__(
@@ -252,12 +254,12 @@ class OutsideService(CompiledService):
         self._outlet: Outlet | None = None
 
     def has_room(self, packet: bytes) -> bool:
-        """A request goes out at once."""
+        """Return True: a request is passed on at once."""
         if self._outlet is None:
             self._outlet = self._open()
         return True
 
     def close(self) -> None:
-        """It is called no more."""
+        """Stop taking calls."""
         if self._outlet is not None:
             self._outlet.close()

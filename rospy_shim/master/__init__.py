@@ -1,7 +1,7 @@
 """ROS's XML-RPC side of a mission: the master (rosmaster) and the nodes' slave API, found by URI without a network.
 
-What belongs here answers XML-RPC calls or carries them: `Switchboard` knows which object answers at which URI;
-`xmlrpc_client` gives a node the `xmlrpc.client` that asks there. The graph itself belongs to `rospy_shim.graph`. The
+A module belongs here if it answers XML-RPC calls or carries them: `Switchboard` finds the object that answers at a URI;
+`xmlrpc_client` gives a node an `xmlrpc.client` that asks there. The graph itself belongs to `rospy_shim.graph`. The
 central file is `rospy_shim/master/switchboard.py`.
 """
 

@@ -1,7 +1,7 @@
 """The answers of a compiled node to calls at its URI (wiki.ros.org/ROS/Slave_API).
 
-The node itself hears the Software Bus only. What is asked of it is known to the graph, which answers in its place. It
-is ended by commands of ES: `shutdown` is none of its methods.
+The node itself receives the Software Bus only, so the graph answers in its place. Commands of ES end it, so it has no
+method `shutdown`.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 
 class CompiledApi(NodeApi):
-    """What others ask a compiled node. Its process number is one that no other node has; all of them are one process.
+    """The slave API of a compiled node. Its process number is unique, although all compiled nodes are one process.
 
     Args:
         node: the node.
         graph: the mission's ROS graph.
-        master_uri: the master's.
+        master_uri: URI of the master.
     """
 
     def __init__(self, node: CompiledNode, graph: Graph, master_uri: str) -> None:
@@ -36,17 +36,17 @@ class CompiledApi(NodeApi):
 
     @answers("")
     def getMasterUri(self, caller: str) -> Answer:
-        """The master's URI."""
+        """Return the master's URI."""
         return 1, self._master_uri, self._master_uri
 
     @answers([])
     def getSubscriptions(self, caller: str) -> Answer:
-        """[topic, type] of what the node subscribes to."""
+        """Return [topic, type] of the subscribed topics."""
         return 1, "subscriptions", [list(each) for each in self._node.subscribed.items()]
 
     @answers([])
     def getPublications(self, caller: str) -> Answer:
-        """[topic, type] of what the node publishes."""
+        """Return [topic, type] of the published topics."""
         return 1, "publications", [list(each) for each in self._node.published.items()]
 
     def _connections(self) -> Iterator[tuple[str, str, str, str, bool, str]]:
@@ -65,7 +65,7 @@ class CompiledApi(NodeApi):
 
     @answers({}, calls.name_of_thing("service"))
     def getServiceHeader(self, caller: str, service: str) -> Answer:
-        """The header that a probe of the service gets: type and md5sum."""
+        """Return the header that a probe of the service gets: type and md5sum."""
         entry = self._graph.services.get(service)
         if entry is None or entry.service.node is not self._node:
             return -1, f"Not a provider of [{service}]", {}

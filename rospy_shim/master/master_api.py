@@ -17,18 +17,18 @@ from rospy_shim.types.names import PRIV_NAME, SEP
 if TYPE_CHECKING:
     from rospy_shim.graph.graph import Graph
 
-MASTER_PID = 100  # of a process that there is not
+MASTER_PID = 100  # of a process that does not exist
 
 
 class MasterApi:
-    """What programs ask the master; each method takes the caller's name first and gives code, text and value.
+    """The master's API; each method takes the caller's name first and returns code, text and value.
 
     Args:
         graph: the mission's ROS graph.
-        uri: where the master answers.
+        uri: URI of the master.
 
     Attributes:
-        registry: who publishes, subscribes and offers what.
+        registry: publishers, subscribers and services.
     """
 
     def __init__(self, graph: Graph, uri: str) -> None:
@@ -38,17 +38,17 @@ class MasterApi:
 
     @answers("")
     def getUri(self, caller: str) -> Answer:
-        """Where the master answers."""
+        """Return the master's URI."""
         return 1, "", self._uri
 
     @answers(-1)
     def getPid(self, caller: str) -> Answer:
-        """A process number."""
+        """Return a process number."""
         return 1, "", MASTER_PID
 
     @answers(0, None)
     def shutdown(self, caller: str, reason: str) -> Answer:
-        """Refused: the graph is there as long as the mission is."""
+        """Refuse: the graph lasts as long as the mission."""
         return 0, "the master ends with the mission", 0
 
     # -- parameters --------------------------------------------------------------------------------------------------
@@ -72,7 +72,7 @@ class MasterApi:
 
     @answers(0, calls.text("key"))
     def getParam(self, caller: str, key: str) -> Answer:
-        """The value of a parameter, or a namespace."""
+        """Return the value of a parameter, or a namespace."""
         key = calls.resolve(key, caller)
         value = self._params.find(key)
         if value is ParameterTree.MISSING:
@@ -81,7 +81,7 @@ class MasterApi:
 
     @answers(0, calls.text("key"))
     def searchParam(self, caller: str, key: str) -> Answer:
-        """The name of the nearest parameter, from the caller's namespace upwards."""
+        """Return the name of the nearest parameter, from the caller's namespace upwards."""
         if key.startswith(PRIV_NAME):
             raise ValueError("invalid key")
         if not caller.startswith(SEP):
@@ -97,18 +97,18 @@ class MasterApi:
 
     @answers(0, calls.text("key"))
     def hasParam(self, caller: str, key: str) -> Answer:
-        """Whether there is a parameter or a namespace."""
+        """Return True if there is such a parameter or namespace."""
         key = calls.resolve(key, caller)
         return 1, key, self._params.find(key) is not ParameterTree.MISSING
 
     @answers([])
     def getParamNames(self, caller: str) -> Answer:
-        """The names of all parameters."""
+        """Return the names of all parameters."""
         return 1, "Parameter names", self._params.names()
 
     @answers(0, calls.address("caller_api"), calls.text("key"))
     def subscribeParam(self, caller: str, uri: str, key: str) -> Answer:
-        """The value of a parameter. A node sees its changes in any case, since the tree is where it looks."""
+        """Return the value of a parameter. A node sees its changes in any case, since it reads the tree itself."""
         key = calls.resolve(key, caller)
         self.registry.register_param_subscriber(key, caller, uri)
         value = self._params.find(key)
@@ -116,32 +116,32 @@ class MasterApi:
 
     @answers(0, calls.address("caller_api"), calls.text("key"))
     def unsubscribeParam(self, caller: str, uri: str, key: str) -> Answer:
-        """Want no changes of a parameter any more."""
+        """Unsubscribe from changes of a parameter."""
         key = calls.resolve(key, caller)
         self.registry.unregister_param_subscriber(key, caller, uri)
         return 1, f"Unsubscribe to parameter [{key}]", 1
 
     def subscribes_to_param(self, uri: str, key: str) -> bool:
-        """Whether a node at a URI has subscribed to a parameter."""
+        """Return True if a node at a URI has subscribed to a parameter."""
         return uri in self.registry.param_subscribers.get(key, {}).values()
 
     # -- the graph ---------------------------------------------------------------------------------------------------
 
     @answers("", calls.name("node"))
     def lookupNode(self, caller: str, name: str) -> Answer:
-        """Where a node answers."""
+        """Return the URI of a node."""
         uri = self.registry.node_uri(name)
         return (-1, f"unknown node [{name}]", "") if uri is None else (1, "node api", uri)
 
     @answers("", calls.name_of_thing("service"))
     def lookupService(self, caller: str, service: str) -> Answer:
-        """Where a service is called."""
+        """Return the URI of a service."""
         uri = self.registry.service_uri(service)
         return (-1, "no provider", "") if uri is None else (1, f"rosrpc URI: [{uri}]", uri)
 
     @answers(0, calls.name_or_nothing("subgraph"))
     def getPublishedTopics(self, caller: str, subgraph: str) -> Answer:
-        """[topic, type] of all topics below a namespace that a node publishes."""
+        """Return [topic, type] of all published topics below a namespace."""
         prefix = subgraph.rstrip(SEP) + SEP if subgraph else ""
         types = self.registry.topic_types()
         return (
@@ -152,12 +152,12 @@ class MasterApi:
 
     @answers([])
     def getTopicTypes(self, caller: str) -> Answer:
-        """[topic, type] of all topics that there ever were."""
+        """Return [topic, type] of all topics so far."""
         return 1, "current system state", [list(each) for each in self.registry.topic_types().items()]
 
     @answers([[], [], []])
     def getSystemState(self, caller: str) -> Answer:
-        """Publishers, subscribers and providers of services: three lists of [name, [node, ...]]."""
+        """Return publishers, subscribers and providers of services: three lists of [name, [node, ...]]."""
         known = self.registry
         entries = (known.publishers(), known.subscribers(), known.providers())
         return 1, "current system state", [[[name, list(who)] for name, who in each.items()] for each in entries]
@@ -166,37 +166,37 @@ class MasterApi:
 
     @answers([], calls.name_of_thing("topic"), calls.type_name("topic_type"), calls.address("caller_api"))
     def registerPublisher(self, caller: str, topic: str, kind: str, uri: str) -> Answer:
-        """Note a publisher; the value is where the subscribers answer."""
+        """Register a publisher. The value is the list of the subscribers' URIs."""
         self.registry.register_publisher(topic, kind, caller, uri)
         return 1, f"Registered [{caller}] as publisher of [{topic}]", _uris(self.registry.subscribers(), topic)
 
     @answers([], calls.name_of_thing("topic"), calls.type_name("topic_type"), calls.address("caller_api"))
     def registerSubscriber(self, caller: str, topic: str, kind: str, uri: str) -> Answer:
-        """Note a subscriber; the value is where the publishers answer."""
+        """Register a subscriber. The value is the list of the publishers' URIs."""
         self.registry.register_subscriber(topic, kind, caller, uri)
         return 1, f"Subscribed to [{topic}]", _uris(self.registry.publishers(), topic)
 
     @answers(0, calls.name_of_thing("service"), calls.address("service_api"), calls.address("caller_api"))
     def registerService(self, caller: str, service: str, service_uri: str, uri: str) -> Answer:
-        """Note the provider of a service."""
+        """Register the provider of a service."""
         self.registry.register_service(service, service_uri, caller, uri)
         return 1, f"Registered [{caller}] as provider of [{service}]", 1
 
     @answers(0, calls.name_of_thing("topic"), calls.address("caller_api"))
     def unregisterPublisher(self, caller: str, topic: str, uri: str) -> Answer:
-        """Forget a publisher; the node's own messages are not heard any more."""
+        """Unregister a publisher; the node's own messages are not delivered any more."""
         known = self._is_known(caller)
         return _unregistered(known, self.registry.unregister_publisher(topic, caller, uri), caller, topic)
 
     @answers(0, calls.name_of_thing("topic"), calls.address("caller_api"))
     def unregisterSubscriber(self, caller: str, topic: str, uri: str) -> Answer:
-        """Forget a subscriber; the node gets no more messages of the topic."""
+        """Unregister a subscriber; the node gets no more messages of the topic."""
         known = self._is_known(caller)
         return _unregistered(known, self.registry.unregister_subscriber(topic, caller, uri), caller, topic)
 
     @answers(0, calls.name_of_thing("service"), calls.address("service_api"))
     def unregisterService(self, caller: str, service: str, service_uri: str) -> Answer:
-        """Forget the provider of a service, which cannot be called any more."""
+        """Unregister the provider of a service, which cannot be called any more."""
         if not self._is_known(caller):
             return 1, f"[{caller}] is not a registered node", 0
         providers = self.registry.providers().get(service, {})

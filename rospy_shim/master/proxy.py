@@ -10,7 +10,7 @@ from rospy_shim.types.exceptions import ROSException
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
 
-# Methods whose first argument is a name that the node's remappings apply to.
+# Methods whose first argument is a name to which the node's remappings apply.
 # fmt: off
 _NAMED = frozenset({
     "deleteParam", "getParam", "getPublishedTopics", "hasParam", "lookupNode", "lookupService", "registerPublisher",
@@ -30,10 +30,10 @@ class MasterProxy:
     _node: ClassVar[Node]
 
     def __init__(self, uri: str) -> None:
-        """Make one.
+        """Make a proxy.
 
         Args:
-            uri: where the master answers.
+            uri: URI of the master.
         """
         self.target: Any = self._node.universe.importer.load("xmlrpc.client").ServerProxy(uri)
 
@@ -47,7 +47,7 @@ class MasterProxy:
         return ask
 
     def __getitem__(self, key: str) -> Any:
-        """The value of a parameter.
+        """Return the value of a parameter.
 
         Raises:
             KeyError: it is not set.
@@ -58,7 +58,7 @@ class MasterProxy:
         return value
 
     def get_param_cached(self, key: str) -> Any:
-        """As an item; the master is as near as a cache would be.
+        """Return the value of a parameter; the master is as fast as a cache would be.
 
         Raises:
             KeyError: it is not set.
@@ -83,7 +83,7 @@ class MasterProxy:
             raise ROSException(f"cannot delete parameter: {text}")
 
     def __contains__(self, key: str) -> bool:
-        """Whether a parameter is set.
+        """Return True if a parameter is set.
 
         Raises:
             ROSException: the master failed.
@@ -94,7 +94,7 @@ class MasterProxy:
         return bool(found)
 
     def __iter__(self) -> Iterator[str]:
-        """The names of all parameters.
+        """Iterate over the names of all parameters.
 
         Raises:
             ROSException: the master failed.
@@ -105,7 +105,7 @@ class MasterProxy:
         return iter(names)
 
     def search_param(self, key: str) -> str | None:
-        """The full name of the nearest parameter of that name, or None.
+        """Return the full name of the nearest parameter of that name, or None.
 
         Raises:
             ROSException: the master failed.
@@ -118,19 +118,19 @@ class MasterProxy:
 
 
 def make_master_proxy(node: Node) -> type[MasterProxy]:
-    """The class `rospy.msproxy.MasterProxy` of a node."""
+    """Make the class `rospy.msproxy.MasterProxy` of a node."""
     return type("MasterProxy", (MasterProxy,), {"__module__": MasterProxy.__module__, "_node": node})
 
 
 def make_get_master(node: Node, proxy: type[MasterProxy]) -> Callable[..., MasterProxy]:
-    """The function `rospy.get_master` of a node; all calls give the same proxy, of the node's class `proxy`."""
+    """Make the function `rospy.get_master` of a node; all calls return the same proxy, of the node's class `proxy`."""
     made: list[MasterProxy] = []
 
     def get_master(env: Mapping[str, str] | None = None) -> MasterProxy:
-        """The master that the environment names.
+        """Return the master that the environment names.
 
         Args:
-            env: where ROS_MASTER_URI is looked up; the node's environment by default.
+            env: environment with ROS_MASTER_URI; the node's environment by default.
         """
         if not made:
             uri = (node.universe.environ if env is None else env).get("ROS_MASTER_URI", "http://localhost:11311")

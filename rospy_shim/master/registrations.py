@@ -1,8 +1,8 @@
-"""The registrations of the master: the mission's nodes as they are, and entries that programs made themselves.
+"""The registrations of the master: the mission's present nodes, and entries that programs made themselves.
 
-A program may tell the master of publishers, subscribers and services of any URI (registerPublisher and its kin). The
-master keeps such an entry, as ROS's does. It brings messages only where the mission is joined to ROS on the computer
-that it runs on, and a node answers at that URI.
+A program may register publishers, subscribers and services of any URI (registerPublisher and related calls). The master
+keeps such an entry, as ROS's does. It brings messages only if the mission is joined to ROS on its computer, and a node
+answers at that URI.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     from rospy_shim.graph.compiled import CompiledNode
     from rospy_shim.graph.graph import Graph
 
-MOST_TYPES = 20_000  # of topics of others, also of those that are gone
+MOST_TYPES = 20_000  # of topics of others, also of lost ones
 
 Entries = dict[str, dict[str, str]]
-"""By topic or service, or by parameter: names of nodes and their URIs."""
+"""Names of nodes and their URIs, by topic, service or parameter."""
 
 
 def uri_of(node: Node | CompiledNode) -> str:
-    """The URI at which a node answers."""
+    """Return the URI at which a node answers."""
     return node.client.get_node_uri() or ""
 
 
 class Registrations:
-    """What the master of a mission knows.
+    """The registrations of a mission's master.
 
     Args:
         graph: the mission's ROS graph.
@@ -45,10 +45,10 @@ class Registrations:
         self._uris: dict[str, str] = {}  # of nodes that were named by hand
         self.param_subscribers: Entries = {}
 
-    # -- questions ---------------------------------------------------------------------------------------------------
+    # -- queries -------------------------------------------------------------------------------------------------------
 
     def publishers(self) -> Entries:
-        """Topics that nodes publish, with the nodes."""
+        """Return topics with publishers, and their nodes."""
         found = self._of_nodes(
             (name, node) for node in self._nodes() for name, link in node.links.items() if link.topic
         )
@@ -56,35 +56,35 @@ class Registrations:
         return _merged(_merged(found, self._of_nodes(compiled)), self._publishers)
 
     def subscribers(self) -> Entries:
-        """Topics that nodes subscribe to, with the nodes."""
+        """Return topics with subscribers, and their nodes."""
         pairs = ((name, node) for node in self._nodes() for name, each in node.subscriptions.items() if each.topic)
         compiled = ((name, node) for node in self._graph.compiled.values() for name in node.subscribed)
         return _merged(_merged(self._of_nodes(pairs), self._of_nodes(compiled)), self._subscribers)
 
     def providers(self) -> Entries:
-        """Services that nodes offer, with the nodes."""
+        """Return offered services, and their nodes."""
         pairs = ((name, entry.service.node) for name, entry in self._graph.services.items())
         return {**self._providers, **self._of_nodes(pairs)}
 
     def topic_types(self) -> dict[str, str]:
-        """Types of all topics that ever had one."""
+        """Return the types of all topics that ever had one."""
         found = {topic.name: topic.type for topic in self._graph.topics.values() if topic.type}
         for name in self.publishers():
             found.setdefault(name, self._types.get(name, ANYTYPE))
         return {**self._types, **found}
 
     def node_uri(self, name: str) -> str | None:
-        """Where a node answers; None for one that is unknown."""
+        """Return the URI of a node; None if it is unknown."""
         node = self._graph.nodes.get(name) or self._graph.compiled.get(name)
         return self._uris.get(name) if node is None else uri_of(node)
 
     def service_uri(self, name: str) -> str | None:
-        """Where a service is called; None for one that is unknown."""
+        """Return the URI of a service; None if it is unknown."""
         entry = self._graph.services.get(name)
         return self._service_uris.get(name) if entry is None else entry.service.uri
 
     def service_uri_by_hand(self, name: str) -> str | None:
-        """Where a service is called whose provider has registered it; None for one that is unknown."""
+        """Return the URI of a service that its provider has registered; None if it is unknown."""
         return self._service_uris.get(name)
 
     def _nodes(self) -> Iterator[Node]:
@@ -99,13 +99,13 @@ class Registrations:
     # -- registrations by hand ---------------------------------------------------------------------------------------
 
     def register_publisher(self, topic: str, kind: str, caller: str, uri: str) -> None:
-        """A node publishes a topic."""
+        """Register a publisher of a topic."""
         self._enter(self._publishers, topic, caller, uri)
         if kind != ANYTYPE or topic not in self._types:
             self._note_type(topic, kind)
 
     def register_subscriber(self, topic: str, kind: str, caller: str, uri: str) -> None:
-        """A node subscribes to a topic."""
+        """Register a subscriber of a topic."""
         self._enter(self._subscribers, topic, caller, uri)
         if kind != ANYTYPE and topic not in self._types:
             self._note_type(topic, kind)
@@ -116,17 +116,17 @@ class Registrations:
             del self._types[next(iter(self._types))]
 
     def register_service(self, service: str, service_uri: str, caller: str, uri: str) -> None:
-        """A node offers a service; it is the only one from now on."""
+        """Register a service; the node is its only provider from now on."""
         self._providers.pop(service, None)
         self._enter(self._providers, service, caller, uri)
         self._service_uris[service] = service_uri
 
     def register_param_subscriber(self, key: str, caller: str, uri: str) -> None:
-        """A node wants to be told of changes of a parameter."""
+        """Register a node for changes of a parameter."""
         self._enter(self.param_subscribers, key, caller, uri)
 
     def _enter(self, entries: Entries, name: str, caller: str, uri: str) -> None:
-        """Note it; a living node of that name with another URI is replaced, and shut down as ROS does it."""
+        """Add an entry; a living node of that name with another URI is replaced, and shut down as in ROS."""
         entries.setdefault(name, {})[caller] = uri
         node = self._graph.nodes.get(caller)
         if node is None:
@@ -138,7 +138,7 @@ class Registrations:
     # -- the end of registrations ------------------------------------------------------------------------------------
 
     def unregister_publisher(self, topic: str, caller: str, uri: str) -> bool:
-        """A node publishes a topic no longer; whether it did."""
+        """Remove a publisher. Returns False if it was not registered."""
         node = self._living(caller, uri)
         link = node.links.get(topic) if node is not None else None
         if link is not None:
@@ -146,7 +146,7 @@ class Registrations:
         return self._leave(self._publishers, topic, caller, uri) or link is not None
 
     def unregister_subscriber(self, topic: str, caller: str, uri: str) -> bool:
-        """A node subscribes to a topic no longer; whether it did."""
+        """Remove a subscriber. Returns False if it was not registered."""
         node = self._living(caller, uri)
         subscription = node.subscriptions.get(topic) if node is not None else None
         if subscription is not None:
@@ -154,7 +154,7 @@ class Registrations:
         return self._leave(self._subscribers, topic, caller, uri) or subscription is not None
 
     def unregister_service(self, service: str, caller: str) -> None:
-        """A node offers a service no longer."""
+        """Remove a service."""
         entry = self._graph.services.get(service)
         if entry is not None and entry.service.node.names.name == caller:
             entry.service.shutdown("unregistered at the master")
@@ -162,11 +162,11 @@ class Registrations:
         self._service_uris.pop(service, None)
 
     def unregister_param_subscriber(self, key: str, caller: str, uri: str) -> bool:
-        """A node wants to be told of a parameter no longer; whether it did."""
+        """Remove a node from the subscribers of a parameter. Returns False if it was not registered."""
         return self._leave(self.param_subscribers, key, caller, uri)
 
     def _living(self, caller: str, uri: str) -> Node | None:
-        """A living node, if the URI is the node's."""
+        """Return a living node if the URI is the node's, otherwise None."""
         node = self._graph.nodes.get(caller)
         if node is None or uri_of(node).rstrip("/") != uri.rstrip("/"):
             return None

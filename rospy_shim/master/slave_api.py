@@ -22,7 +22,7 @@ TCPROS = "TCPROS"  # with nodes outside of the mission
 
 
 def transport_of(side: TopicSide) -> str:
-    """By what messages go to, or come from, the other side of a connection."""
+    """Return the transport of the messages to or from the other side of a connection."""
     return TCPROS if side.is_outside else TRANSPORT
 
 
@@ -46,7 +46,7 @@ def _uris(value: Any, caller: str) -> Any:
 
 
 class NodeApi(ABC):
-    """What others ask any node; each method takes the caller's name first and gives code, text and value.
+    """The slave API of any node; each method takes the caller's name first and returns code, text and value.
 
     Args:
         asked: the node.
@@ -59,31 +59,31 @@ class NodeApi(ABC):
 
     @answers("")
     def getUri(self, caller: str) -> Answer:
-        """Where the node answers."""
+        """Return the URI of the node."""
         return 1, "", uri_of(self._asked)
 
     @answers("")
     def getName(self, caller: str) -> Answer:
-        """The node's name."""
+        """Return the node's name."""
         return 1, "", self._asked.names.name
 
     @answers(-1)
     def getPid(self, caller: str) -> Answer:
-        """The node's process number; of one in Python as its os.getpid() gives it."""
+        """Return the node's process number; for a node in Python, as its os.getpid() returns it."""
         return 1, "", self._pid
 
     @answers([])
     def getBusInfo(self, caller: str) -> Answer:
-        """[number, other side, direction, transport, topic, connected, text] for each connection."""
+        """Return [number, other side, direction, transport, topic, connected, text] for each connection."""
         return 1, "bus info", [[number, *each] for number, each in enumerate(self._connections(), 1)]
 
     @abstractmethod
     def _connections(self) -> Iterable[tuple[str, str, str, str, bool, str]]:
-        """What `getBusInfo` tells of each, but its number."""
+        """Return the data of `getBusInfo` for each connection, without its number."""
 
 
 class SlaveApi(NodeApi):
-    """What others ask a node in Python.
+    """The slave API of a node in Python.
 
     Args:
         node: the node.
@@ -97,7 +97,7 @@ class SlaveApi(NodeApi):
 
     @answers("")
     def getMasterUri(self, caller: str) -> Answer:
-        """The master's URI as the node knows it."""
+        """Return the master's URI as the node knows it."""
         uri = self._node.universe.environ.get("ROS_MASTER_URI", "")
         return (1, uri, uri) if uri else (0, "master URI not set", "")
 
@@ -115,12 +115,12 @@ class SlaveApi(NodeApi):
 
     @answers([])
     def getSubscriptions(self, caller: str) -> Answer:
-        """[topic, type] of what the node subscribes to."""
+        """Return [topic, type] of the subscribed topics."""
         return 1, "subscriptions", _types(self._node.subscriptions.items())
 
     @answers([])
     def getPublications(self, caller: str) -> Answer:
-        """[topic, type] of what the node publishes."""
+        """Return [topic, type] of the published topics."""
         return 1, "publications", _types(self._node.links.items())
 
     def _connections(self) -> Iterable[tuple[str, str, str, str, bool, str]]:
@@ -137,7 +137,9 @@ class SlaveApi(NodeApi):
 
     @answers([])
     def getBusStats(self, caller: str) -> Answer:
-        """Bytes and messages of publishers and subscribers, for each of their connections; services have none."""
+        """Return bytes and messages of publishers and subscribers, for each of their connections; services have
+        none.
+        """
         numbered = [[number, *each] for number, each in enumerate(self._connections(), 1)]
         sent = []
         for name, link in self._node.links.items():
@@ -151,19 +153,19 @@ class SlaveApi(NodeApi):
 
     @answers([], calls.name_of_thing("topic"), calls.something("protocols"))
     def requestTopic(self, caller: str, topic: str, protocols: Any) -> Answer:
-        """Refused: messages pass over the Software Bus, and there is no other protocol to choose."""
+        """Refuse: messages pass over the Software Bus, and there is no other protocol to choose."""
         if topic not in self._node.links:
             return -1, f"Not a publisher of [{topic}]", []
         return 0, "no supported protocol implementations", []
 
     @answers(-1, calls.name_of_thing("topic"), _uris)
     def publisherUpdate(self, caller: str, topic: str, publishers: list[str]) -> Answer:
-        """Taken note of: the Software Bus knows who publishes."""
+        """Do nothing: the Software Bus knows the publishers."""
         return 1, "", 0
 
     @answers(-1, _global_name, None)
     def paramUpdate(self, caller: str, key: str, value: Any) -> Answer:
-        """Taken note of by a node that has subscribed to the parameter: it reads the tree itself."""
+        """Confirm if the node has subscribed to the parameter; it reads the tree itself."""
         if not self._master.subscribes_to_param(uri_of(self._node), key):
             return -1, "not subscribed", 0
         return 1, "", 0
@@ -172,7 +174,9 @@ class SlaveApi(NodeApi):
 
     @answers({}, calls.name_of_thing("service"))
     def getServiceHeader(self, caller: str, service: str) -> Answer:
-        """The header that a probe of the service gets: type and md5sum. ROS asks at the service's own TCP port."""
+        """Return the header that a probe of the service gets: type and md5sum. ROS asks at the service's own TCP
+        port.
+        """
         for each in self._node.services:
             if each.resolved_name == service:
                 return 1, "service header", service_header(self._node.names.name, service, each.service_class)
@@ -180,10 +184,10 @@ class SlaveApi(NodeApi):
 
 
 def service_header(node: str, service: str, kind: Any) -> dict[str, str]:
-    """What a service says of itself.
+    """Return the connection header of a service.
 
     Args:
-        node: that offers it.
+        node: the node that offers it.
         service: its name.
         kind: its type, as a class or as a compiled node declares it.
     """

@@ -1,8 +1,8 @@
-"""Which object answers at which URI, the master or a node of the mission, and the `xmlrpc.client` that nodes use.
+"""The lookup of the object that answers at a URI, the master or a node of the mission, and the nodes' `xmlrpc.client`.
 
-That module is Python's own, whose requests to the master and to nodes go to the switchboard. Requests and answers are
-marshalled by the module itself, so that what can be sent, what comes out at the other side and which errors there are
-is XML-RPC's. Requests to others go over HTTP, if the mission has a network.
+That module is Python's own, whose requests to the master and to nodes go to the switchboard. The module itself marshals
+requests and answers, so that permitted values, received values and errors are exactly XML-RPC's. Requests to other
+addresses go over HTTP, if the mission has a network.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ MASTER_PORT = 11311
 MASTER_URI = f"http://cfepy:{MASTER_PORT}/"
 HERE = frozenset({"cfepy", "localhost", "127.0.0.1", "127.0.1.1", "[::1]"})
 NAME = "xmlrpc.client"
-ROUND_TRIP_NS = 500_000  # about what a request takes on one computer; a loop that asks until something is there gets on
+ROUND_TRIP_NS = 500_000  # typical time of a request on one computer, so that a loop that polls makes progress
 
 
 class Switchboard:
@@ -50,11 +50,11 @@ class Switchboard:
         self.master = MasterApi(graph, MASTER_URI)
 
     def find(self, asker: Node, address: str) -> MasterApi | SlaveApi | CompiledApi | None:
-        """The object that answers, or None.
+        """Return the object that answers, or None.
 
         Args:
-            asker: the node that asks; its ROS_MASTER_URI names the master, whatever host that is.
-            address: host and port, as they stand in a URI.
+            asker: the node that asks; its ROS_MASTER_URI names the master, regardless of the host.
+            address: host and port, as in a URI.
         """
         place = _place(address)
         if place in (_place(f"cfepy:{MASTER_PORT}"), _place(_host(asker.universe.environ.get("ROS_MASTER_URI", "")))):
@@ -68,7 +68,7 @@ class Switchboard:
         return None
 
     def api_of(self, name: str) -> SlaveApi | CompiledApi | None:
-        """The object that answers for a node of the mission, by its name; None when there is no such node."""
+        """Return the object that answers for a node of the mission, by its name; None if there is no such node."""
         node, compiled = self._graph.nodes.get(name), self._graph.compiled.get(name)
         if node is not None:
             return SlaveApi(node, self.master)
@@ -83,13 +83,13 @@ def _host(uri: str) -> str:
 
 
 def _place(address: str) -> tuple[str, str]:
-    """Host and port; all names of this machine are one."""
+    """Return host and port; all names of this machine become one."""
     host, _, port = address.rpartition("@")[2].rpartition(":")
     return ("cfepy" if host in HERE else host), port
 
 
 def xmlrpc_client(node: Node, switchboard: Switchboard) -> Callable[[Universe], ModuleType]:
-    """The factory of a node's `xmlrpc.client`.
+    """Return the factory of a node's `xmlrpc.client`.
 
     Args:
         node: the caller.
@@ -109,7 +109,7 @@ def xmlrpc_client(node: Node, switchboard: Switchboard) -> Callable[[Universe], 
 
 
 def _request(node: Node, switchboard: Switchboard, module: Any) -> Callable[..., Any]:
-    """`Transport.request` on the switchboard."""
+    """Return a `Transport.request` that uses the switchboard."""
     over_http = vars(module)["Transport"].request
 
     def request(self: Any, host: Any, handler: str, request_body: bytes, verbose: bool = False) -> Any:
@@ -131,7 +131,7 @@ def _request(node: Node, switchboard: Switchboard, module: Any) -> Callable[...,
 
 
 def _answer(module: Any, api: object, body: bytes) -> str:
-    """What an XML-RPC server sends back."""
+    """Return the answer of an XML-RPC server."""
     arguments, method = module.loads(body, use_builtin_types=True)
     try:
         if method == "system.multicall":

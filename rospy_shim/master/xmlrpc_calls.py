@@ -1,4 +1,4 @@
-"""Calls of ROS's XML-RPC APIs: checks of the arguments, and the triple of code, text and value that is the answer.
+"""Calls of ROS's XML-RPC APIs: checks of the arguments, and the answer as a triple of code, text and value.
 
 An API is a class whose methods are declared with `answers`.
 """
@@ -13,11 +13,11 @@ from rospy_shim.types.names import ANYTYPE, PRIV_NAME, SEP, canonicalize_name
 Answer = tuple[int, str, Any]
 """Code (1 success, 0 failure, -1 error of the caller), text, value (wiki.ros.org/ROS/Master_API)."""
 Check = Callable[[Any, str], Any]
-"""Takes an argument and the caller's name; gives what the method gets instead, or raises `InvalidArgument`."""
+"""Takes an argument and the caller's name; returns the argument for the method, or raises `InvalidArgument`."""
 
 
 class InvalidArgument(Exception):
-    """An argument that the API does not take; the text is the answer's."""
+    """An argument that the API does not accept; the text is the answer's."""
 
 
 class UnknownMethod(Exception):
@@ -29,7 +29,7 @@ def answers(value_of_errors: Any, *checks: Check | None) -> Callable[[Callable[.
 
     Args:
         value_of_errors: the value in answers that report an error.
-        checks: one for each argument behind the caller's name.
+        checks: one for each argument after the caller's name.
     """
 
     def declare(method: Callable[..., Answer]) -> Callable[..., Answer]:
@@ -40,10 +40,10 @@ def answers(value_of_errors: Any, *checks: Check | None) -> Callable[[Callable[.
 
 
 def call(api: object, name: str, arguments: Sequence[Any]) -> Answer:
-    """Call a method of an API as rosmaster and rospy do; the answer, also if an argument is wrong or the method fails.
+    """Call a method of an API as rosmaster and rospy do. Returns an answer also for a wrong argument or a failure.
 
     Raises:
-        UnknownMethod: there is none of that name.
+        UnknownMethod: there is no such method.
     """
     method = getattr(type(api), name, None)
     if not hasattr(method, "api"):
@@ -69,7 +69,7 @@ def call(api: object, name: str, arguments: Sequence[Any]) -> Answer:
 
 
 def resolve(name: str, caller: str) -> str:
-    """The global name that a name means to a caller (rosgraph.names.resolve_name)."""
+    """Return the global name for a name of a caller (rosgraph.names.resolve_name)."""
     above = caller.rstrip(SEP).rpartition(SEP)[0] + SEP
     if not name:
         return above
@@ -85,7 +85,7 @@ def resolve(name: str, caller: str) -> str:
 
 
 def text(parameter: str) -> Check:
-    """Checks that an argument is a text that is not empty."""
+    """Make a check that an argument is a text that is not empty."""
 
     def check(value: Any, caller: str) -> Any:
         if not value:
@@ -98,7 +98,7 @@ def text(parameter: str) -> Check:
 
 
 def something(parameter: str) -> Check:
-    """Checks that an argument is neither None nor empty."""
+    """Make a check that an argument is neither None nor empty."""
 
     def check(value: Any, caller: str) -> Any:
         if not value:
@@ -109,7 +109,7 @@ def something(parameter: str) -> Check:
 
 
 def address(parameter: str) -> Check:
-    """Checks that an argument is a URI of a node or of a service."""
+    """Make a check that an argument is a URI of a node or of a service."""
 
     def check(value: Any, caller: str) -> Any:
         if not value or not isinstance(value, str):
@@ -122,7 +122,7 @@ def address(parameter: str) -> Check:
 
 
 def name(parameter: str) -> Check:
-    """Checks a graph resource name, and resolves it for the caller."""
+    """Make a check of a graph resource name that also resolves it for the caller."""
 
     def check(value: Any, caller: str) -> Any:
         if not value or not isinstance(value, str):
@@ -135,7 +135,7 @@ def name(parameter: str) -> Check:
 
 
 def name_of_thing(parameter: str) -> Check:
-    """As `name`, for topics and services, which cannot be the root."""
+    """Make a check as `name` does, for topics and services, which cannot be the root."""
     plain = name(parameter)
 
     def check(value: Any, caller: str) -> Any:
@@ -148,7 +148,7 @@ def name_of_thing(parameter: str) -> Check:
 
 
 def name_or_nothing(parameter: str) -> Check:
-    """As `name`, but an empty text stays as it is."""
+    """Make a check as `name` does, which accepts an empty text unchanged."""
 
     def check(value: Any, caller: str) -> Any:
         if not isinstance(value, str):
@@ -159,7 +159,7 @@ def name_or_nothing(parameter: str) -> Check:
 
 
 def type_name(parameter: str) -> Check:
-    """Checks the name of a message type, or `*`."""
+    """Make a check of the name of a message type, or `*`."""
 
     def check(value: Any, caller: str) -> Any:
         if value == ANYTYPE:

@@ -1,8 +1,8 @@
 """ROS: the cFE application that keeps the parameters of all nodes in its tables, as roscore does in its memory.
 
-It starts before the first node. A node that sets a parameter changes the tree and wakes this application, which is more
-urgent and writes the changed rows into its tables in cFE's Table Services; the ground reads the tables, and loads
-others.
+It starts before the first node. A node that sets a parameter changes the tree and wakes this application. The
+application has a higher priority and writes the changed rows into its tables in cFE's Table Services. The ground reads
+the tables, and loads others.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 FILE = "/cf/roscore.so"
 SYMBOL = "ROS_AppMain"
-PRIORITY = 50  # more urgent than nodes are: what one has set is in the tables when its call returns
+PRIORITY = 50  # higher than nodes': a parameter is in the tables when the node's call returns
 STACK_BYTES = 4096
 PIPE_DEPTH = 16
 WAKEUP_MS = 1000
@@ -48,28 +48,28 @@ class ParameterImages:
         cfe: the handle of cFE's services.
 
     Attributes:
-        survived: they were there before the processor was reset.
+        survived: True if they existed before the processor was reset.
     """
 
     def __init__(self, cfe: Cfe) -> None:
         self._cfe = cfe
         self._handles: list[TableHandle] = []
-        self._begun: list[str] = []  # tables whose load was begun to restore what a reset has left, and stays so
+        self._begun: list[str] = []  # tables whose load began to restore the contents after a reset, and is still open
         self._rows = 0
         self.survived = False
 
     def __len__(self) -> int:
-        """How many tables there are."""
+        """Return the number of tables."""
         return len(self._handles)
 
     def register(self, notify_msg_id: int) -> None:
-        """Register as many tables as the platform takes, and find what a reset has left of them.
+        """Register as many tables as the platform permits, and find their contents after a reset.
 
         Args:
-            notify_msg_id: of the command that tells of the ground's wishes.
+            notify_msg_id: MsgId of the command that notifies of the ground's requests.
 
         Raises:
-            CfeError: not one table could be had.
+            CfeError: not even one table could be registered.
         """
         count, self._rows = table.extent(self._cfe.sb.config)
         for number in range(max(1, count)):
@@ -81,13 +81,15 @@ class ParameterImages:
             self._cfe.tbl.notify_by_message(handle, notify_msg_id, 0, number)
         for name in self._begun:
             self._cfe.sb.transmit_msg(ABORT_LOAD.packet(TableName=name))
-            self._cfe.os.task_delay(START_POLL_MS)  # Table Services are less urgent
+            self._cfe.os.task_delay(START_POLL_MS)  # Table Services have a lower priority
         for handle in self._handles:
             if handle.status != CFE_TBL_INFO_RECOVERED_TBL:
                 self._cfe.tbl.load(handle, bytes(self._rows * table.ROW_BYTES))
 
     def _register(self, number: int) -> TableHandle | None:
-        """One more table; None when there is no room for it. The first may be one that a reset does not leave."""
+        """Register one more table. Returns None if there is no room; the first may be one that does not survive a
+        reset.
+        """
         tbl, name = self._cfe.tbl, table.table_name(number)
         was_kept = self._is_kept(f"{table.APP_NAME}.{name}")
         try:
@@ -107,7 +109,7 @@ class ParameterImages:
         return handle
 
     def _is_kept(self, name: str) -> bool:
-        """Whether a reset has left a table of this full name in the CDS, loaded or not."""
+        """Return True if a table of this full name survived a reset in the CDS, loaded or not."""
         if self._cfe.es.reset.variables.reset_type != RST_TYPE_PROCESSOR:
             return False
         try:
@@ -117,7 +119,7 @@ class ParameterImages:
         return True
 
     def read(self) -> list[table.Row]:
-        """The rows of all tables."""
+        """Return the rows of all tables."""
         rows: list[table.Row] = []
         for handle in self._handles:
             image, _ = self._cfe.tbl.get_address(handle)
@@ -126,7 +128,7 @@ class ParameterImages:
         return rows
 
     def write(self, changed: dict[int, None], rows: list[table.Row]) -> None:
-        """Put rows into their tables, and forget that they have changed."""
+        """Write changed rows into their tables, and clear `changed`."""
         by_table: dict[int, list[int]] = {}
         for index in changed:
             by_table.setdefault(index // self._rows, []).append(index)
@@ -141,7 +143,7 @@ class ParameterImages:
             self._cfe.tbl.modified(handle)
 
     def manage(self) -> bool:
-        """Do what the ground asked for; whether there are other parameters now."""
+        """Handle the ground's requests. Returns True if the parameters have changed."""
         answers = [self._cfe.tbl.manage(handle) for handle in self._handles]
         return CFE_TBL_INFO_UPDATED in answers
 
@@ -174,7 +176,7 @@ class ParameterApp:
         self._reset()
 
     def _reset(self) -> None:
-        """What a start of the application begins with."""
+        """Set the initial state of a start of the application."""
         self._images = ParameterImages(self._cfe)
         self._rows = ParameterRows([], {})
         self._is_awake = False
@@ -186,7 +188,7 @@ class ParameterApp:
     # -- for the runtime ---------------------------------------------------------------------------------------------
 
     def ensure(self) -> None:
-        """Start the application unless it runs; where it cannot, parameters are lost with a reset."""
+        """Start the application unless it runs. If it cannot start, a reset loses the parameters."""
         es = self._cfe.es
         if es.app_named(table.APP_NAME) is not None:
             return
@@ -198,14 +200,14 @@ class ParameterApp:
             es.write_to_sys_log(f"ROS: parameters do not outlive a reset, {table.APP_NAME} cannot start: {error.hex}")
 
     def wait(self) -> None:
-        """Let the calling task wait until the parameters are there."""
+        """Let the calling task wait until the parameters are ready."""
         while self._is_starting:
             self._cfe.os.task_delay(START_POLL_MS)
 
     # -- the application ---------------------------------------------------------------------------------------------
 
     def main(self) -> None:
-        """The main function (ROS_AppMain)."""
+        """Run the main function (ROS_AppMain)."""
         self._reset()
         try:
             self._start()
@@ -236,7 +238,7 @@ class ParameterApp:
         cfe.evs.send_info(INIT_INF_EID, text)
 
     def _do(self, packet: bytes | None) -> None:
-        """Handle a message; then look after the tables, whether there was one or not."""
+        """Handle a message, if there is one, and then the tables."""
         self._is_awake = False
         if packet is not None:
             self._handle(packet)
@@ -248,7 +250,9 @@ class ParameterApp:
             self._cfe.evs.send_info(LOADED_INF_EID, text)
 
     def _read(self, is_start: bool) -> None:
-        """Read the tables. At a start that no reset came before the tree's parameters count, else those read."""
+        """Read the tables. At a start without a preceding reset the tree's parameters take precedence, otherwise the
+        tables'.
+        """
         problems: list[str] = []
         content = self._images.read()
         root, good = table.tree_of(content, problems)
@@ -265,14 +269,14 @@ class ParameterApp:
             self._images.write(self._rows.changed, self._rows.rows)
 
     def _wake(self) -> None:
-        """A parameter was set: have it written."""
+        """Wake the application to write changed parameters."""
         if self._is_awake or not self._rows.changed:
             return
         self._is_awake = True
         try:
             self._cfe.sb.transmit_msg(table.WAKEUP.packet())
         except CfeError:
-            self._is_awake = False  # within a second, then
+            self._is_awake = False  # it is written within a second
 
     # -- commands ----------------------------------------------------------------------------------------------------
 

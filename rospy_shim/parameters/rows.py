@@ -1,6 +1,6 @@
-"""The rows of the parameter tables in which each parameter stands; a change writes only the rows that differ.
+"""The rows of the parameter tables that hold each parameter; a change writes only the rows that differ.
 
-The rows here are what the tables shall hold; `rospy_shim.parameters.app` writes those that are `changed` into them.
+The rows here are the intended contents of the tables; `rospy_shim.parameters.app` writes the `changed` ones into them.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ _MOST_SHOWN = 200  # characters of a name in an error
 
 
 class ParametersFull(ROSException):
-    """The parameter tables have no room for what shall be set."""
+    """The parameter tables have no room for a parameter."""
 
 
 class ParameterRows:
     """The rows of all tables together.
 
     Args:
-        rows: what the tables hold; rows that belong to no good parameter are emptied.
+        rows: the contents of the tables; rows that belong to no good parameter are emptied.
         good: the parameters in them, by name.
 
     Attributes:
-        rows: what they shall hold.
-        changed: numbers of those that the tables do not hold yet, in the order of their change.
+        rows: the intended contents.
+        changed: numbers of the rows that the tables do not hold yet, in the order of their change.
     """
 
     def __init__(self, rows: Iterable[Row], good: Mapping[str, Record]) -> None:
@@ -45,21 +45,21 @@ class ParameterRows:
 
     @property
     def parameters(self) -> int:
-        """How many parameters there are; an empty namespace counts as one."""
+        """The number of parameters; an empty namespace counts as one."""
         return len(self._records)
 
     @property
     def free(self) -> int:
-        """How many rows hold nothing."""
+        """The number of free rows."""
         return self._used.count(_FREE)
 
     def replace(self, name: str, value: Any, former: Any) -> None:
-        """A parameter or namespace gets another value.
+        """Replace the value of a parameter or namespace.
 
         Args:
-            name: as it stands in the tables, "" for the root.
-            value: the new one.
-            former: the one before; an empty dictionary when there was none.
+            name: its name in the tables, "" for the root.
+            value: the new value.
+            former: the old value; an empty dictionary if there was none.
 
         Raises:
             ParametersFull: there is no room; nothing has changed.
@@ -73,18 +73,18 @@ class ParameterRows:
         self._change(name, new, [*leaf_names(name, former), *self._above(name)])
 
     def remove(self, name: str, former: Any, empty: str | None) -> None:
-        """A parameter or namespace is gone.
+        """Remove a parameter or namespace.
 
         Args:
-            name: as it stands in the tables.
+            name: its name in the tables.
             former: its value.
-            empty: the namespace above it when nothing is left in that, and it is not the root.
+            empty: the namespace above it if that is empty now and not the root, otherwise None.
         """
         new = {} if empty is None else {empty: text_of({})}
         self._change(name, new, list(leaf_names(name, former)))
 
     def _above(self, name: str) -> list[str]:
-        """Values, or empty namespaces, that a name needs as a namespace."""
+        """Return values, or empty namespaces, that a name needs as a namespace."""
         found = []
         while name:
             name = name.rpartition("/")[0]
@@ -109,7 +109,7 @@ class ParameterRows:
             self._place(each, new[each], rows)
 
     def _in_place(self, record: Record, new: dict[str, str], coming: dict[str, list[Row]]) -> bool:
-        """Write the rows of a parameter over its former ones, where they are as many."""
+        """Write the rows of a parameter over its former ones. Returns False if their number differs."""
         rows = coming.get(record.name)
         if rows is None or len(rows) != record.length:
             return False
@@ -135,7 +135,7 @@ class ParameterRows:
             self._put(index, row)
 
     def _move_together(self) -> int:
-        """Move all parameters to the front, so that the free rows follow each other; the first of these."""
+        """Move all parameters to the front, so that the free rows are adjacent. Returns the first free row."""
         kept = [row for row, used in zip(self.rows, self._used, strict=True) if used]
         moved: dict[int, int] = {}
         for index, used in enumerate(self._used):
@@ -159,5 +159,5 @@ def _shown(name: str) -> str:
 
 
 def name_of(parts: Iterable[str]) -> str:
-    """A name as it stands in the tables, from its parts."""
+    """Return the name in the tables from its parts."""
     return "".join(f"/{written(part)}" for part in parts)

@@ -1,7 +1,7 @@
 """ROS's parameter tables as the ground sees them: rows of a name and a value, and the packets of the application ROS.
 
 The tables are ROS.Params01, ROS.Params02 and so on, as many as the platform has room for, and are read one after the
-other. A row with the name "+" goes on with the value of the row above, "+xyz" with its name too.
+other. A row with the name "+" continues the value of the row above, "+xyz" its name too.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ MOST_ROWS = 127
 ROW = Layout("ROS_Parameter_t", [("Name", f"char[{NAME_BYTES}]"), ("Value", f"char[{VALUE_BYTES}]")])
 CMD_MID, SEND_HK_MID, WAKEUP_MID, HK_TLM_MID = 0x18FD, 0x18FE, 0x18FF, 0x08FE
 MASTER_MID, MASTER_TLM_MID = 0x18FC, 0x08FC
-"""What compiled nodes ask, and the answers: packets as of a service (`rospy_shim.graph.compiled`)."""
+"""Requests of compiled nodes, and the answers, in the form of service packets (`rospy_shim.graph.compiled`)."""
 
 _HK = Layout(
     "ROS_HkTlm_Payload_t",
@@ -57,12 +57,12 @@ FREE: Row = ("", "")
 _LARGEST_BLOCK = 16_384
 _BLOCK_HEADER = 24
 _CDS_HEADER = 4
-_CDS_RECORD = 72  # of the CDS's registry, for each block it may have
-_CRITICAL_RECORD = 256  # of the registry of critical tables, which takes a block twice its size at worst
+_CDS_RECORD = 72  # of the CDS's registry, for each possible block
+_CRITICAL_RECORD = 256  # of the registry of critical tables, which takes a block of twice its size in the worst case
 
 
 def extent(config: PlatformConfig) -> tuple[int, int]:
-    """How many tables there are under a platform's limits, and how many rows each has.
+    """Return the number of tables under a platform's limits, and the number of rows of each.
 
     Each takes a block of the CDS and two of the table memory. A quarter of both, and half of the critical tables, are
     left to others.
@@ -77,7 +77,7 @@ def extent(config: PlatformConfig) -> tuple[int, int]:
 
 
 class Record(NamedTuple):
-    """One parameter in the tables: its name and the text of its value, the row it begins in, and how many it takes."""
+    """One parameter in the tables: its name, the text of its value, its first row, and its number of rows."""
 
     name: str
     text: str
@@ -86,7 +86,7 @@ class Record(NamedTuple):
 
 
 def table_name(number: int) -> str:
-    """A table's own name, by its number from 0."""
+    """Return a table's own name, by its number from 0."""
     return f"Params{number + 1:02}"
 
 
@@ -103,7 +103,7 @@ TABLES = tuple(
 
 
 def rows_for(name: str, text: str) -> list[Row]:
-    """The rows of one parameter, one after the other."""
+    """Return the rows of one parameter."""
     rows = [(name[:NAME_BYTES], text[:VALUE_BYTES])]
     for row in range(1, count_rows(name, text)):
         part = name[NAME_BYTES + (row - 1) * _GROWN : NAME_BYTES + row * _GROWN]
@@ -112,25 +112,25 @@ def rows_for(name: str, text: str) -> list[Row]:
 
 
 def count_rows(name: str, text: str) -> int:
-    """How many rows a parameter takes."""
+    """Return the number of rows of a parameter."""
     return max(1, -(-len(text) // VALUE_BYTES), 1 - (NAME_BYTES - len(name)) // _GROWN)
 
 
 def pack(row: Row) -> bytes:
-    """A row's bytes; those that no parameter has stay as `unpack` found them."""
+    """Return a row's bytes; bytes that are not part of a parameter stay as `unpack` found them."""
     return _ROW.pack(row[0].encode("latin-1"), row[1].encode("latin-1"))
 
 
 def unpack(image: bytes | memoryview) -> list[Row]:
-    """The rows of an image; bytes that are no ASCII show as themselves and make no parameter."""
+    """Return the rows of an image; bytes that are not ASCII are kept and make no parameter."""
     data = bytes(image)
-    if data == bytes(len(data)):  # as most tables are that a mission boots with
+    if data == bytes(len(data)):  # as most tables at the boot of a mission
         return [FREE] * (len(data) // ROW_BYTES)
     return [(_text(name), _text(value)) for name, value in _ROW.iter_unpack(data)]
 
 
 def records(rows: Iterable[Row]) -> Iterator[Record]:
-    """The parameters in rows; those that nothing comes before and that go on are left out."""
+    """Yield the parameters in rows; continuation rows without a beginning are left out."""
     begun: Record | None = None
     for index, (name, text) in enumerate(rows):
         if begun is not None and name.startswith(MORE):
@@ -144,7 +144,7 @@ def records(rows: Iterable[Row]) -> Iterator[Record]:
 
 
 def fault(rows: Sequence[Row]) -> str | None:
-    """What is wrong with the rows of one table, which may begin and end within a parameter; None for nothing."""
+    """Return the error in one table's rows, which may begin and end within a parameter; None if there is no error."""
     seen: dict[str, int] = {}
     found = list(records(rows))
     for record in found:
@@ -162,11 +162,11 @@ def fault(rows: Sequence[Row]) -> str | None:
 
 
 def tree_of(rows: Iterable[Row], problems: list[str]) -> tuple[dict[str, Any], dict[str, Record]]:
-    """The parameters in the rows of all tables.
+    """Make the tree from the rows of all tables.
 
     Args:
-        rows: of the first table, then of the second, and so on.
-        problems: gets a line for each parameter that cannot be read.
+        rows: rows of the first table, then of the second, and so on.
+        problems: receives a line for each parameter that cannot be read.
 
     Returns:
         The tree, and the records that it was made of, by name.

@@ -1,6 +1,6 @@
-"""Parameters in table files: what a dump holds, a parameter changed in a file, and files for the ground to load.
+"""Parameters in table files: reading a dump, changing a parameter in a file, and files for the ground to load.
 
-For tools; nothing of it runs in a mission.
+For tools; it does not run in a mission.
 """
 
 from __future__ import annotations
@@ -28,32 +28,32 @@ class _File(NamedTuple):
 
 
 def read(files: Mapping[str, bytes], problems: list[str]) -> dict[str, Any]:
-    """The parameters in table files, in the order of their tables.
+    """Return the parameters in table files, in the order of their tables.
 
     Args:
         files: contents, by the files' names.
-        problems: gets a line for each parameter that cannot be read.
+        problems: receives a line for each parameter that cannot be read.
 
     Raises:
-        UsageError: a file is no parameter table, or is the same one as another.
+        UsageError: a file is not a parameter table, or is the same one as another.
     """
     return table.tree_of(_rows(_in_order(files)), problems)[0]
 
 
 def change(files: Mapping[str, bytes], parameter: str, value: Any) -> dict[str, bytes]:
-    """Table files in which one parameter, or namespace, has another value.
+    """Change one parameter, or namespace, in table files.
 
     Args:
-        files: contents, by the files' names; all that the parameters in them reach into.
+        files: contents, by the files' names; all files that its parameters extend into.
         parameter: full name.
-        value: as XML-RPC carries it; None takes the parameter away.
+        value: a value that XML-RPC can carry; None removes the parameter.
 
     Returns:
         The files that changed.
 
     Raises:
-        UsageError: a file is no parameter table, they have no room, no such parameter to take away, or a parameter
-            begins or ends in a file that is not given.
+        UsageError: a file is not a parameter table, they have no room, there is no such parameter to remove, or a
+            parameter begins or ends in a missing file.
     """
     found = _in_order(files)
     _check_whole(found)
@@ -80,7 +80,7 @@ def change(files: Mapping[str, bytes], parameter: str, value: Any) -> dict[str, 
 
 
 def _in_order(files: Mapping[str, bytes]) -> dict[str, _File]:
-    """The files by name, in the order of their tables."""
+    """Return the files by name, in the order of their tables."""
     found = {name: _take_apart(name, data) for name, data in files.items()}
     ordered = dict(sorted(found.items(), key=lambda item: item[1].number))
     numbers: dict[int, str] = {}
@@ -105,7 +105,7 @@ def _check_whole(files: Mapping[str, _File]) -> None:
 
 
 def make(tree: Mapping[str, Any], row_count: int) -> dict[str, bytes]:
-    """Table files for a whole tree.
+    """Make table files for a whole tree.
 
     Args:
         tree: the parameters.
@@ -135,7 +135,7 @@ def make(tree: Mapping[str, Any], row_count: int) -> dict[str, bytes]:
 
 
 def is_parameters(data: bytes) -> bool:
-    """Whether a file is one of a parameter table."""
+    """Return True if a file is a parameter table."""
     try:
         _take_apart("", data)
     except UsageError:

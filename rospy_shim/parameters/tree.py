@@ -1,7 +1,7 @@
 """The parameter server: one tree for the mission.
 
-The tree is what is read, as quick as a dictionary. What changes in it also changes in cFE tables of the application ROS
-(`rospy_shim.parameters.app`), which outlive a processor reset.
+Reads use the tree, as fast as a dictionary. Changes are also written to cFE tables of the application ROS
+(`rospy_shim.parameters.app`), which survive a processor reset.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ class ParameterTree:
         for name, value in (initial or {}).items():
             self.set(join(SEP, name), _plain(value))
 
-    # -- what keeps it -----------------------------------------------------------------------------------------------
+    # -- the tables ----------------------------------------------------------------------------------------------------
 
     def keep_in(self, rows: ParameterRows, save: Callable[[], object], former: dict[str, Any]) -> None:
-        """Let rows of tables hold the parameters from now on.
+        """Keep the parameters in rows of tables from now on.
 
         Args:
-            rows: of all tables.
+            rows: rows of all tables.
             save: called when the tables are to be written.
             former: the parameters that they hold now.
 
@@ -52,25 +52,25 @@ class ParameterTree:
         self._rows, self._save = rows, save
 
     def restore(self, root: dict[str, Any], rows: ParameterRows, save: Callable[[], object]) -> None:
-        """Take over the parameters that tables hold, in place of what is here; arguments as `keep_in`."""
+        """Replace the present parameters by the ones in tables; arguments as for `keep_in`."""
         if self._rows is None:
-            self._survived = True  # nothing was set in these tables since the processor started
+            self._survived = True  # these tables have not been changed since the processor started
         self._root, self._rows, self._save = root, rows, save
         self._tell(SEP)
 
     def let_go(self) -> None:
-        """The tables are gone; the parameters stay as long as the processor runs."""
+        """Release the tables; the parameters stay as long as the processor runs."""
         self._rows, self._save = None, _nothing
 
     def give(self, node: str, values: Mapping[str, Any]) -> None:
-        """The private parameters that a mission file has for a node that starts.
+        """Set the private parameters of the mission file for a node that starts.
 
-        They are set once, as roslaunch does it: a node that starts again, also after a processor reset, finds what it
-        has made of them; only what is missing is set then.
+        They are set once, as by roslaunch. A node that starts again, also after a processor reset, finds its own
+        changes of them; only missing ones are set then.
 
         Args:
             node: its full name.
-            values: as XML-RPC carries them.
+            values: values that XML-RPC can carry.
 
         Raises:
             ParametersFull: there is no room.
@@ -85,7 +85,7 @@ class ParameterTree:
         self._save()
 
     def offer(self, node: str, values: Mapping[str, Any]) -> None:
-        """The parameters in the table of a compiled node that starts: set once, where there are none.
+        """Set the parameters in the table of a compiled node that starts: once, where there are none.
 
         Args:
             node: its full name.
@@ -111,7 +111,7 @@ class ParameterTree:
                 self._offer(key, value)
 
     def on_change(self, listener: Callable[[str], object]) -> None:
-        """Tell of what changes from now on.
+        """Notify a listener of changes from now on.
 
         Args:
             listener: takes the full name of the parameter or namespace that was set or deleted.
@@ -122,10 +122,10 @@ class ParameterTree:
         for listener in self._listeners:
             listener(key)
 
-    # -- what is in it -----------------------------------------------------------------------------------------------
+    # -- contents ------------------------------------------------------------------------------------------------------
 
     def find(self, key: str) -> Any:
-        """The value or namespace of a resolved name, or `ParameterTree.MISSING`."""
+        """Return the value or namespace of a resolved name, or `ParameterTree.MISSING`."""
         value: Any = self._root
         for part in _parts(key):
             if type(value) is not dict or part not in value:
@@ -136,7 +136,7 @@ class ParameterTree:
     MISSING = _MISSING
 
     def set(self, key: str, value: Any) -> None:
-        """Give a name a value; a dictionary replaces the whole namespace.
+        """Set the value of a name; a dictionary replaces the whole namespace.
 
         Raises:
             TypeError: the root can only be a dictionary.
@@ -187,7 +187,7 @@ class ParameterTree:
         self._tell(key)
 
     def search(self, namespace: str, key: str) -> str | None:
-        """The name that has the first part of `key` in the namespace or one above it, or None."""
+        """Return the name that has the first part of `key` in the namespace or one above it, or None."""
         first, slash, rest = key.partition(SEP)
         while True:
             candidate = join(namespace, first)
@@ -198,7 +198,7 @@ class ParameterTree:
             namespace = namespace_of(namespace)
 
     def names(self) -> list[str]:
-        """All names that have a value."""
+        """Return all names that have a value."""
         found: list[str] = []
         _collect("", self._root, found)
         return found
@@ -213,7 +213,7 @@ def _parts(key: str) -> list[str]:
 
 
 def _plain(value: Any) -> Any:
-    """Mappings and sequences of a mission file as dictionaries and lists."""
+    """Convert mappings and sequences of a mission file to dictionaries and lists."""
     if isinstance(value, Mapping):
         return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):

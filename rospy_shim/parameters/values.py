@@ -1,10 +1,9 @@
-"""The values of parameters, which are those that XML-RPC carries, and their text in ROS's parameter tables.
+"""The values of parameters, limited to those of XML-RPC, and their text in ROS's parameter tables.
 
 They are plain Python values; bytes stand for XML-RPC's base64, a `DateTime` for its dateTime.iso8601. As text a value
-is JSON: `10`, `2.5`, `true`, `[1, 2]`, `{}` for an empty namespace. A text needs quotes only where it would be read as
-something else: `hello`, but `"10"`. Bytes are `{"!!binary": "aGVsbG8="}`, a date and time is `{"!!timestamp":
-"20261121T18:50:00"}`. A name is the full one, its parts as they are but for characters that no ROS name has, which are
-`%XX` as in a URL.
+is JSON: `10`, `2.5`, `true`, `[1, 2]`, `{}` for an empty namespace. A text needs quotes only if it would be read as
+another value: `hello`, but `"10"`. Bytes are `{"!!binary": "aGVsbG8="}`, a date and time is `{"!!timestamp":
+"20261121T18:50:00"}`. A name is the full one. Characters that no ROS name has are written `%XX` as in a URL.
 """
 
 from __future__ import annotations
@@ -44,15 +43,15 @@ class DateTime:
     value: str
 
     def encode(self, out: Any) -> None:
-        """Write it into a request, as the values that xmlrpc.client knows do; `out` is a file of text."""
+        """Write it into a request, as the value classes of xmlrpc.client do; `out` is a text file."""
         out.write(f"<value><dateTime.iso8601>{self.value}</dateTime.iso8601></value>\n")
 
 
 def marshalled(value: Any) -> Any:
-    """A copy of a value as it looks after a trip over XML-RPC; bytes stay bytes.
+    """Return a copy of a value as it is after a transfer over XML-RPC; bytes stay bytes.
 
     Raises:
-        TypeError: None, a dictionary key that is no string, or an object that XML-RPC cannot carry.
+        TypeError: None, a dictionary key that is not a string, or an object that XML-RPC cannot carry.
         OverflowError: an integer of more than 32 bits.
     """
     kind = type(value)
@@ -88,7 +87,9 @@ def _of_object(value: Any) -> Any:
 
 
 def _wrapped(value: Any) -> bytes | DateTime | None:
-    """What a date and time, or a value of xmlrpc.client, stands for; every node has classes of its own for these."""
+    """Return the plain value of a date and time, or of a value of xmlrpc.client; every node has its own classes for
+    these.
+    """
     match (type(value).__module__, type(value).__name__):
         case ("datetime", "datetime"):
             return DateTime(value.strftime("%Y%m%dT%H:%M:%S"))
@@ -100,15 +101,15 @@ def _wrapped(value: Any) -> bytes | DateTime | None:
 
 
 def through_xml(method: str, caller: str, *arguments: Any) -> tuple[Any, ...]:
-    """Arguments of a call of the master as it gets them: in XML a line ends with a line feed.
+    """Return arguments of a call of the master as it receives them: XML normalizes line ends to a line feed.
 
     Args:
-        method: of the master.
-        caller: name of the node that calls.
+        method: method of the master.
+        caller: name of the calling node.
         arguments: marshalled values.
 
     Raises:
-        ExpatError: a text has a character that XML does not have; the place is that in the request.
+        ExpatError: a text has a character that XML does not have; the position is relative to the request.
     """
     if not any(map(_has_odd_text, arguments)):
         return arguments
@@ -127,10 +128,10 @@ def _has_odd_text(value: Any) -> bool:
 
 
 def leaves_of(name: str, value: Any) -> Iterator[tuple[str, str]]:
-    """(name, text) of every parameter in a value; an empty namespace is one of its own, but for the root.
+    """Yield (name, text) of every parameter in a value; an empty namespace counts as a parameter, except the root.
 
     Args:
-        name: where the value is, "" for the root; written as in a table.
+        name: name of the value, "" for the root; written as in a table.
         value: a parameter's, or a dictionary of them.
     """
     if type(value) is not dict or not value:
@@ -142,7 +143,7 @@ def leaves_of(name: str, value: Any) -> Iterator[tuple[str, str]]:
 
 
 def leaf_names(name: str, value: Any) -> Iterator[str]:
-    """The names that `leaves_of` gives, without the texts."""
+    """Yield the names of `leaves_of`, without the texts."""
     if type(value) is not dict or not value:
         if name:
             yield name
@@ -152,7 +153,7 @@ def leaf_names(name: str, value: Any) -> Iterator[str]:
 
 
 def least_size(value: Any, most: int) -> int:
-    """How many characters the text of a value has at least; counted no further than to one more than `most`."""
+    """Return the minimum number of characters of a value's text; counting stops at one more than `most`."""
     size, waiting = 0, [value]
     while waiting and size <= most:
         each = waiting.pop()
@@ -166,7 +167,7 @@ def least_size(value: Any, most: int) -> int:
 
 
 def depth_of(value: Any) -> int:
-    """How many lists and namespaces stand inside each other in a value; 0 for a plain one."""
+    """Return the nesting depth of lists and namespaces in a value; 0 for a plain one."""
     depth, level = 0, [value]
     while level := [each for each in level if isinstance(each, dict | list)]:
         depth += 1
@@ -177,7 +178,7 @@ def depth_of(value: Any) -> int:
 
 
 def written(part: str) -> str:
-    """One part of a name, as it stands in a table."""
+    """Return one part of a name as it is written in a table."""
     if not part:
         return _NO_NAME
     raw = part.encode("utf-8", "surrogatepass")
@@ -185,10 +186,10 @@ def written(part: str) -> str:
 
 
 def parts_of(name: str) -> list[str]:
-    """The parts of a name that stands in a table.
+    """Return the parts of a name in a table.
 
     Raises:
-        ValueError: it is no full name.
+        ValueError: it is not a full name.
     """
     first, *parts = name.split("/")
     if first or not parts or "" in parts:
@@ -204,17 +205,17 @@ def _read_part(part: str) -> str:
 
 
 def text_of(value: Any) -> str:
-    """The text of a value; ASCII in one line."""
+    """Return the text of a value; ASCII in one line."""
     if type(value) is str and _is_plain(value):
         return value
     return json.dumps(_portable(value))
 
 
 def value_of(text: str) -> Any:
-    """The value that a text stands for.
+    """Parse the text of a value.
 
     Raises:
-        ValueError: it begins as JSON does and is not, or is nothing that ROS can carry.
+        ValueError: it begins as JSON does and is not, or ROS cannot carry the value.
     """
     try:
         found = json.loads(text)
@@ -228,15 +229,15 @@ def value_of(text: str) -> Any:
 
 
 def json_of(value: Any) -> str:
-    """A value as JSON, its texts in quotes, as nodes in C++ get it."""
+    """Return a value as JSON with its texts in quotes, for nodes in C++."""
     return json.dumps(_portable(value))
 
 
 def of_json(text: str) -> Any:
-    """The value that JSON stands for.
+    """Parse the value of a JSON text.
 
     Raises:
-        ValueError: it is no JSON, or nothing that ROS can carry.
+        ValueError: it is not JSON, or ROS cannot carry the value.
     """
     try:
         found = json.loads(text)
@@ -246,7 +247,7 @@ def of_json(text: str) -> Any:
 
 
 def _is_plain(text: str) -> bool:
-    """Whether a text can stand without quotes."""
+    """Return True if a text needs no quotes."""
     if not text or not (text.isascii() and text.isprintable()) or text != text.strip() or text.startswith(_BRACKETS):
         return False
     try:
@@ -257,7 +258,7 @@ def _is_plain(text: str) -> bool:
 
 
 def _portable(value: Any) -> Any:
-    """A value in the terms of JSON."""
+    """Convert a value to JSON's types."""
     if type(value) is bytes:
         return {_BINARY: base64.b64encode(value).decode("ascii")}
     if type(value) is DateTime:

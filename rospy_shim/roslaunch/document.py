@@ -1,7 +1,6 @@
-"""Launch files as XML: tags and their attributes, substitutions made, types checked.
+"""Launch files as XML: tags and their attributes, with substitutions made and types checked.
 
-What is wrong names file, line, tag and attribute. It goes to `LaunchFindings`, where the first mistake is raised or all
-are kept.
+An error names file, line, tag and attribute. It goes to `LaunchFindings`, which raises the first one or keeps all.
 """
 
 from __future__ import annotations
@@ -24,9 +23,10 @@ class Tag:
     """One element.
 
     Args:
-        name: of the tag.
-        attributes: as written.
-        file, line: where it begins.
+        name: name of the tag.
+        attributes: attributes as written.
+        file: file that it is in.
+        line: line where it begins.
     """
 
     def __init__(self, name: str, attributes: dict[str, str], file: Path, line: int) -> None:
@@ -35,34 +35,34 @@ class Tag:
         self.file = file
         self.line = line
         self.children: list[Tag] = []
-        self.text = ""  # its own, without that of tags inside it
+        self.text = ""  # its own, without the text of inner tags
 
     def fail(self, text: str, attribute: str | None = None) -> UsageError:
-        """The error to raise about this tag.
+        """Make the error to raise about this tag.
 
         Args:
-            text: what is wrong and what to do.
-            attribute: which of its attributes is wrong.
+            text: the error and the remedy.
+            attribute: the wrong attribute, if there is one.
         """
         field = f"<{self.name}>" if attribute is None else f"<{self.name} {attribute}>"
         return UsageError(text, file=self.file, line=self.line, field=field)
 
     def remark(self, text: str, *, is_error: bool = False, before_runs: bool = True) -> LaunchRemark:
-        """A remark about this tag; see `LaunchRemark`."""
+        """Make a remark about this tag; see `LaunchRemark`."""
         return LaunchRemark(text, self.file, self.line, is_error, before_runs)
 
     def walk(self) -> Iterator[Tag]:
-        """The tag itself and all tags inside it."""
+        """Yield the tag itself and all tags inside it."""
         yield self
         for child in self.children:
             yield from child.walk()
 
 
 def unused_arguments(launch: Tag) -> list[Tag]:
-    """The <arg> tags of a file, without those inside an <include>, whose argument nothing in the file may use.
+    """Return the <arg> tags of a file, without those inside an <include>, whose argument is not used in the file.
 
-    What is inside tags that `if` and `unless` leave out counts as a use. Nothing is told of a file that passes all its
-    arguments on, or that has substitutions made in another one.
+    The contents of tags that `if` and `unless` leave out count as a use. The result is empty for a file that passes all
+    its arguments on, or that has substitutions made in another one.
     """
     tags = list(launch.walk())
     for tag in tags:
@@ -76,7 +76,7 @@ def unused_arguments(launch: Tag) -> list[Tag]:
 
 
 def read_launch_tag(file: Path) -> Tag:
-    """The <launch> tag of a file.
+    """Read the <launch> tag of a file.
 
     Raises:
         UsageError: it cannot be read, is not XML, or does not have exactly one <launch>.
@@ -122,14 +122,14 @@ def _parse(file: Path) -> Tag:
 
 
 class Attributes:
-    """The attributes of one tag, seen from a scope. What is wrong goes to the findings of the scope.
+    """The attributes of one tag, resolved in a scope. Errors go to the findings of the scope.
 
     Args:
         tag: the tag.
-        scope: where it stands.
+        scope: the scope of the tag.
 
     Attributes:
-        failed: whether something of the tag is wrong, or follows from what was wrong before.
+        failed: True if the tag has an error, or follows from an earlier one.
     """
 
     def __init__(self, tag: Tag, scope: Scope) -> None:
@@ -138,24 +138,24 @@ class Attributes:
         self._scope = scope
 
     def wrong(self, text: str, attribute: str | None = None) -> None:
-        """Something is wrong with the tag; see `Tag.fail`.
+        """Report an error in the tag; see `Tag.fail`.
 
         Raises:
-            UsageError: the mistake, unless mistakes are kept; so do all methods that find one.
+            UsageError: the error, unless errors are kept; all methods that find one raise it.
         """
         self.failed = True
         self._scope.findings.mistakes.add(self.tag.fail(text, attribute))
 
     def remark(self, text: str, *, is_error: bool = False) -> None:
-        """There is something to tell about the tag; see `LaunchRemark`."""
+        """Add a remark about the tag; see `LaunchRemark`."""
         self._scope.findings.remarks.append(self.tag.remark(text, is_error=is_error))
 
     def charge(self, work: int) -> None:
-        """What the tag brings makes the launch larger (`LAUNCH_WORK` of `cfepy.reading.input_limits`)."""
+        """Add the tag's contribution to the size of the launch (`LAUNCH_WORK` of `cfepy.reading.input_limits`)."""
         self._scope.findings.work += work
 
     def tell_unknown(self, known: tuple[str, ...]) -> None:
-        """Tell of the attributes that this kind of tag should not have; they are ignored, as roslaunch does."""
+        """Report unknown attributes of the tag; they are ignored, as by roslaunch."""
         allowed = (*known, "if", "unless")
         for name in self.tag.attributes:
             if name not in allowed:
@@ -163,12 +163,14 @@ class Attributes:
                 self.remark(f"<{self.tag.name}> has no attribute {name!r}; it is ignored{hint}", is_error=True)
 
     def optional(self, name: str) -> str | None:
-        """The value of an attribute, None when it is not there or a substitution cannot be made."""
+        """Return the value of an attribute; None if it is missing or a substitution cannot be made."""
         text = self.tag.attributes.get(name)
         return None if text is None else self.resolved(text, name)
 
     def resolved(self, text: str, name: str | None = None) -> str | None:
-        """A text with its substitutions made; None when one cannot be. `name` is the attribute it comes from."""
+        """Return a text with its substitutions made, or None if one cannot be made. `name` is the attribute that it
+        comes from.
+        """
         try:
             return self._scope.substitutions.resolve(text)
         except UnknownArgument:
@@ -180,7 +182,7 @@ class Attributes:
         return None
 
     def _tell_unset(self, error: UnsetArgument, attribute: str | None) -> None:
-        """An argument without a value is told of once for each time that its file is read."""
+        """Report an argument without a value, once for each time that its file is read."""
         scope, self.failed = self._scope, True
         key = (scope.file, scope.included_at, error.name)
         if key in scope.findings.unset:
@@ -194,20 +196,22 @@ class Attributes:
         self.wrong(f"{error}; {other} Or {hint}" if other else f"{error}; {hint}", attribute)
 
     def required(self, name: str) -> str | None:
-        """The value of an attribute that must be there; None when it is not, or a substitution cannot be made."""
+        """Return the value of a required attribute; None if it is missing, or a substitution cannot be made."""
         if name not in self.tag.attributes:
             self.wrong(f'missing {name!r}; write {name}="..."')
         return self.optional(name)
 
     def flag(self, name: str) -> bool:
-        """An attribute that is true or false; False when it is not there or something else."""
+        """Return an attribute that is true or false; False if it is missing or invalid."""
         value = self.optional(name)
         if value is not None and value.lower() not in ("true", "false"):
             self.wrong(f"must be true or false, not {value!r}", name)
         return value is not None and value.lower() == "true"
 
     def number(self, name: str, least: float) -> float | None:
-        """An attribute that is a number of at least `least`, and not too large; None when it is not there or wrong."""
+        """Return an attribute that is a number of at least `least`, and not too large; None if it is missing or
+        invalid.
+        """
         value = self.optional(name)
         if value is None:
             return None
@@ -221,7 +225,9 @@ class Attributes:
         return None
 
     def counts(self) -> bool:
-        """Whether `if` and `unless` let the tag count: not when both are there, or one is neither true nor false."""
+        """Return True if `if` and `unless` let the tag count; False if both are given, or one is neither true nor
+        false.
+        """
         given = {name: self.optional(name) for name in ("if", "unless") if name in self.tag.attributes}
         if len(given) > 1:
             self.wrong("'if' cannot be combined with 'unless'; leave one of them out")

@@ -1,7 +1,8 @@
 """From a launch file to applications: a cFE name, script, arguments and environment for each node that can run here.
 
-The program of a node is a Python script in its package (roslib.packages.find_node). A few C++ nodes are so common in
-launch files that `rospy_shim/roslaunch/tools` has the same in Python; a package's own script of that name comes first.
+The program of a node is a Python script in its package (roslib.packages.find_node). For a few C++ nodes that are common
+in launch files, `rospy_shim/roslaunch/tools` has versions in Python; a package's own script of that name takes
+precedence.
 """
 
 from __future__ import annotations
@@ -31,15 +32,15 @@ from rospy_shim.types.names import SEP
 _TOOLS = Path(__file__).parent / "tools"
 LONGEST_NAME = 16  # an application's file has ".so" behind it, and names of files have 19 characters in OSAL
 _LONGEST_FILE = 200  # characters of a file's name, which may have 255 bytes
-ROS_ENVIRONMENT = {"ROS_DISTRO": "noetic", "ROS_PYTHON_VERSION": "3", "ROS_VERSION": "1"}  # as ROS's setup.sh has it
-_NOT_OURS = ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "ROS_NAMESPACE")  # of the network that is not there
+ROS_ENVIRONMENT = {"ROS_DISTRO": "noetic", "ROS_PYTHON_VERSION": "3", "ROS_VERSION": "1"}  # as in ROS's setup.sh
+_NOT_OURS = ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "ROS_NAMESPACE")  # of the network that does not exist here
 
 
 def app_name(name: str, taken: Container[str] = ()) -> str:
-    """A name for a node's application that no other has, short enough for OSAL.
+    """Return a unique name for a node's application, short enough for OSAL.
 
     Args:
-        name: of the node.
+        name: name of the node.
         taken: names of the other applications.
     """
     base = re.sub(r"\W", "_", name, flags=re.ASCII).upper()
@@ -51,11 +52,11 @@ def app_name(name: str, taken: Container[str] = ()) -> str:
 
 
 class ScriptError(Exception):
-    """A node that cannot run here; its text says why.
+    """A node cannot run here; its text says why.
 
     Args:
         text: the reason.
-        is_there: the node exists, but is no Python.
+        is_there: True if the node exists, but is not in Python.
     """
 
     def __init__(self, text: str, is_there: bool = False) -> None:
@@ -64,15 +65,15 @@ class ScriptError(Exception):
 
 
 def find_script(packages: Packages, package: str, node_type: str) -> Path:
-    """The Python script of a node.
+    """Find the Python script of a node.
 
     Args:
-        packages: where to look.
+        packages: the packages to search.
         package: the node's package.
         node_type: the file's name.
 
     Raises:
-        ScriptError: there is none.
+        ScriptError: there is no such script.
     """
     found = sorted(_candidates(packages.folders(package), node_type), key=_rank)
     script = next(filter(is_python, found), None) or _tool(package, node_type)
@@ -92,10 +93,10 @@ def find_script(packages: Packages, package: str, node_type: str) -> Path:
 
 
 def compiled_folders(packages: Packages, package: str, node_type: str) -> tuple[Path, ...]:
-    """The folders of a package in which a node is built of C++, by what its CMakeLists.txt says; none for none.
+    """Return the folders of a package whose CMakeLists.txt builds a node from C++; empty if there is none.
 
     Args:
-        packages: where to look.
+        packages: the packages to search.
         package: the node's package.
         node_type: the program's name.
     """
@@ -104,7 +105,7 @@ def compiled_folders(packages: Packages, package: str, node_type: str) -> tuple[
 
 
 def _is_built(folder: Path, package: str, node_type: str) -> bool:
-    """Whether the CMakeLists.txt of a package, or one further down in its folder, has something of that name."""
+    """Return True if the CMakeLists.txt of a package, or one further down in its folder, contains the name."""
     word = re.compile(rf"(?<![\w.-]){re.escape(node_type)}(?![\w.-])")
     for file in folder.rglob("CMakeLists.txt") if not node_type.endswith(".py") else ():
         try:
@@ -117,7 +118,7 @@ def _is_built(folder: Path, package: str, node_type: str) -> bool:
 
 
 def _offers(folder: Path, nodelet: str) -> bool:
-    """Whether a file of plugins that a package exports has a nodelet."""
+    """Return True if a plugin file that a package exports has a nodelet."""
     word = re.compile(rf'\b(?:name|type)\s*=\s*"{re.escape(nodelet)}"')
     try:
         files = _EXPORTED.findall(text_limited(folder / "package.xml", XML_BYTES, "replace"))
@@ -131,18 +132,18 @@ _EXPORTED = re.compile(r'<nodelet\s+plugin\s*=\s*"\$\{prefix\}/([^"]+)"')
 
 
 def _programs(folders: list[Path]) -> list[str]:
-    """Names of the Python scripts in a package's folders that may be nodes."""
+    """Return the names of the Python scripts in a package's folders that may be nodes."""
     files = (Path(place) / name for folder in folders for place, _, names in os.walk(folder) for name in names)
     return sorted({file.name for file in files if file.name != "setup.py" and file.is_file() and is_python(file)})
 
 
 def find_file(packages: Packages, package: str, name: str) -> Path | None:
-    """A file of a package, such as a launch file, by its name alone; None when there is none."""
+    """Find a file of a package, such as a launch file, by its name alone; None if there is none."""
     return min(_candidates(packages.folders(package), name), key=lambda file: len(file.parts), default=None)
 
 
 def is_python(file: Path) -> bool:
-    """Whether a file is a Python script: by its name, or by its first line."""
+    """Return True if a file is a Python script: by its name, or by its first line."""
     if file.suffix == ".py":
         return True
     first = beginning_of(file, 200).partition(b"\n")[0]
@@ -150,13 +151,15 @@ def is_python(file: Path) -> bool:
 
 
 def _tool(package: str, node_type: str) -> Path | None:
-    """Ours; the name has both, for a script that has a library's name would be imported in its place."""
+    """Return cfepy's own version of a node; its file name has the package, too, so that it does not shadow a
+    library.
+    """
     tool = _TOOLS / f"{package}__{node_type}.py"
     return tool if os.path.isfile(tool) else None
 
 
 def _candidates(folders: list[Path], name: str) -> Iterator[Path]:
-    """Files of a name in a package's folders, at any depth, and where an installed package has its programs."""
+    """Yield files of a name in a package's folders, at any depth, and in the program folder of an installed package."""
     for folder in folders:
         installed = folder.parent.parent / "lib" / folder.name / name
         if folder.parent.name == "share" and os.path.isfile(installed):
@@ -168,35 +171,37 @@ def _candidates(folders: list[Path], name: str) -> Iterator[Path]:
 
 
 def _rank(file: Path) -> tuple[bool, int]:
-    """Executable files first, as only they count for ROS; then those nearer to the top."""
+    """Return the sort key of a file: executable ones first, as only they count for ROS; then those nearer to the
+    top.
+    """
     return not os.access(file, os.X_OK), len(file.parts)
 
 
 def _results_file(name: str) -> str:
-    """The name of a file for the results of a test, whose own name may have any characters."""
+    """Return the name of a file for the results of a test, whose own name may have any characters."""
     plain = re.sub(r"[^\w.+-]", "_", name)[:_LONGEST_FILE]
     return f"{plain}.xml" if plain == name else f"{plain}-{zlib.crc32(name.encode('utf-8', 'replace')):08x}.xml"
 
 
 @dataclass(frozen=True, slots=True)
 class PlannedTest:
-    """A test: its names, its node, and the virtual time that it has, in ns."""
+    """A test: its names, its node, and its virtual time limit in ns."""
 
     package: str
     test_name: str
     node: NodeConfig | None
     time_limit_ns: int
     retry: int
-    results: Path  # where the test writes what came of it
+    results: Path  # file for the results of the test
     problem: str = ""  # why it has no node
     compiled: CppNode | None = None  # its node, if it is in C++
 
 
 @dataclass(slots=True)
 class LaunchPlan:
-    """What to run: applications by name, tests, the tree of parameters, the files that were read, and remarks.
+    """A plan: applications by name, tests, the tree of parameters, the files that were read, and remarks.
 
-    `compiled` has the nodes in C++ whose sources are here, where they are asked for; otherwise they are left out.
+    `compiled` has the nodes in C++ whose sources are here, if the caller asks for them; otherwise they are left out.
     """
 
     nodes: dict[str, NodeConfig] = field(default_factory=dict)
@@ -208,7 +213,7 @@ class LaunchPlan:
 
     @property
     def notes(self) -> list[str]:
-        """What to tell the user before a run, a line each."""
+        """Messages for the user before a run, a line each."""
         return [str(remark) for remark in self.remarks if remark.before_runs]
 
 
@@ -223,17 +228,20 @@ def plan_of(
     mistakes: Mistakes | None = None,
     with_compiled: bool = False,
 ) -> LaunchPlan:
-    """The applications that a launch file stands for.
+    """Plan the applications of a launch file.
 
     Args:
         file: the launch file.
         args: values of its arguments.
         environ: the environment: for substitutions, for ROS_PACKAGE_PATH, and for the nodes.
-        taken: names of applications that are there already.
-        cwd: where the launch is started; what cwd="cwd" means.
-        results: folder that tests write their results to.
-        mistakes: takes what is wrong; None raises the first mistake.
-        with_compiled: nodes in C++ whose sources are here are planned, too.
+        taken: names of existing applications.
+        cwd: folder in which the launch is started; the meaning of cwd="cwd".
+        results: folder for the results of tests.
+        mistakes: receives errors; None raises the first error.
+        with_compiled: plan nodes in C++ whose sources are here, too.
+
+    Returns:
+        The plan.
 
     Raises:
         UsageError: the file is wrong, or a required node cannot run here.
@@ -246,16 +254,16 @@ def plan_of(
 
 
 def node_file(package: str, node_type: str, near: Path, environ: Mapping[str, str]) -> Path:
-    """The script of a node, as rosrun finds it.
+    """Find the script of a node, as rosrun does.
 
     Args:
         package: its package.
         node_type: the file's name.
-        near: a file; packages near it count first.
-        environ: for ROS_PACKAGE_PATH.
+        near: a file; packages near it take precedence.
+        environ: environment with ROS_PACKAGE_PATH.
 
     Raises:
-        UsageError: there is none.
+        UsageError: there is no such script.
     """
     try:
         return find_script(packages_near(near, environ, package), package, node_type)
@@ -266,14 +274,14 @@ def node_file(package: str, node_type: str, near: Path, environ: Mapping[str, st
 def node_in_cpp(
     package: str, node_type: str, near: Path, environ: Mapping[str, str], words: Sequence[str]
 ) -> CppNode | None:
-    """A node in C++, as rosrun starts it; None when it is a script, or none is built of sources that are here.
+    """Find a node in C++, as rosrun does; None if it is a script or its sources are missing.
 
     Args:
         package: its package.
         node_type: the program's name.
-        near: a file; packages near it count first.
-        environ: of the node.
-        words: its arguments; remaps and __name are among them.
+        near: a file; packages near it take precedence.
+        environ: environment of the node.
+        words: its arguments, including remaps and __name.
     """
     packages = packages_near(near, environ, package)
     try:
@@ -302,21 +310,21 @@ def node_in_cpp(
 
 
 def _is_private(word: str) -> bool:
-    """Whether a word of a command line sets a private parameter, which a node in C++ does itself (ros::init)."""
+    """Return True if a word of a command line sets a private parameter, which a node in C++ does itself (ros::init)."""
     return word.startswith("_") and not word.startswith("__")
 
 
 def launch_file(package: str, name: str, near: Path, environ: Mapping[str, str]) -> Path:
-    """A launch file by its package, as roslaunch finds it.
+    """Find a launch file by its package, as roslaunch does.
 
     Args:
         package: its package.
-        name: of the file.
-        near: a file; packages near it count first.
-        environ: for ROS_PACKAGE_PATH.
+        name: name of the file.
+        near: a file; packages near it take precedence.
+        environ: environment with ROS_PACKAGE_PATH.
 
     Raises:
-        UsageError: there is none.
+        UsageError: there is no such file.
     """
     packages = packages_near(near, environ, package)
     file = find_file(packages, package, name)
@@ -331,17 +339,17 @@ def launch_file(package: str, name: str, near: Path, environ: Mapping[str, str])
 
 
 def _launch_files(folders: list[Path]) -> list[str]:
-    """Names of the launch files in a package's folders."""
+    """Return the names of the launch files in a package's folders."""
     return sorted({file.name for folder in folders for file in folder.rglob("*.launch")})
 
 
 def packages_near(near: Path, environ: Mapping[str, str], package: str | None = None) -> Packages:
-    """Packages as seen from a folder: when the one that is asked for is not near, the catkin workspace counts, too.
+    """Return the packages visible from a folder; if `package` is not near, the catkin workspace counts, too.
 
     Args:
-        near: a file; packages near it count first.
-        environ: for ROS_PACKAGE_PATH.
-        package: what is asked for; None is all.
+        near: a file; packages near it take precedence.
+        environ: environment with ROS_PACKAGE_PATH.
+        package: the package to find; None is all.
     """
     packages = Packages(near, environ)
     if package is not None and packages.folders(package):
@@ -354,7 +362,7 @@ def packages_near(near: Path, environ: Mapping[str, str], package: str | None = 
 
 
 def node_environment(environ: Mapping[str, str], namespace: str = SEP) -> dict[str, str]:
-    """The environment of a node that a user starts: the user's, but for the network of another ROS."""
+    """Return the environment of a node that a user starts: the user's, without the network of another ROS."""
     kept = {name: value for name, value in (ROS_ENVIRONMENT | dict(environ)).items() if name not in _NOT_OURS}
     return {**kept, "ROS_NAMESPACE": namespace.rstrip(SEP)} if namespace != SEP else kept
 
@@ -363,12 +371,12 @@ class Planner:
     """Makes applications of nodes.
 
     Args:
-        packages: where their scripts are.
-        environ: the environment that nodes get.
-        taken: names of applications that are there already.
-        cwd: what cwd="cwd" means.
-        results: folder that tests write their results to.
-        with_compiled: nodes in C++ whose sources are here are planned, too.
+        packages: packages with their scripts.
+        environ: the environment of nodes.
+        taken: names of existing applications.
+        cwd: the meaning of cwd="cwd".
+        results: folder for the results of tests.
+        with_compiled: plan nodes in C++ whose sources are here, too.
     """
 
     def __init__(
@@ -388,11 +396,11 @@ class Planner:
         self._cwd = cwd
 
     def plan(self, launch: Launch, mistakes: Mistakes) -> LaunchPlan:
-        """Everything in a launch file; see `plan_of`.
+        """Plan everything in a launch file; see `plan_of`.
 
         Args:
-            launch: what was read of it.
-            mistakes: takes what is wrong, such as a required node that cannot run here.
+            launch: the contents of the file.
+            mistakes: receives errors, such as a required node that cannot run here.
         """
         remarks = launch.remarks
         plan = LaunchPlan(params=_tree(launch), files=launch.files, remarks=remarks)
@@ -423,7 +431,7 @@ class Planner:
             return None
 
     def _test(self, test: LaunchTest, remarks: list[LaunchRemark]) -> PlannedTest:
-        """A test; it is told where to write, and its end is the end of its run."""
+        """Plan a test; it gets the file for its results, and its end ends its run."""
         node, name, limit = test.node, test.test_name, round(test.time_limit * NS_PER_S)
         results = self._results / _results_file(f"{node.package}-{name}")
         try:
@@ -440,7 +448,7 @@ class Planner:
         return PlannedTest(node.package, name, config, limit, test.retry, results)
 
     def config(self, node: LaunchNode, more_args: tuple[str, ...] = ()) -> NodeConfig:
-        """The application of one node; `more_args` are put behind its own arguments.
+        """Make the application of one node; `more_args` follow its own arguments.
 
         Raises:
             ScriptError: it cannot run here.
@@ -460,7 +468,9 @@ class Planner:
         )
 
     def _nodelet(self, node: LaunchNode, remarks: list[LaunchRemark]) -> tuple[CppNode | None] | None:
-        """The application of a nodelet, none for a manager, which is not needed; None for what is no nodelet."""
+        """Make the application of a nodelet, none for a manager, which is not needed; None if the node is not a
+        nodelet.
+        """
         if (node.package, node.type) != ("nodelet", "nodelet"):
             return None
         match _words(node):
@@ -477,7 +487,7 @@ class Planner:
         return None
 
     def _package_of_nodelet(self, name: str) -> str:
-        """The package that offers a nodelet; by custom, not by rule, its name stands before the slash."""
+        """Return the package that offers a nodelet; by convention, not by rule, its name precedes the slash."""
         package = name.partition(SEP)[0]
         if self._packages.folders(package):
             return package
@@ -485,7 +495,7 @@ class Planner:
         return next((each for each in near if _offers(self._packages.folders(each)[0], name)), package)
 
     def _compiled(self, node: LaunchNode, folders: tuple[Path, ...]) -> CppNode:
-        """The application of a node in C++; remaps among its arguments are remaps."""
+        """Make the application of a node in C++; remaps among its arguments count as remaps."""
         words = _words(node)
         remaps = [tuple(word.split(":=", 1)) for word in words if ":=" in word and word[0] != "_"]
         return CppNode(
@@ -506,7 +516,7 @@ class Planner:
         )
 
     def _arguments(self, node: LaunchNode, more_args: tuple[str, ...]) -> tuple[str, ...]:
-        """The command line in roslaunch's order."""
+        """Return the command line in roslaunch's order."""
         words = _words(node)
         remaps = [f"{source}:={target}" for source, target in node.remaps]
         return (*words, *more_args, *remaps, f"__name:={node.name}")
@@ -517,14 +527,14 @@ class Planner:
         return self._cwd if node.cwd == "cwd" else None
 
     def _app_name(self, node: LaunchNode) -> str:
-        """A name for the application that no other has."""
+        """Return a unique name for the application."""
         name = app_name(node.full_name.strip(SEP), self._taken)
         self._taken.add(name)
         return name
 
 
 def _words(node: LaunchNode) -> list[str]:
-    """A node's own arguments."""
+    """Return a node's own arguments."""
     try:
         return shlex.split(node.args)
     except ValueError as error:
@@ -536,7 +546,7 @@ def _failure(node: LaunchNode, text: str) -> UsageError:
 
 
 def _tree(launch: Launch) -> dict[str, Any]:
-    """Parameters by name as a tree; a later one replaces what is in its way."""
+    """Return parameters by name as a tree; a later one replaces conflicting ones."""
     root: dict[str, Any] = {}
     for name, value in {**ROSCORE_PARAMS, **launch.params}.items():
         if value is None:

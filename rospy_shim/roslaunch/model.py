@@ -13,14 +13,14 @@ DEFAULT_TIME_LIMIT_S = 60.0
 
 
 class LaunchRemark(NamedTuple):
-    """Something about a launch file that does not keep it from running.
+    """A remark about a launch file that does not keep it from running.
 
     Attributes:
-        text: what it is.
-        file: where it is.
-        line: in the file, from 1; 0 is the file as a whole.
-        is_error: something that the file asks for is not there, so it is left out.
-        before_runs: it is told before each run, and not by `cfepy check` alone.
+        text: the remark.
+        file: the file.
+        line: line in the file, from 1; 0 is the file as a whole.
+        is_error: True if a part of the file is left out, because it needs something that is missing.
+        before_runs: True to show it before each run, and not only in `cfepy check`.
     """
 
     text: str
@@ -35,13 +35,13 @@ class LaunchRemark(NamedTuple):
 
 @dataclass(slots=True)
 class LaunchFindings:
-    """What is found while launch files are read.
+    """Findings of reading launch files.
 
     Attributes:
-        mistakes: takes what is wrong: it raises the first mistake, or keeps all.
-        remarks: all else that a user should know.
-        unset: arguments without a value that have been told of: file, the <include> that reads it, name.
-        work: how large the launch is so far (`LAUNCH_WORK` of `cfepy.reading.input_limits`).
+        mistakes: receives errors: it raises the first one, or keeps all.
+        remarks: further messages for the user.
+        unset: arguments without a value that were reported: file, the <include> that reads it, name.
+        work: size of the launch so far (`LAUNCH_WORK` of `cfepy.reading.input_limits`).
     """
 
     mistakes: Mistakes = field(default_factory=Mistakes)
@@ -55,17 +55,20 @@ class LaunchNode:
     """One <node> (roslaunch.core.Node), with everything resolved.
 
     Attributes:
-        package, type: as the file has them.
-        name: without a namespace.
-        namespace: with a slash at both ends.
-        args: of its command line, as the file has them: one text.
+        package: package, as in the file.
+        type: type, as in the file.
+        name: name without a namespace.
+        namespace: namespace with a slash at both ends.
+        args: arguments of its command line, as in the file: one text.
         remaps: (from, to) in roslaunch's order.
         env: environment variables, in the file's order.
         output: "screen", "log" or None.
         cwd: "node", "cwd", "ROS_HOME" or None.
-        respawn, respawn_delay: whether it is started again when it ended, and after how many s.
-        required: whether the end of the node is the end of the launch.
-        file, line: where it stands.
+        respawn: True if it is started again after its end.
+        respawn_delay: delay of that in s.
+        required: True if the end of the node ends the launch.
+        file: file that it is in.
+        line: its line in the file.
     """
 
     package: str
@@ -93,7 +96,7 @@ class LaunchNode:
 class LaunchTest:
     """One <test>: a node that checks something (roslaunch.core.Test).
 
-    `time_limit` is in s; `retry` says how often it is run again when it fails.
+    `time_limit` is in s; `retry` is the number of repetitions after a failure.
     """
 
     test_name: str
@@ -108,10 +111,11 @@ class Launch:
 
     Attributes:
         files: every file that was read, the launch file first.
-        nodes, tests: in the order of the file.
-        params: by resolved name, in the order in which they were first set.
-        places: file and line that each parameter has its value from.
-        remarks: what a user should know.
+        nodes: nodes in the order of the file.
+        tests: tests in the order of the file.
+        params: parameters by resolved name, in the order in which they were first set.
+        places: file and line of each parameter's value.
+        remarks: messages for the user.
     """
 
     files: list[Path] = field(default_factory=list)

@@ -1,7 +1,7 @@
 """<param> and <rosparam>: the parameters that are set before the nodes start.
 
-The output of a program can be a parameter (`command`). No process is started, since what a program prints could be
-anything each time; two programs are imitated, `cat` and `xacro`.
+The output of a program can be a parameter (`command`). cfepy starts no process, since a program may print different
+text each time; it imitates two programs, `cat` and `xacro`.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from rospy_shim.roslaunch.values import converted, from_yaml
 from rospy_shim.types.names import PRIV_NAME, SEP, canonicalize_name
 
 STOOD_IN = {"xacro": Path("xacro")}
-"""What $(find) gives for packages whose programs are stood in for, when they are not there."""
+"""The result of $(find) for packages of the imitated programs, if they are not installed."""
 PARAM = ("name", "value", "type", "textfile", "binfile", "command")
 ROSPARAM = ("command", "ns", "file", "param", "subst_value")
-_BYTES_KEPT, _YAML_BYTES = 200, 10  # that count for the size of a launch as one
+_BYTES_KEPT, _YAML_BYTES = 200, 10  # bytes that count as one for the size of a launch
 _SOURCES = ("value", "textfile", "binfile", "command")
 
 
 def output_of(command: str) -> str:
-    """What a command prints.
+    """Return the output of a command.
 
     Args:
         command: the command line; relative paths in it start at the current folder.
@@ -64,7 +64,7 @@ def _read_text(file: str) -> str:
 
 
 def _xacro(arguments: list[str]) -> str:
-    """The library xacro, when it is installed where cfepy runs."""
+    """Run the library xacro, if it is installed where cfepy runs."""
     try:
         xacro: Any = importlib.import_module("xacro")
     except ImportError:
@@ -81,7 +81,7 @@ def _xacro(arguments: list[str]) -> str:
         return str(xacro.process_file(files[0], mappings=mappings).toprettyxml(indent="  "))
     except OSError:
         raise
-    except Exception as error:  # whatever the macros of the file do wrong
+    except Exception as error:  # the macros of the file may raise any error
         raise ValueError(f"xacro {files[0]}: {error}") from None
 
 
@@ -89,13 +89,13 @@ _PROGRAMS = {"cat": _cat, "xacro": _xacro}
 
 
 def add_param(launch: Launch, name: str, value: Any, attributes: Attributes) -> None:
-    """Give a parameter its value; the last one counts. One that XML-RPC, and so ROS, cannot carry is wrong.
+    """Set the value of a parameter; the last one counts. A value that XML-RPC, and so ROS, cannot carry is an error.
 
     Args:
-        launch: what it is a parameter of.
-        name: resolved.
-        value: no mapping.
-        attributes: of the tag that says so.
+        launch: the launch of the parameter.
+        name: resolved name.
+        value: a value that is not a mapping.
+        attributes: attributes of the tag.
     """
     name, tag = canonicalize_name(name), attributes.tag
     if len(name) > LAUNCH_NAME:
@@ -116,13 +116,13 @@ def add_param(launch: Launch, name: str, value: Any, attributes: Attributes) -> 
 
 
 def read_param(launch: Launch, tag: Tag, scope: Scope, of_node: bool = False) -> None:
-    """A <param> tag.
+    """Read a <param> tag.
 
     Args:
-        launch: what it is read into.
+        launch: receives the parameter.
         tag: the tag.
-        scope: where it stands.
-        of_node: it stands inside a <node>.
+        scope: the scope of the tag.
+        of_node: True inside a <node>.
     """
     attributes = Attributes(tag, scope)
     attributes.tell_unknown(PARAM)
@@ -142,7 +142,7 @@ def read_param(launch: Launch, tag: Tag, scope: Scope, of_node: bool = False) ->
 
 
 def _value(attributes: Attributes, source: str) -> Any:
-    """The value of a <param>; None when it is wrong, which `attributes` knows."""
+    """Return the value of a <param>; None for an error, which `attributes` records."""
     text = attributes.optional(source)
     if text is None:
         return None
@@ -168,7 +168,7 @@ def _value(attributes: Attributes, source: str) -> Any:
 
 
 def read_rosparam(launch: Launch, tag: Tag, scope: Scope) -> None:
-    """A <rosparam> tag."""
+    """Read a <rosparam> tag."""
     attributes = Attributes(tag, scope)
     attributes.tell_unknown(ROSPARAM)
     command = attributes.optional("command") or "load"
@@ -201,7 +201,7 @@ def read_rosparam(launch: Launch, tag: Tag, scope: Scope) -> None:
 
 
 def _text_of(file: str | None, attributes: Attributes) -> str | None:
-    """The YAML of a <rosparam>; None when it cannot be read."""
+    """Return the YAML of a <rosparam>; None if it cannot be read."""
     if file is None:
         return attributes.tag.text
     try:
@@ -215,7 +215,7 @@ def _text_of(file: str | None, attributes: Attributes) -> str | None:
 
 
 def _loaded(text: str, file: str | None, attributes: Attributes) -> Any:
-    """The value of a YAML text; None when it is empty or wrong."""
+    """Return the value of a YAML text; None if it is empty or wrong."""
     try:
         return from_yaml(text)
     except ValueError as error:
@@ -224,7 +224,7 @@ def _loaded(text: str, file: str | None, attributes: Attributes) -> Any:
 
 
 def _leaves(name: str, value: Any, attributes: Attributes, named: bool) -> Iterator[tuple[str, Any]]:
-    """The parameters in a YAML value; a mapping is a namespace."""
+    """Yield the parameters in a YAML value; a mapping is a namespace."""
     if not isinstance(value, dict):
         if named:
             yield name, value

@@ -1,8 +1,8 @@
 """Reading launch files: the tags, and the order in which everything counts.
 
-Here are <launch>, <group>, <include>, <arg>, <node> and <test>, and what stands inside these two: <remap>, <env>,
-<param>, <rosparam>. Parameters are read by `rospy_shim.roslaunch.param_tags`. Files are read once, by what either
-raises the first mistake or keeps all of them; what a mistake brings about is then no mistake of its own.
+Here are <launch>, <group>, <include>, <arg>, <node> and <test>, and the tags inside these two: <remap>, <env>, <param>,
+<rosparam>. `rospy_shim.roslaunch.param_tags` reads parameters. The first error is raised, or all are kept, with the
+same code. An error that follows from another one is not reported.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ _IGNORED = {
 ARG = ("name", "value", "default", "doc")
 GROUP = ("ns", "clear_params")
 INCLUDE = ("file", "ns", "clear_params", "pass_all_args")
-_TAG, _FILE = 5, 500  # what a tag and a file count besides what holds there: about their shares of the time
+_TAG, _FILE = 5, 500  # size of a tag and of a file without its contents: about their shares of the time
 _TOO_MUCH = (
     "is where the launch becomes too large: the tags that were read until here, each counted with the arguments,"
     f" variables and remappings that hold there, are more than {LAUNCH_WORK:,}; include fewer files, or fewer times"
@@ -59,7 +59,7 @@ _TOO_LONG = f"makes a name of more than {LAUNCH_NAME:,} characters; write a shor
 
 
 def namespace_of(attributes: Attributes, scope: Scope) -> str | None:
-    """The attribute `ns` of a tag; None when it is not there, or wrong: empty, private or too long."""
+    """Return the attribute `ns` of a tag; None if it is missing, or invalid: empty, private or too long."""
     namespace = attributes.optional("ns")
     if namespace is not None and len(scope.namespace) + len(namespace) > LAUNCH_NAME:
         attributes.wrong(_TOO_LONG, "ns")
@@ -71,7 +71,7 @@ def namespace_of(attributes: Attributes, scope: Scope) -> str | None:
 
 
 def read_remap(tag: Tag, scope: Scope) -> None:
-    """A <remap> tag."""
+    """Read a <remap> tag."""
     attributes = Attributes(tag, scope)
     attributes.tell_unknown(REMAP)
     source, target = attributes.required("from"), attributes.required("to")
@@ -84,7 +84,7 @@ def read_remap(tag: Tag, scope: Scope) -> None:
 
 
 def read_env(tag: Tag, scope: Scope) -> None:
-    """An <env> tag."""
+    """Read an <env> tag."""
     attributes = Attributes(tag, scope)
     attributes.tell_unknown(ENV)
     name, value = attributes.required("name"), attributes.required("value")
@@ -95,7 +95,7 @@ def read_env(tag: Tag, scope: Scope) -> None:
 
 
 def read_test(launch: Launch, tag: Tag, scope: Scope) -> None:
-    """A <test> tag."""
+    """Read a <test> tag."""
     attributes = Attributes(tag, scope)
     attributes.tell_unknown(TEST)
     for name in _NOT_FOR_TESTS:
@@ -112,7 +112,7 @@ def read_test(launch: Launch, tag: Tag, scope: Scope) -> None:
 
 
 def read_node(launch: Launch, tag: Tag, scope: Scope) -> None:
-    """A <node> tag."""
+    """Read a <node> tag."""
     attributes = Attributes(tag, scope)
     attributes.tell_unknown(NODE)
     node = _node(launch, attributes, scope, attributes.required("name"))
@@ -121,7 +121,7 @@ def read_node(launch: Launch, tag: Tag, scope: Scope) -> None:
 
 
 def _node(launch: Launch, attributes: Attributes, scope: Scope, name: str | None) -> LaunchNode | None:
-    """A node, with what stands inside it; None when it is not known what it is or what it is called."""
+    """Read a node and its contents; None if its type or its name is not known."""
     tag = attributes.tag
     if name is not None and (not name.strip() or "/" in name):
         attributes.wrong(
@@ -147,7 +147,9 @@ def _node(launch: Launch, attributes: Attributes, scope: Scope, name: str | None
 
 
 def _read_children(launch: Launch, tag: Tag, inner: Scope, params: Scope) -> None:
-    """The tags inside a node; remappings and variables go to `inner`, and so do parameters that `params` collects."""
+    """Read the tags inside a node; remappings and variables go to `inner`, and so do parameters that `params`
+    collects.
+    """
     params.params.clear()
     for child in tag.children:
         attributes = Attributes(child, params)
@@ -170,7 +172,7 @@ def _read_children(launch: Launch, tag: Tag, inner: Scope, params: Scope) -> Non
 
 
 def _take_clear_params(attributes: Attributes) -> None:
-    """`clear_params` must be well written; a launch begins without parameters, so there is nothing to clear."""
+    """Check `clear_params`; a launch begins without parameters, so there is nothing to clear."""
     if attributes.tag.attributes.get("clear_params"):
         attributes.flag("clear_params")
 
@@ -231,12 +233,15 @@ def read(
     Args:
         file: the launch file.
         args: values of its arguments, `name:=value` on roslaunch's command line.
-        packages: where $(find) looks.
-        environ: what $(env) and $(optenv) look at; ROS_NAMESPACE is the namespace of all.
-        mistakes: takes what is wrong; None raises the first mistake.
+        packages: the packages for $(find).
+        environ: the environment for $(env) and $(optenv); ROS_NAMESPACE is the namespace of all.
+        mistakes: receives errors; None raises the first error.
+
+    Returns:
+        The contents.
 
     Raises:
-        UsageError: it cannot be read, or something in it is wrong.
+        UsageError: it cannot be read, or has an error.
     """
     return _Reader(packages, environ, LaunchFindings(Mistakes() if mistakes is None else mistakes)).read(file, args)
 
@@ -267,7 +272,7 @@ class _Reader:
         }
 
     def read(self, file: Path, args: Mapping[str, str]) -> Launch:
-        """See the function `read`."""
+        """Read the file; see the function `read`."""
         namespace = as_namespace(self._environ.get("ROS_NAMESPACE", "/"))
         scope = Scope(self._world, file, namespace, dict(args), self._findings)
         is_read = self._read_file(file, scope)
@@ -281,12 +286,12 @@ class _Reader:
         return self._launch
 
     def _anonymous(self, name: str) -> str:
-        """A name that no other $(anon) of this launch makes, the same in every run."""
+        """Return a name that is unique among the $(anon) names of this launch, the same in every run."""
         self._names_made += 1
         return f"{name}_cfepy_{self._names_made}"
 
     def _read_file(self, file: Path, scope: Scope) -> bool:
-        """Read a file; whether it is one that can be read."""
+        """Read a file. Returns False if it cannot be read."""
         self._findings.work += _FILE
         tag = self._findings.mistakes.attempt(partial(read_launch_tag, file))
         if tag is None:
@@ -325,7 +330,7 @@ class _Reader:
         Attributes(tag, scope).remark(f"<{tag.name}> is ignored: {text}")
 
     def _arg(self, tag: Tag, scope: Scope, seen_from: Scope | None = None) -> None:
-        """An <arg> tag; inside an <include> its values are seen from the file that includes."""
+        """Read an <arg> tag; inside an <include> its values are resolved in the including file."""
         attributes = Attributes(tag, seen_from or scope)
         attributes.tell_unknown(ARG)
         name = attributes.required("name")
@@ -352,7 +357,7 @@ class _Reader:
         self._read_all(tag.children, scope.inside(namespace))
 
     def _check_clear_params(self, attributes: Attributes, namespace: str | None) -> None:
-        """There is nothing to clear at the start of a run, but what is written must make sense."""
+        """Check `clear_params`; there is nothing to clear at the start of a run."""
         wanted = bool(attributes.tag.attributes.get("clear_params")) and attributes.flag("clear_params")
         if wanted and namespace is None and not attributes.failed:
             attributes.wrong("requires ns=, the namespace to clear", "clear_params")
@@ -386,7 +391,7 @@ class _Reader:
             attributes.wrong(f"passes {', '.join(unused)}, which {file} does not declare; remove it{hint}", "file")
 
     def _pass_args(self, tag: Tag, scope: Scope, inner: Scope) -> None:
-        """The tags inside an <include>."""
+        """Read the tags inside an <include>."""
         for child in tag.children:
             attributes, kind = Attributes(child, scope), child.name.lower()
             if kind not in ("arg", "env"):
@@ -404,7 +409,7 @@ class _Reader:
                     attributes.wrong("missing value to pass; write value=")
 
     def _read_included(self, attributes: Attributes, file: Path, inner: Scope) -> bool:
-        """Read an included file; whether it is one that can be read."""
+        """Read an included file. Returns False if it cannot be read."""
         try:
             open_input(file).close()
         except OSError as error:
@@ -420,7 +425,7 @@ class _Reader:
 
 
 def _names_twice(nodes: list[LaunchNode]) -> Iterable[UsageError]:
-    """No two nodes may have one name."""
+    """Yield an error for each node whose name is taken."""
     seen: dict[str, LaunchNode] = {}
     for node in nodes:
         other = seen.setdefault(node.full_name, node)

@@ -1,7 +1,7 @@
-"""What is in force at a place of a launch file: namespace, remappings, private parameters, environment, arguments.
+"""The scope of a place in a launch file: namespace, remappings, private parameters, environment, arguments.
 
-Every tag with contents opens a scope inside the one around it; an included file gets one whose arguments are its own.
-Names are put together as rosgraph.names does it. Stands for roslaunch.loader.LoaderContext.
+Every tag with contents opens a scope inside the one around it; an included file gets one with arguments of its own.
+Names are joined as in rosgraph.names. Stands for roslaunch.loader.LoaderContext.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from rospy_shim.types.names import PRIV_NAME, SEP, canonicalize_name, is_legal_n
 
 
 def joined(namespace: str, name: str) -> str:
-    """A name below a namespace; global and private names stay as they are."""
+    """Return a name below a namespace; global and private names stay unchanged."""
     if not namespace or name.startswith((SEP, PRIV_NAME)):
         return name
     return namespace + name if namespace.endswith(SEP) else f"{namespace}{SEP}{name}"
 
 
 def as_namespace(name: str) -> str:
-    """A namespace with a slash at both ends.
+    """Return a namespace with a slash at both ends.
 
     Raises:
         ValueError: it begins with "~".
@@ -37,11 +37,11 @@ class Scope:
     """One scope.
 
     Args:
-        world: what substitutions look at.
+        world: the common data of substitutions.
         file: the launch file.
-        namespace: with a slash at both ends.
+        namespace: namespace with a slash at both ends.
         args: values of arguments.
-        findings: takes what is found.
+        findings: receives errors and remarks.
         parent: the scope around it.
 
     Attributes:
@@ -80,10 +80,10 @@ class Scope:
         return self.substitutions.args
 
     def inside(self, namespace: str | None = None) -> Scope:
-        """A scope inside this one.
+        """Open a scope inside this one.
 
         Args:
-            namespace: below this scope's, or global.
+            namespace: namespace below this scope's, or global.
 
         Raises:
             ValueError: the namespace is private.
@@ -92,7 +92,7 @@ class Scope:
         return Scope(world, self.file, self._below(namespace), dict(self.args), self.findings, self)
 
     def of_included(self, file: Path, namespace: str | None, args: dict[str, str]) -> Scope:
-        """The scope of an included file, which sees no arguments but those it is passed.
+        """Open the scope of an included file, which sees only the arguments that are passed to it.
 
         Raises:
             ValueError: the namespace is private.
@@ -104,18 +104,18 @@ class Scope:
     def _below(self, namespace: str | None) -> str:
         return as_namespace(joined(self.namespace, namespace)) if namespace else self.namespace
 
-    # -- what tags add -----------------------------------------------------------------------------------------------
+    # -- additions by tags ---------------------------------------------------------------------------------------------
 
     def set_param(self, name: str, value: Any) -> None:
-        """A private parameter for the nodes that follow."""
+        """Set a private parameter for the nodes that follow."""
         self.params.pop(name, None)
         self.params[name] = value
 
     def add_remap(self, source: str, target: str) -> None:
-        """A remapping for the nodes that follow.
+        """Add a remapping for the nodes that follow.
 
         Raises:
-            ValueError: a name that is empty, or none.
+            ValueError: a name is empty, or invalid.
         """
         names = canonicalize_name(source), canonicalize_name(target)
         for which, name in zip(("from", "to"), names, strict=True):
@@ -125,7 +125,7 @@ class Scope:
         self._remaps[names[0]] = names[1]
 
     def remaps(self) -> dict[str, str]:
-        """All remappings in force, outer ones first."""
+        """Return all remappings in force, outer ones first."""
         found = self._parent.remaps() if self._parent else {}
         for source, target in self._remaps.items():
             found.pop(source, None)
@@ -134,15 +134,15 @@ class Scope:
 
     @property
     def size(self) -> int:
-        """How much holds here: arguments, variables, parameters and remappings, which a tag inside takes over."""
+        """The number of arguments, variables, parameters and remappings in this scope, which an inner tag copies."""
         own = len(self.args) + len(self.declared) + len(self.env) + len(self.params) + len(self._remaps)
         return own + (self._parent.size if self._parent else 0)
 
     def declare_arg(self, name: str, value: str | None, default: str | None) -> None:
-        """An <arg> tag.
+        """Handle an <arg> tag.
 
         Raises:
-            ValueError: it is there already, or has a value that was given from outside.
+            ValueError: it exists already, or has a value that was given from outside.
         """
         if name not in self.declared:
             self.declared.append(name)

@@ -21,27 +21,27 @@ from rospy_shim.types.msgs import Packages
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
 
-LOOK_NS = 50 * NS_PER_MS  # how often is looked whether a node has ended
+LOOK_NS = 50 * NS_PER_MS  # period at which the end of a node is checked
 
 
 class NodeStarts(Protocol):
-    """What starts nodes on the mission, and ends them."""
+    """Starts nodes on the mission, and ends them."""
 
     def app_names(self) -> list[str]:
-        """Names that a new node's application cannot have."""
+        """Return the names that a new node's application cannot have."""
 
     def start_node(self, config: NodeConfig) -> None:
-        """Start a node that nothing else of the mission names.
+        """Start a node that no other part of the mission names.
 
         Raises:
             CfeError: there is no room for another application.
         """
 
     def forget_start(self, app: str) -> None:
-        """The application of a node that was started here is no node any more."""
+        """Forget the application of a node that was started here."""
 
     def begin_shutdown(self, reason: str, app_name: str | None = None) -> None:
-        """Ask all nodes to end, or the one of an application."""
+        """Ask all nodes to end, or the node of one application."""
 
 
 class Starter:
@@ -60,7 +60,7 @@ class Starter:
         """Start one node.
 
         Args:
-            fields: those of a `LaunchNode`, but for `file` and `line`.
+            fields: the fields of a `LaunchNode`, without `file` and `line`.
 
         Returns:
             The cFE name of its application.
@@ -100,7 +100,7 @@ class Starter:
         return [self._start(config) for config in plan.nodes.values()]
 
     def is_alive(self, app: str) -> bool:
-        """Whether the application of a node that was started still runs."""
+        """Return True if the application of a node that was started still runs."""
         return self._node.cfe.es.app_named(app) is not None
 
     def stop(self, app: str, seconds: float) -> None:
@@ -115,7 +115,7 @@ class Starter:
             es.delete_app(es.get_app_id_by_name(app))
 
     def resolve(self, text: str, args: dict[str, str], anonymous: dict[str, str], file: str | None) -> str:
-        """A text with roslaunch's substitutions made.
+        """Return a text with roslaunch's substitutions made.
 
         Raises:
             KeyError: an argument has no value.
@@ -133,7 +133,7 @@ class Starter:
             raise ValueError(str(error)) from None
 
     def module(self) -> Callable[[Any], ModuleType]:
-        """The factory of `roslaunch._processes`."""
+        """Return the factory of `roslaunch._processes`."""
         names = {name: getattr(self, name) for name in ("start_node", "start_file", "is_alive", "stop", "resolve")}
 
         def make(universe: Any) -> ModuleType:
@@ -157,7 +157,7 @@ class Starter:
 
 
 def _leaves(prefix: str, tree: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """The parameters of a tree by their full names, so that other parameters in the same namespaces stay."""
+    """Yield the parameters of a tree by their full names, so that other parameters in the same namespaces stay."""
     for name, value in tree.items():
         if isinstance(value, dict) and value:
             yield from _leaves(f"{prefix}/{name}", value)

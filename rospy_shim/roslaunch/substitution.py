@@ -1,7 +1,7 @@
 """Substitution arguments of launch files: $(arg x), $(find pkg), $(eval ...) (wiki.ros.org/roslaunch/XML).
 
-The expression of $(eval ...) is evaluated by `rospy_shim.types.expression`; it can reach arguments, numbers and texts,
-and nothing of the computer.
+`rospy_shim.types.expression` evaluates the expression of $(eval ...); it has access to arguments, numbers and texts,
+but not to the computer.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ _WORD = re.compile(r"\w+")
 
 
 class SubstitutionError(Exception):
-    """A substitution that cannot be made; its text says why."""
+    """A substitution cannot be made; its text says why."""
 
 
 def evaluate(text: str, functions: Mapping[str, Any], arguments: Mapping[str, Any]) -> str:
-    """The value of an expression, as text.
+    """Evaluate an expression to a text.
 
     Args:
         text: the expression.
-        functions: roslaunch's functions; they and the names of `math` win over arguments.
-        arguments: what arguments stand for.
+        functions: roslaunch's functions; they and the names of `math` take precedence over arguments.
+        arguments: values of arguments.
 
     Raises:
-        SubstitutionError: it is no expression, looks at names with two underscores, or fails.
+        SubstitutionError: it is not an expression, contains two underscores in a row, or fails.
     """
     shown = text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
     if "__" in text:
@@ -55,11 +55,11 @@ def evaluate(text: str, functions: Mapping[str, Any], arguments: Mapping[str, An
 
 
 UNKNOWN = "\0unknown"
-"""Stands for the value of an argument that could not be read; no launch file can have this text."""
+"""Placeholder for the value of an argument that could not be read; no launch file can have this text."""
 
 
 class UnknownArgument(SubstitutionError):
-    """$(arg x) of an argument whose value could not be read, which was told before."""
+    """$(arg x) of an argument whose value could not be read, which was reported before."""
 
 
 class UnsetArgument(SubstitutionError):
@@ -71,15 +71,15 @@ class UnsetArgument(SubstitutionError):
 
 
 def arguments_in(text: str) -> set[str]:
-    """Names of arguments that a text may use; each word of an expression may be one."""
+    """Return the names of arguments that a text may use; each word of an expression may be one."""
     return set((_WORD if _EVAL in text else _ARG).findall(text))
 
 
 class World(NamedTuple):
-    """What substitutions of all files of a launch look at.
+    """The common data of substitutions in all files of a launch.
 
-    `environ` is the environment; `find` gives the folder of a package, or None; `anonymous` makes a name that no other
-    node has; `made` has how many characters substitutions have made.
+    `environ` is the environment; `find` returns the folder of a package, or None; `anonymous` makes a unique node name;
+    `made` has the number of characters that substitutions have made.
     """
 
     environ: Mapping[str, str]
@@ -92,7 +92,7 @@ class Substitutions:
     """Resolves the texts of one scope.
 
     Args:
-        world: what all scopes look at.
+        world: the common data of all scopes.
         file: the launch file.
         args: values of arguments.
         anonymous: names that $(anon) has made in this scope.
@@ -105,7 +105,7 @@ class Substitutions:
         self.anonymous = anonymous
 
     def resolve(self, text: str) -> str:
-        """A text with all its substitutions made.
+        """Return a text with all its substitutions made.
 
         Raises:
             SubstitutionError: one cannot be made.
@@ -117,7 +117,9 @@ class Substitutions:
         return self._pass(self._pass(text, ("env", "optenv", "dirname", "anon", "arg")), ("find",))
 
     def _pass(self, text: str, commands: tuple[str, ...]) -> str:
-        """One look through a text; $(find) has one of its own, for what other substitutions bring."""
+        """Make one pass through a text; $(find) has its own pass, so that it sees the results of other
+        substitutions.
+        """
         size = len(text)
 
         def replaced(match: re.Match[str]) -> str:
@@ -131,7 +133,7 @@ class Substitutions:
         return self._counted(_OPEN.sub(replaced, text))
 
     def _counted(self, text: str) -> str:
-        """A text that was made, if it and all others of the launch are not too long."""
+        """Return a made text; raise an error if it, or all texts of the launch together, are too long."""
         self.world.made[0] += len(text)
         if len(text) > SUBSTITUTED_CHARACTERS:
             raise SubstitutionError(_TOO_LONG)

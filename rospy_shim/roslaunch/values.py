@@ -1,4 +1,4 @@
-"""How texts in launch files become values: roslaunch's types of parameters, truth values, numbers, YAML with angles.
+"""Conversion of texts in launch files to values: roslaunch's types of parameters, booleans, numbers, YAML with angles.
 
 PyYAML is imported when there is YAML to read.
 """
@@ -18,14 +18,14 @@ TYPES = ("str", "string", "int", "double", "bool", "boolean", "yaml", "auto")
 
 
 def converted(text: str, type_name: str) -> Any:
-    """The value of a text.
+    """Convert a text to a value.
 
     Args:
-        text: as the file has it.
-        type_name: one of `TYPES`; "auto" finds out.
+        text: the text in the file.
+        type_name: one of `TYPES`; "auto" chooses by the text.
 
     Raises:
-        ValueError: it is no value of that type, or there is no such type.
+        ValueError: it is not a value of that type, or there is no such type.
     """
     kind = type_name.lower()
     if kind not in TYPES:
@@ -39,10 +39,10 @@ def converted(text: str, type_name: str) -> Any:
 
 
 def truth(text: str) -> bool:
-    """A truth value: true, false, 1 or 0.
+    """Parse a boolean: true, false, 1 or 0.
 
     Raises:
-        ValueError: something else.
+        ValueError: it is another text.
     """
     word = text.lower().strip()
     if word not in _TRUTH:
@@ -51,18 +51,18 @@ def truth(text: str) -> bool:
 
 
 def from_yaml(text: str) -> Any:
-    """The value of a YAML text, with ROS's angles: deg(90), rad(pi/2), !degrees 90, !radians pi.
+    """Parse a YAML text, with ROS's angles: deg(90), rad(pi/2), !degrees 90, !radians pi.
 
     Raises:
-        ValueError: it is not YAML, or too much.
+        ValueError: it is not YAML, or too large.
     """
     return plain_yaml(text, _angle_loader())
 
 
 @cache
 def _angle_loader() -> type[Any]:
-    """YAML's safe loader, and what the tool rosparam adds to it."""
-    loader = type("AngleLoader", (safe_loader(),), {})  # a class of its own: resolvers are kept in the class
+    """Return YAML's safe loader, with the additions of the tool rosparam."""
+    loader = type("AngleLoader", (safe_loader(),), {})  # a separate class, because resolvers are kept in the class
     for name, tag, value in (("deg", "!degrees", degrees), ("rad", "!radians", radians)):
         pattern = re.compile(rf"^{name}\([^\)]*\)$")
         loader.add_implicit_resolver(tag, pattern, [name[0]])  # type: ignore[attr-defined]
@@ -84,7 +84,7 @@ def _angle(name: str, value: Callable[[str], float]) -> Callable[[Any, Any], flo
 
 
 def _auto(text: str) -> Any:
-    """A number if it looks like one, true or false in any case, otherwise the text."""
+    """Return a number if it looks like one, true or false in any case, otherwise the text."""
     try:
         if "." in text:
             return float(text)

@@ -1,4 +1,4 @@
-"""rospy.logger_level_service_caller: ask nodes for their loggers, and set their levels."""
+"""rospy.logger_level_service_caller: requests the loggers of nodes and sets their levels."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SET = "/set_logger_level"
 
 
 class ROSConsoleException(Exception):
-    """A node cannot be asked."""
+    """A service of the node could not be called."""
 
 
 class LoggerLevelServiceCaller:
@@ -25,14 +25,14 @@ class LoggerLevelServiceCaller:
         self._current_levels: dict[str, str] = {}
 
     def get_levels(self) -> list[str]:
-        """The levels, from the least severe one on."""
+        """Return the levels, the least severe first."""
         return ["debug", "info", "warn", "error", "fatal"]
 
     def get_loggers(self, node: str) -> list[str]:
-        """The names of a node's loggers.
+        """Return the names of a node's loggers.
 
         Raises:
-            ROSConsoleException: the node cannot be asked.
+            ROSConsoleException: a service of the node could not be called.
         """
         self._current_loggers = []
         self._current_levels = {}
@@ -42,16 +42,16 @@ class LoggerLevelServiceCaller:
         return self._current_loggers
 
     def get_node_names(self) -> list[str]:
-        """The nodes whose levels can be set."""
+        """Return the nodes whose levels can be set."""
         _, _, services = rosgraph.Master(rospy.get_name()).getSystemState()
         return sorted(name[: -len(_SET)] for name, _ in services if name.endswith(_SET))
 
     def send_logger_change_message(self, node: str, logger: str, level: str) -> bool:
-        """Set the level of a logger; whether it was another one.
+        """Set the level of a logger. Returns True if the level changed.
 
         Raises:
-            ROSConsoleException: the node cannot be asked.
-            KeyError: `get_loggers` has not seen the logger.
+            ROSConsoleException: a service of the node could not be called.
+            KeyError: `get_loggers` has not returned the logger.
         """
         if self._current_levels[logger] == level:
             return False

@@ -28,7 +28,7 @@ Commands:
 
 
 def error(status: int, msg: str) -> NoReturn:
-    """End with a message."""
+    """Exit with a message."""
     print(f"{NAME}: error: {msg}", file=sys.stderr)
     sys.exit(status)
 
@@ -56,7 +56,7 @@ class RosConsoleEcho:
 
     @staticmethod
     def get_levels() -> list[str]:
-        """The levels, from the least severe one on."""
+        """Return the levels, the least severe first."""
         return sorted(RosConsoleEcho.LEVEL_COLOR, key=lambda level: int(getattr(Log, level)))
 
     def _on_log(self, message: Any) -> None:
@@ -74,7 +74,7 @@ class RosConsoleEcho:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """The program.
+    """Run the program.
 
     Args:
         argv: its command line, the program's name first; None is sys.argv.
@@ -91,7 +91,7 @@ def main(argv: Sequence[str] | None = None) -> None:
 
 
 def _parse(command: str, words: Sequence[str], *names: str) -> tuple[LoggerLevelServiceCaller, Any]:
-    """The options of a command that asks a node, whose loggers are known then."""
+    """Parse the options of a command about a node, and get the node's loggers."""
     parser = ArgumentParser(prog=f"{NAME} {command}")
     for name in names:
         parser.add_argument(name)

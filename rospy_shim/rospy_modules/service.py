@@ -1,4 +1,4 @@
-"""rospy.service: who offers which service in this node."""
+"""rospy.service: the services that this node offers."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ logger = logging.getLogger("rospy.service")
 
 
 class _Service:
-    """What a service is known by.
+    """A service in the table of `ServiceManager`.
 
     Args:
-        name: of the service.
+        name: its name.
         service_class: its type.
     """
 
@@ -53,10 +53,10 @@ class _Service:
 
 
 class ServiceManager:
-    """Services by name.
+    """A table of services by name.
 
     Args:
-        registration_listeners: are told of services that come and go; None tells those of the node.
+        registration_listeners: are notified when a service is added or removed; None is the node's listeners.
     """
 
     def __init__(self, registration_listeners: Any = None) -> None:
@@ -65,18 +65,18 @@ class ServiceManager:
         self.registration_listeners: Any = registration_listeners or get_registration_listeners()
 
     def get_services(self) -> list[tuple[str, str]]:
-        """Name and URI of each service."""
+        """Return the name and URI of each service."""
         return [(name, service.uri) for name, service in self.map.items()]
 
     def get_service(self, resolved_service_name: str) -> Any:
-        """The service of a name, or None."""
+        """Return the service with a name, or None."""
         return self.map.get(resolved_service_name)
 
     def register(self, resolved_service_name: str, service: Any) -> None:
         """Add a service.
 
         Raises:
-            ServiceException: there is one of that name.
+            ServiceException: there is a service with that name.
         """
         with self.lock:
             if resolved_service_name in self.map:
@@ -85,7 +85,7 @@ class ServiceManager:
         self.registration_listeners.notify_added(resolved_service_name, service.uri, Registration.SRV)
 
     def unregister(self, resolved_service_name: str, service: Any) -> None:
-        """Take a service off, if it is the one of that name."""
+        """Remove a service, if it is the one with that name."""
         with self.lock:
             if resolved_service_name not in self.map or self.map[resolved_service_name] is not service:
                 return
@@ -93,7 +93,7 @@ class ServiceManager:
         self.registration_listeners.notify_removed(resolved_service_name, service.uri, Registration.SRV)
 
     def unregister_all(self) -> None:
-        """Take all services off."""
+        """Remove all services."""
         with self.lock:
             self.map.clear()
 
@@ -108,7 +108,7 @@ class _OfNode(ServiceManager):
 
     @map.setter
     def map(self, value: dict[str, Any]) -> None:
-        """The node keeps its services itself."""
+        """Ignore the value: the node keeps its services itself."""
 
 
 set_service_manager(_OfNode())

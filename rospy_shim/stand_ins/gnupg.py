@@ -9,7 +9,7 @@ class GPG:
     """Refuses to be made.
 
     Raises:
-        ImportError: always; it says what to install.
+        ImportError: always; it names the package to install.
     """
 
     def __init__(self, *args: Any, **options: Any) -> None:

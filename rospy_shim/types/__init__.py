@@ -1,5 +1,5 @@
-"""ROS without a graph: messages, times, names, exceptions, and how a link between two nodes is described.
+"""ROS without a graph: messages, times, names, exceptions, and the description of a link between two nodes.
 
-What belongs here needs no node and no mission. What a node does with a topic does not: that is `rospy_shim.client`. The
-central file is `rospy_shim/types/msgs/spec.py`.
+A module belongs here if it needs no node and no mission. The use of topics by a node belongs to `rospy_shim.client`.
+The central file is `rospy_shim/types/msgs/spec.py`.
 """

@@ -8,21 +8,21 @@ from rospy_shim.types.expression import value_of
 
 
 def radians(text: str) -> float:
-    """The value of `rad(EXPRESSION)`, or of the expression alone, in radians; `pi` may be in it.
+    """Return the value of `rad(EXPRESSION)`, or of the expression alone, in radians; it may contain `pi`.
 
     Raises:
-        SyntaxError: it is no expression.
-        ExpressionError: it has something that expressions in files cannot have.
-        Exception: whatever Python raises for it, such as NameError and ZeroDivisionError.
+        SyntaxError: it is not an expression.
+        ExpressionError: it has a part that expressions in files cannot have.
+        Exception: any error of Python's, such as NameError and ZeroDivisionError.
     """
     return float(value_of(_inside("rad(", text.strip()).strip(), {"pi": math.pi}))
 
 
 def degrees(text: str) -> float:
-    """The value of `deg(NUMBER)`, or of a number of degrees alone, in radians.
+    """Return the value of `deg(NUMBER)`, or of a number of degrees alone, in radians.
 
     Raises:
-        ValueError: it is no number.
+        ValueError: it is not a number.
     """
     return float(_inside("deg(", text.strip())) * math.pi / 180.0
 

@@ -1,4 +1,4 @@
-"""What a mission file says about its ROS nodes and topics, as plain records.
+"""The settings of a mission file for its ROS nodes and topics, as plain records.
 
 The mission reads them and ROS's side uses them; neither imports the other.
 """
@@ -15,22 +15,22 @@ ROSCORE_PARAMS: Mapping[str, Any] = {
     "rosversion": "1.16.0\n",
     "run_id": "00000000-0000-1000-8000-000000000001",  # the same in every run
 }
-"""What roscore and roslaunch put on the parameter server, newlines included."""
+"""The parameters that roscore and roslaunch set on the parameter server, newlines included."""
 
 
 @dataclass(frozen=True, slots=True)
 class NodeConfig:
     """One ROS node: an application of the startup script whose entry symbol is `__main__`.
 
-    `app` is its cFE name; `name` the node name it gets when the script does not insist (`__name:=`); `remap` maps
-    names as on rosrun's command line; `params` are private parameters; `args` go to `sys.argv`; `env` to `os.environ`;
-    `ordered_sets`: sets in its code iterate in insertion order; None is as the mission says for all nodes;
-    `keys` are typed at its terminal: texts, and numbers of seconds to wait; None leaves it without a terminal;
-    `script` is its program, `cwd` its working directory; None takes those of the mission's folder; `near` is a file
-    near which its packages are, None for the script. `respawn`: it is started again `respawn_delay_ns` after its end;
-    `required`: its end is the end of the run. `compute`: how long its callbacks take for a message of a topic, and its
-    handler for a request of a service, by name, in ns of virtual CPU time. `on_disk`: what it writes is written on the
-    computer, not into the run's own files: a tool of the user's.
+    `app` is its cFE name. `name` is the node name it gets unless the script has `__name:=`. `remap` maps names as on
+    rosrun's command line. `params` are private parameters. `args` go to `sys.argv`, `env` to `os.environ`.
+    `ordered_sets`: sets in its code iterate in insertion order; None takes the mission's setting for all nodes. `keys`
+    are typed at its terminal: texts, and numbers of seconds to wait; None leaves it without a terminal. `script` is its
+    program, `cwd` its working directory; None takes those of the mission's folder. `near` is a file near which its
+    packages are, None for the script. `respawn`: it is started again `respawn_delay_ns` after its end. `required`: its
+    end ends the run. `compute` is the computing time of its callbacks for a message of a topic, and of its handler for
+    a request of a service, by name, in ns of virtual CPU time. `on_disk`: it writes files on the computer, not into the
+    run's own files, as a tool of the user's.
     """
 
     app: str
@@ -53,7 +53,7 @@ class NodeConfig:
 
     @property
     def is_of_startup_script(self) -> bool:
-        """Whether it has a line there, with an exception action; a launch file says where its program is instead."""
+        """True if it has a line there, with an exception action; a launch file names its program instead."""
         return self.script is None
 
 
@@ -63,18 +63,19 @@ class CppNode:
 
     Attributes:
         app: its cFE name.
-        package, type: of the node; of a nodelet, the type is the class that pluginlib knows, such as "demo/Filter".
-        folders: of its package, the one that counts first.
+        package: package of the node.
+        type: type of the node; for a nodelet, the class that pluginlib knows, such as "demo/Filter".
+        folders: folders of its package; the first one takes precedence.
         near: a file near which its packages are.
-        name: without a namespace; empty for what the node itself says.
-        namespace: with a slash at the front.
-        args: what follows the program's name on its command line.
-        remaps: (from, to), as the launch file has them.
+        name: name without a namespace; empty to use the name in the node's own code.
+        namespace: namespace with a slash at the front.
+        args: its arguments, without the program's name.
+        remaps: (from, to), as in the launch file.
         env: its environment; ROS_PACKAGE_PATH counts.
-        required: nothing runs without it, and its end is the end of the run.
+        required: the mission does not run without it, and its end ends the run.
         respawn: it is started again after its end.
-        respawn_delay_ns: how long after it.
-        line: of `near`, where it stands; 0 when it stands in no file.
+        respawn_delay_ns: delay of that in ns.
+        line: its line in `near`; 0 if it is in no file.
     """
 
     app: str
@@ -112,7 +113,9 @@ class TopicConfig:
 
 
 class BridgedPacket(NamedTuple):
-    """A packet that ROS outside sees as a topic: its name or MsgId; raw is as it is, though its fields are known."""
+    """A packet that ROS outside sees as a topic: its name or MsgId; `raw` passes it unchanged, although its fields
+    are known.
+    """
 
     packet: str
     raw: bool = False
@@ -120,13 +123,13 @@ class BridgedPacket(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class RosBridge:
-    """What passes between cFE applications and ROS nodes outside of the mission (`cfepy.extra.ros_host`).
+    """The exchange between cFE applications and ROS nodes outside of the mission (`cfepy.extra.ros_host`).
 
     Attributes:
-        publish: packets, by the topic as which they are seen.
-        subscribe: topics that are heard for applications; `topics` of the mission file has their MsgIds.
-        clock_hz: how often a second of the mission its time is told on /clock; 0 for never. Its own nodes have that
-            time anyway: /use_sim_time is then for those outside.
+        publish: packets, by the topic under which they are shown.
+        subscribe: topics that applications receive; `topics` of the mission file has their MsgIds.
+        clock_hz: rate of /clock in Hz of the mission's time; 0 for never. The mission's own nodes have that time
+            anyway; /use_sim_time is then for external ones.
     """
 
     publish: Mapping[str, BridgedPacket] = field(default_factory=dict)
@@ -136,17 +139,16 @@ class RosBridge:
 
 @dataclass(frozen=True, slots=True)
 class RosConfig:
-    """Everything about ROS in a mission file; `nodes` by cFE application name, `topics` by resolved topic name.
+    """The ROS section of a mission file; `nodes` by cFE application name, `topics` by resolved topic name.
 
-    `compiled` are nodes in C++, by cFE application name, too: what is to become of them when they end.
-    `ordered_sets` is for the nodes that do not say it themselves. `locked_topics` and `locked_services` are MsgIds by
-    name, from the mission's `topics.lock`, for what `topics` does not pin. With `spread` a topic whose MsgId is taken
-    gets the next free one, in order of registration; otherwise that is an error, since the id may be another in the
-    next run. `ends_with_nodes`: the run is over when all its nodes have ended. `root` is a folder that stands for the
-    computer's root, for a mission that was brought from elsewhere (`Universe`), `absent` are paths at which there was
-    nothing. `connection_delay_ns` is how long
-    it takes until a publisher and a subscriber are connected, in virtual ns. `bridge` is what a run that is joined to
-    ROS shows there.
+    `compiled` are nodes in C++, by cFE application name, too, with the handling of their ends. `ordered_sets` is for
+    the nodes without a setting of their own. `locked_topics` and `locked_services` are MsgIds by name, from the
+    mission's `topics.lock`, for topics that `topics` does not pin. With `spread` a topic whose MsgId is taken gets the
+    next free one, in order of registration; otherwise that is an error, since the id may differ in the next run.
+    `ends_with_nodes`: the run is over when all its nodes have ended. `root` is a folder that stands for the computer's
+    root, for a mission from another computer (`Universe`); `absent` are paths at which that computer had no file.
+    `connection_delay_ns` is the virtual time in ns until a publisher and a subscriber are connected. `bridge` describes
+    the exchange of a run that is joined to ROS.
     """
 
     nodes: Mapping[str, NodeConfig] = field(default_factory=dict)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 
 class ROSException(Exception):  # rospy's name
-    """Base of what goes wrong with ROS."""
+    """Base of ROS errors."""
 
     __module__ = "rospy.exceptions"
 
@@ -19,7 +19,7 @@ class ROSSerializationException(ROSException):
 
 
 class ROSInitException(ROSException):
-    """Something needs `init_node`, or `init_node` itself failed."""
+    """A call requires `init_node`, or `init_node` itself failed."""
 
     __module__ = "rospy.exceptions"
 
@@ -34,7 +34,7 @@ class ROSTimeMovedBackwardsException(ROSInterruptException):
     """Simulated time was set back during a sleep.
 
     Args:
-        time: how far it jumped, in s.
+        time: size of the jump in s.
     """
 
     __module__ = "rospy.exceptions"

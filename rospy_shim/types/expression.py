@@ -1,9 +1,9 @@
-"""Expressions in files: those of `$(eval ...)` in launch files and of `rad(...)` in parameters.
+"""Expressions in files: `$(eval ...)` in launch files and `rad(...)` in parameters.
 
-They are written as Python's, but Python does not execute them: an interpreter of their syntax tree knows constants,
-operators, comparisons, conditions, subscripts, comprehensions, and calls of functions that it was given and of methods
-of texts, lists and mappings. There is no way from these to anything of the computer. Each value is held to a size and
-the whole to a number of steps (`cfepy.reading.input_limits`), so an expression ends soon, whoever wrote it.
+They are written in Python's syntax, but Python does not execute them. An interpreter of their syntax tree supports
+constants, operators, comparisons, conditions, subscripts, comprehensions, and calls of given functions and of methods
+of texts, lists and mappings. These give no access to the computer. Each value is limited in size and the whole in its
+number of steps (`cfepy.reading.input_limits`), so any expression ends soon.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from cfepy.reading.input_limits import (
 
 _SHOWN = 60  # characters of an expression in an error
 _TOO_MUCH = "compute less, or pass the value as an argument"
-_LARGEST_COUNT = 5_000  # what n! and the like may be asked of
+_LARGEST_COUNT = 5_000  # largest argument of n! and similar functions
 _WIDTH = re.compile(r"\d{5,}")  # more than 9,999 characters
-_PERCENT_WIDTH = re.compile(r"%[-+ #0]*(?:\(|\*|\d{5,}|\d*\.(?:\*|\d{5,}))")  # or as many as another value says
-_HASHED = 20  # how many times as much an item of a set or key of a mapping counts: many may have one hash
+_PERCENT_WIDTH = re.compile(r"%[-+ #0]*(?:\(|\*|\d{5,}|\d*\.(?:\*|\d{5,}))")  # or as many as another value gives
+_HASHED = 20  # weight of an item of a set or key of a mapping: many may have one hash
 # fmt: off
 _METHODS: dict[type, frozenset[str]] = {
     str: frozenset({
@@ -56,7 +56,7 @@ _OF_MATH = (
 )
 # fmt: on
 MATH: dict[str, Any] = {name: getattr(math, name) for name in _OF_MATH if hasattr(math, name)}
-"""What roslaunch offers of Python's `math`."""
+"""The part of Python's `math` that roslaunch offers."""
 _UNARY: dict[type[ast.AST], Callable[[Any], Any]] = {
     ast.Not: operator.not_,
     ast.USub: operator.neg,
@@ -93,21 +93,24 @@ _SIMPLE = (bool, float, complex, type(None))
 
 
 class ExpressionError(Exception):
-    """An expression has something that expressions in files cannot have, or is too much; its text says what."""
+    """An expression has a part that expressions in files cannot have, or is too large; its text names it."""
 
 
 def value_of(text: str, names: Mapping[str, Any]) -> Any:
-    """The value of an expression.
+    """Evaluate an expression.
 
     Args:
         text: the expression.
-        names: what its names stand for; values, or functions that may be called. They come before Python's own
-            functions for numbers, texts and lists.
+        names: values of names, and functions that it may call. They take precedence over Python's own functions for
+            numbers, texts and lists.
+
+    Returns:
+        Its value.
 
     Raises:
-        SyntaxError: it is no expression.
-        ExpressionError: it has something that is not allowed, or is too much.
-        Exception: whatever Python raises for it, such as ZeroDivisionError.
+        SyntaxError: it is not an expression.
+        ExpressionError: it has a part that is not permitted, or is too large.
+        Exception: any error of Python's, such as ZeroDivisionError.
     """
     if len(text) > EXPRESSION_CHARACTERS:
         raise ExpressionError(f"must have at most {EXPRESSION_CHARACTERS:,} characters, not {len(text):,}; {_TOO_MUCH}")
@@ -118,10 +121,10 @@ def value_of(text: str, names: Mapping[str, Any]) -> Any:
 
 
 def plain_text(value: Any) -> str:
-    """`str(value)`.
+    """Return `str(value)`.
 
     Raises:
-        ExpressionError: it has no text that would be the same in every run.
+        ExpressionError: its text may differ from run to run.
     """
     _check_printable(value)
     return str(value)
@@ -162,7 +165,7 @@ class _Interpreter:
         }
         self._names: dict[str, Any] = {**own, **names}
         self._functions = {id(each) for each in self._names.values() if callable(each)}
-        self._known: dict[int, tuple[Any, int]] = {}  # sizes of what cannot change; kept, so that ids stay its own
+        self._known: dict[int, tuple[Any, int]] = {}  # sizes of immutable values; kept, so that ids stay unique
         self._steps = self._work = self._depth = 0
         # fmt: off
         self._kinds: dict[type[ast.AST], Callable[[Any], Any]] = {
@@ -178,7 +181,7 @@ class _Interpreter:
         # fmt: on
 
     def value(self, node: ast.AST) -> Any:
-        """The value of a part of the expression."""
+        """Return the value of a part of the expression."""
         self._steps += 1
         if self._steps > EXPRESSION_STEPS:
             raise ExpressionError(f"takes more than {EXPRESSION_STEPS:,} steps; {_TOO_MUCH}")
@@ -197,17 +200,17 @@ class _Interpreter:
     # -- limits ------------------------------------------------------------------------------------------------------
 
     def _held(self, value: Any) -> Any:
-        """A value, if it is not too large."""
+        """Return a value if it is not too large."""
         if isinstance(value, _SIMPLE):
             return value
         self._allow(self._size(value))
         return value
 
     def _allow(self, size: float) -> None:
-        """So many characters and items are about to be made.
+        """Count characters and items that are about to be made.
 
         Raises:
-            ExpressionError: that is too much.
+            ExpressionError: there are too many.
         """
         if size > EXPRESSION_SIZE:
             raise ExpressionError(f"makes a value of more than {EXPRESSION_SIZE:,} characters or items; {_TOO_MUCH}")
@@ -216,12 +219,12 @@ class _Interpreter:
             raise ExpressionError(f"makes values of more than {EXPRESSION_WORK:,} characters or items; {_TOO_MUCH}")
 
     def _allow_bits(self, bits: float) -> None:
-        """A whole number of so many bits is about to be made. Errors as `_allow`."""
+        """Check the bits of a whole number that is about to be made. Errors as for `_allow`."""
         if bits > EXPRESSION_BITS:
             raise ExpressionError(f"makes a whole number of more than {EXPRESSION_BITS:,} bits; {_TOO_MUCH}")
 
     def _size(self, value: Any) -> int:
-        """Characters and items, those inside counted as often as they are there."""
+        """Return the number of characters and items; repeated inner ones count repeatedly."""
         if isinstance(value, str):
             return len(value)
         if isinstance(value, int) and not isinstance(value, bool):
@@ -239,7 +242,7 @@ class _Interpreter:
         return known[1]
 
     def _taken(self, values: Any) -> list[Any]:
-        """The items of something that can be gone through."""
+        """Return the items of an iterable."""
         if isinstance(values, range):
             self._allow(len(values))
         found = list(values)
@@ -248,7 +251,7 @@ class _Interpreter:
         return found
 
     def _once(self, values: list[Any]) -> Iterator[Any]:
-        """Items that can be gone through once, as Python's own functions return them."""
+        """Return items as an iterator, as Python's own functions do."""
         self._allow(self._size(values))
         return iter(values)
 
@@ -293,7 +296,7 @@ class _Interpreter:
         return make(left, right)
 
     def _foresee(self, kind: type[ast.AST], left: Any, right: Any) -> None:
-        """How large the outcome of an operator will be, where that may be much more than what goes in."""
+        """Check the size of an operator's result in advance, where it may be much more than the operands."""
         if isinstance(left, int) and isinstance(right, int):
             if kind is ast.Pow and right > 0:
                 self._allow_bits(left.bit_length() * right if abs(left) > 1 else 1)
@@ -352,7 +355,7 @@ class _Interpreter:
         return self._once(list(self._made(node)))
 
     def _made(self, node: ast.ListComp | ast.SetComp | ast.DictComp | ast.GeneratorExp) -> Iterator[Any]:
-        """The items of a comprehension, pairs for a mapping; its variables hide names while it is evaluated."""
+        """Yield the items of a comprehension, pairs for a mapping; its variables hide names while it is evaluated."""
         outer = dict(self._names)
         size, each_one = 0, 1 if isinstance(node, (ast.ListComp, ast.GeneratorExp)) else _HASHED
         try:
@@ -410,7 +413,7 @@ class _Interpreter:
         return format(value, form) if form else self._text(value)
 
     def _fill(self, text: str, values: list[Any], named: dict[str, Any]) -> str:
-        """`str.format`, whose fields name values and nothing inside them."""
+        """Fill a text as `str.format` does; its fields may name values, but no attributes or items of them."""
         from string import Formatter
 
         for _, field, form, _ in Formatter().parse(text):
@@ -451,7 +454,7 @@ class _Interpreter:
         return self._held(function(*values, **(named or {})))
 
     def _method(self, value: Any, name: str, values: list[Any], named: dict[str, Any]) -> Any:
-        """A method of a text, a list or a mapping."""
+        """Call a method of a text, a list or a mapping."""
         kind: type = type(value)
         if name not in _METHODS.get(kind, ()):
             known = ", ".join(sorted(_METHODS.get(kind, ()))) or "none"
@@ -468,7 +471,7 @@ class _Interpreter:
         found = getattr(value, name)(*values, **named)
         return list(found) if kind is dict and name in ("items", "keys", "values") else found
 
-    # -- Python's functions, held to the limits ----------------------------------------------------------------------
+    # -- Python's functions, within the limits -------------------------------------------------------------------------
 
     def _text(self, value: Any = "") -> str:
         self._allow(2 * self._size(value))
@@ -491,7 +494,7 @@ class _Interpreter:
         return dict(values if isinstance(values, dict) else self._hashed(values), **named)
 
     def _hashed(self, values: Any) -> list[Any]:
-        """The items of something that become keys."""
+        """Return the items of an iterable that become keys."""
         found = self._taken(values)
         self._allow(_HASHED * len(found))
         return found
@@ -547,23 +550,23 @@ class _Interpreter:
         return round(number, digits)
 
     def _counted(self, *numbers: Any) -> None:
-        """What is foreseen of n!, and of choices out of n."""
+        """Check n!, and choices out of n, in advance."""
         if any(isinstance(each, int) and each > _LARGEST_COUNT for each in numbers):
             raise ExpressionError(f"counts combinations of more than {_LARGEST_COUNT:,}; {_TOO_MUCH}")
 
     def _product(self, values: Any, *, start: Any = 1) -> None:
-        """What is foreseen of a product; what is no list can be gone through once, so it is not looked at here."""
+        """Check a product in advance; an iterator can be read only once, so it is refused."""
         if not isinstance(values, (list, tuple, set)):
             raise ExpressionError("multiplies a value that is not a list; write list(...) around it")
         self._allow_bits(sum(each.bit_length() for each in (start, *values) if isinstance(each, int)))
 
 
 def _said(node: ast.AST) -> str:
-    """A part of an expression for an error."""
+    """Return a part of an expression for an error."""
     return repr(_short(ast.unparse(node)))
 
 
 def _short(text: str) -> str:
-    """A text on one line, and not too long."""
+    """Return a text on one line, and not too long."""
     line = " ".join(text.split())
     return line if len(line) <= _SHOWN else f"{line[:_SHOWN]}..."

@@ -1,7 +1,7 @@
 """Graph resource names: namespaces, private names and remappings of one node, and the checks of names in arguments.
 
 A node's name is known once `init_node` has run; until then it is "/unnamed" and private names cannot be resolved. A
-validator takes a value and the caller's name, and gives the value to go on with (rospy.names, rospy.impl.validators,
+validator takes a value and the caller's name, and returns the checked value (rospy.names, rospy.impl.validators,
 wiki.ros.org/Names).
 """
 
@@ -20,12 +20,12 @@ REMAP = ":="
 ANYTYPE = TOPIC_ANYTYPE = SERVICE_ANYTYPE = "*"
 UNNAMED = "/unnamed"
 _LEGAL = re.compile(r"^[~/A-Za-z][\w/]*$")
-_REMAPPING = re.compile(r"[~/_A-Za-z][\w/]*:=")  # how an argument begins that belongs to ROS
+_REMAPPING = re.compile(r"[~/_A-Za-z][\w/]*:=")  # beginning of an argument that belongs to ROS
 Resolve = Callable[[str, str], str]
 
 
 def canonicalize_name(name: str) -> str:
-    """The name without doubled or trailing slashes."""
+    """Return the name without doubled or trailing slashes."""
     if not name or name == SEP:
         return name
     parts = [part for part in name.split(SEP) if part]
@@ -33,7 +33,7 @@ def canonicalize_name(name: str) -> str:
 
 
 def namespace_of(name: str) -> str:
-    """The namespace that a resolved name lives in, ending in a slash.
+    """Return the namespace of a resolved name, ending in a slash.
 
     Raises:
         ValueError: an empty or a relative name.
@@ -45,19 +45,19 @@ def namespace_of(name: str) -> str:
 
 
 def join(namespace: str, name: str) -> str:
-    """A name below a namespace; global and private names stay as they are."""
+    """Return a name below a namespace; global and private names stay unchanged."""
     if name.startswith((SEP, PRIV_NAME)):
         return name
     return namespace + name if namespace.endswith(SEP) else namespace + SEP + name
 
 
 def is_legal_name(name: str) -> bool:
-    """Whether a name follows ROS's rules for graph resource names."""
+    """Return True if a name follows ROS's rules for graph resource names."""
     return not name or (bool(_LEGAL.match(name)) and "//" not in name)
 
 
 def scoped_name(caller_id: str, name: str) -> str:
-    """A global name without as many characters as the namespace of `caller_id` has.
+    """Return a global name without as many characters as the namespace of `caller_id` has.
 
     Raises:
         ROSException: `caller_id` is not global.
@@ -68,7 +68,7 @@ def scoped_name(caller_id: str, name: str) -> str:
 
 
 def load_mappings(argv: Sequence[str]) -> dict[str, str]:
-    """The `from:=to` arguments of a command line; private parameters (`_name:=value`) are left out."""
+    """Return the `from:=to` arguments of a command line; private parameters (`_name:=value`) are left out."""
     mappings: dict[str, str] = {}
     for argument in filter(_REMAPPING.match, argv):
         source, _, target = argument.partition(REMAP)
@@ -79,7 +79,7 @@ def load_mappings(argv: Sequence[str]) -> dict[str, str]:
 
 
 def command_line_params(argv: Sequence[str]) -> dict[str, str]:
-    """The `_name:=value` arguments of a command line, values as text.
+    """Return the `_name:=value` arguments of a command line, values as text.
 
     Raises:
         ValueError: an argument with two ":=".
@@ -95,7 +95,7 @@ def command_line_params(argv: Sequence[str]) -> dict[str, str]:
 
 
 def program_arguments(argv: Sequence[str]) -> list[str]:
-    """The arguments that are the program's own (rospy.myargv)."""
+    """Return the program's own arguments (rospy.myargv)."""
     return [argument for argument in argv if not _REMAPPING.match(argument)]
 
 
@@ -123,11 +123,11 @@ class Names:
 
     @property
     def insisted_name(self) -> str | None:
-        """What `__name:=` says."""
+        """The name in `__name:=`, or None."""
         return self._mappings.get("__name")
 
     def give(self, base_name: str) -> None:
-        """The node has its name: prefix the namespace and resolve the remappings against it."""
+        """Set the node's name: add the namespace and resolve the remappings against it."""
         self.name = canonicalize_name(join(self.namespace, base_name))
         self.initialize_mappings(self.name)
 
@@ -142,30 +142,30 @@ class Names:
         }
 
     def get_name(self) -> str:
-        """The node's resolved name; "/unnamed" before `init_node`."""
+        """Return the node's resolved name; "/unnamed" before `init_node`."""
         return self.name
 
     get_caller_id = get_name
 
     def set_caller_id(self, caller_id: str) -> None:
-        """Give the node another resolved name, and the namespace that it lies in."""
+        """Set another resolved name of the node, and its namespace."""
         self.name = caller_id
         self.namespace = namespace_of(caller_id)
 
     def get_namespace(self) -> str:
-        """The node's namespace, ending in a slash."""
+        """Return the node's namespace, ending in a slash."""
         return self.namespace if self.namespace.endswith(SEP) else self.namespace + SEP
 
     def get_mappings(self) -> dict[str, str]:
-        """The remappings as given."""
+        """Return the remappings as given."""
         return self._mappings
 
     def get_resolved_mappings(self) -> dict[str, str]:
-        """The remappings, both sides resolved."""
+        """Return the remappings, both sides resolved."""
         return self._resolved
 
     def resolve_name(self, name: str, caller_id: str | None = None) -> str:
-        """The global name that a name means to this node, remappings applied.
+        """Return the global name of a name for this node, remappings applied.
 
         Args:
             name: global, relative or private (`~name`).
@@ -175,7 +175,7 @@ class Names:
         return self._resolved.get(resolved, resolved) if name else resolved
 
     def _full(self, name: str, caller_id: str | None) -> str:
-        """The global name, without remappings."""
+        """Return the global name, without remappings."""
         if not caller_id:
             caller_id = self.name if self.name != UNNAMED else join(self.get_namespace(), UNNAMED[1:])
         if not name:
@@ -188,7 +188,7 @@ class Names:
         return namespace_of(caller_id) + name
 
     def resolve_name_without_node_name(self, name: str) -> str:
-        """As `resolve_name`, while the node has no name.
+        """Resolve a name as `resolve_name` does, while the node has no name.
 
         Raises:
             ValueError: a private name.
@@ -203,21 +203,21 @@ class Names:
         return resolved
 
     def remap_name(self, name: str, caller_id: str | None = None, resolved: bool = True) -> str:
-        """What a remapping, as it was written on the command line, makes of a name; any other name as it is.
+        """Apply a remapping of the command line, as written there, to a name; any other name stays unchanged.
 
         Args:
             name: the name.
-            caller_id: whose namespace counts for the remapping's target; None is the node.
+            caller_id: node whose namespace counts for the remapping's target; None is the node itself.
             resolved: accepted, as in rospy.
         """
         return self._full(self._mappings[name], caller_id) if name in self._mappings else name
 
 
 class ParameterInvalid(Exception):  # rospy's name
-    """An argument that an API does not take.
+    """An argument that an API does not accept.
 
     Args:
-        message: what is wrong.
+        message: the error.
     """
 
     __module__ = "rospy.impl.validators"
@@ -227,7 +227,7 @@ class ParameterInvalid(Exception):  # rospy's name
 
 
 def non_empty(param_name: str) -> Callable[[Any, str], Any]:
-    """A validator that refuses what is false."""
+    """Make a validator that refuses false values."""
 
     def validator(value: Any, caller_id: str) -> Any:
         if not value:
@@ -238,12 +238,12 @@ def non_empty(param_name: str) -> Callable[[Any, str], Any]:
 
 
 def isstring(s: Any) -> bool:
-    """Whether a value is text."""
+    """Return True if a value is text."""
     return isinstance(s, str)
 
 
 def refusal(kind: str, name: str) -> str | None:
-    """Why the master does not register a topic or service of a resolved name; None when it does.
+    """Return why the master refuses the resolved name of a topic or service; None if it accepts it.
 
     Args:
         kind: "topic" or "service".
@@ -255,10 +255,10 @@ def refusal(kind: str, name: str) -> str | None:
 
 
 def valid_name_validator_unresolved(param_name: str, param_value: Any, caller_id: str) -> str:
-    """Check a name, and give it as it is.
+    """Check a name, and return it unchanged.
 
     Raises:
-        ParameterInvalid: it is no text, is empty, or looks like a URI.
+        ParameterInvalid: it is not text, is empty, or looks like a URI.
     """
     _check_text(param_name, param_value)
     if ":" in param_value or " " in param_value:
@@ -267,7 +267,7 @@ def valid_name_validator_unresolved(param_name: str, param_value: Any, caller_id
 
 
 def global_name(param_name: str) -> Callable[[Any, str], str]:
-    """A validator that wants a global name."""
+    """Make a validator that requires a global name."""
 
     def validator(value: Any, caller_id: str) -> str:
         _check_text(param_name, value)
@@ -284,7 +284,7 @@ def _check_text(param_name: str, value: Any) -> None:
 
 
 class NameValidators:
-    """Those validators that resolve names for a node.
+    """The validators that resolve names for a node.
 
     Args:
         resolve: resolves a name for a caller.
@@ -302,12 +302,12 @@ class NameValidators:
         return self._resolve(valid_name_validator_unresolved(param_name, param_value, caller_id), caller_id)
 
     def valid_name(self, param_name: str, resolve: bool = True) -> Callable[[Any, str], str]:
-        """A validator for names; `resolve` says whether it resolves them."""
+        """Make a validator for names; if `resolve` is true, it resolves them."""
         check = self.valid_name_validator_resolved if resolve else valid_name_validator_unresolved
         return lambda value, caller_id: check(param_name, value, caller_id)
 
     def is_topic(self, param_name: str) -> Callable[[Any, str], str]:
-        """A validator for names of topics, which it resolves."""
+        """Make a validator for names of topics, which it resolves."""
 
         def validator(value: Any, caller_id: str) -> str:
             found = self.valid_name_validator_resolved(param_name, value, caller_id)

@@ -10,9 +10,9 @@ import struct
 from collections.abc import Iterator
 
 HEADER_BYTES = 16  # of a cFE telemetry packet
-SPARE_AT = 12  # in the header; its bytes are 0 but in packets for one subscriber alone
+SPARE_AT = 12  # in the header; its bytes are 0 except in packets for one subscriber alone
 EVERYBODY = bytes(HEADER_BYTES - SPARE_AT)
-WHOLE = 0xC0  # sequence flags, as they stand in byte 2 of a packet
+WHOLE = 0xC0  # sequence flags, as in byte 2 of a packet
 FIRST = 0x40
 MIDDLE = 0x00
 LAST = 0x80
@@ -21,23 +21,23 @@ _header = struct.Struct(">HBBH10x").pack
 
 
 def whole_header(msg_id: int) -> bytes:
-    """The header of a packet that holds a whole message; the bus fills in sequence count, length and time."""
+    """Return the header of a packet with a whole message; the bus fills in sequence count, length and time."""
     return _header(msg_id, WHOLE, 0, 0)
 
 
 def addressed(packet: bytes, pipe: int, number: int = 0) -> bytes:
-    """The same packet for one subscriber alone.
+    """Return the same packet for one subscriber alone.
 
     Args:
-        packet: of a topic.
+        packet: packet of a topic.
         pipe: the id of the subscriber's pipe.
-        number: of the subscription, of those that a compiled node has to the topic; the first is 0.
+        number: number of the subscription among a compiled node's subscriptions to the topic; the first is 0.
     """
     return packet[:SPARE_AT] + _address(pipe, number) + packet[HEADER_BYTES:]
 
 
 def is_for_another(packet: bytes, pipe: int) -> bool:
-    """Whether a packet whose spare bytes are not 0 is for another subscriber than the one with this pipe."""
+    """Return True if a packet whose spare bytes are not 0 is for another subscriber than the one with this pipe."""
     return len(packet) >= HEADER_BYTES and packet[SPARE_AT:HEADER_BYTES] != _address(pipe)
 
 
@@ -46,10 +46,10 @@ def _address(pipe: int, number: int = 0) -> bytes:
 
 
 def segments(msg_id: int, payload: bytes, room: int) -> Iterator[bytes]:
-    """The packets that a long payload is sent in; the bus fills in sequence counts and times.
+    """Yield the packets of a long payload; the bus fills in sequence counts and times.
 
     Args:
-        msg_id: of the topic.
+        msg_id: MsgId of the topic.
         payload: the serialised message.
         room: bytes of payload that fit in one packet.
     """
@@ -61,19 +61,19 @@ def segments(msg_id: int, payload: bytes, room: int) -> Iterator[bytes]:
 
 
 class Assembler:
-    """Puts the segments of long messages together, those of each sender for themselves."""
+    """Reassembles the segments of long messages, separately for each sender."""
 
     def __init__(self) -> None:
         self._parts: dict[object, list[bytes]] = {}
-        self.lost = 0  # messages of which a segment is missing
+        self.lost = 0  # messages with a missing segment
 
     def add(self, packet: bytes, sender: object, index: int | None) -> bytes | None:
-        """Take a segment; the whole message, behind a header, when it is the last one.
+        """Add a segment. Returns the whole message, after a header, if it is the last one, otherwise None.
 
         Args:
             packet: a packet whose sequence flags are not `WHOLE`.
-            sender: tells publishers of one topic apart.
-            index: number of the segment in its message, from 0; None when only its sequence count can tell.
+            sender: distinguishes publishers of one topic.
+            index: number of the segment in its message, from 0; None if only its sequence count is known.
         """
         flags = packet[2] & 0xC0
         parts = self._parts.pop(sender, None)
@@ -92,7 +92,7 @@ class Assembler:
 
 
 def sequence_of(packet: bytes) -> int:
-    """The sequence count of a packet, 0 to 16383."""
+    """Return the sequence count of a packet, 0 to 16383."""
     return (packet[2] & 0x3F) << 8 | packet[3]
 
 

@@ -1,6 +1,6 @@
-"""The commands boards and board; here are their options.
+"""The commands boards and board; their options are defined here.
 
-A command belongs here when it is about boards, or makes the profile of one.
+A command belongs here if it is about boards, or writes the profile of one.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from cfepy.plugins import Hook
 
 FASTEST_CPU_HZ = 1e11
 ACTIONS: Hook[Callable[[Any], None]] = Hook("board_actions")
-"""Each adds actions to the command board."""
+"""Functions that add actions to the command board."""
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -67,7 +67,7 @@ def _add_board(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def _cycles_of(text: str) -> int:
-    """A clock rate in Hz, for argparse."""
+    """Parse a clock rate in Hz, for argparse."""
     try:
         rate = float(text)
     except ValueError:

@@ -23,7 +23,7 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: the times do not fit together, there is such a file already, or it cannot be written.
+        UsageError: the times contradict each other, the file exists already, or it cannot be written.
     """
     path = Path(arguments.file)
     if path.suffix not in (".yaml", ".yml"):

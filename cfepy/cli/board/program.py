@@ -22,7 +22,7 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: there is something of this name already, or it cannot be written.
+        UsageError: the folder exists already, or it cannot be written.
     """
     folder = arguments.folder
     if os.path.lexists(folder):

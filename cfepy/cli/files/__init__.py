@@ -1,7 +1,7 @@
-"""The commands tbl and log, which work on cFE's files; here are their options.
+"""The commands tbl and log, which work on cFE's files; their options are defined here.
 
-A command belongs here when it makes, shows or checks a file that goes to a flight computer or comes from it, and flies
-no mission.
+A command belongs here if it makes, shows or checks a file that goes to a flight computer or comes from it. A command
+that flies a mission does not.
 """
 
 from __future__ import annotations

@@ -21,18 +21,18 @@ from cfepy.status import UsageError
 from cfepy.time import print_ as time_text
 
 PERF_LOG: Hook[Callable[[TextIO, Sequence[Mapping[str, Any]], Mapping[str, Any]], None]] = Hook("perf_log")
-"""Writes performance data for Perfetto; takes the open file, the entries, and facts about the data by name."""
+"""Writes performance data for Perfetto. Arguments: the open file, the entries, and facts about the data by name."""
 PERF_FACTS = ("State", "Mode", "TriggerCount", "DataCount", "InvalidMarkerReported")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Show the files that the command line names; one that cannot be read does not keep the others from being shown.
+    """Show the files that the command line names. A file that cannot be read does not stop the others.
 
     Returns:
         The exit status.
 
     Raises:
-        UsageError: a picture is asked for of what is no single file of performance data, or it cannot be written.
+        UsageError: `--perfetto` without exactly one file of performance data, or its output cannot be written.
     """
     if arguments.perfetto is not None:
         return _draw(arguments)

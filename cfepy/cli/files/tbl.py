@@ -1,4 +1,4 @@
-"""`cfepy tbl`: make table files from YAML, show them, compare two, and find what is wrong with them."""
+"""`cfepy tbl`: make table files from YAML, show them, compare two, and find defects in them."""
 
 from __future__ import annotations
 
@@ -35,20 +35,20 @@ ABSENT = "(not there)"
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do what the command line asks of tables.
+    """Carry out the action on tables that the command line names.
 
     Returns:
         The exit status.
 
     Raises:
-        UsageError: a file cannot be read or written, or is no table.
+        UsageError: a file cannot be read or written, or is not a table.
     """
     action: Callable[[argparse.Namespace, Find], int] = ACTIONS[arguments.action]
     return action(arguments, _find(arguments))
 
 
 def _find(arguments: argparse.Namespace) -> Find:
-    """Knows the tables of the mission, of shipped apps, and the one whose layout a YAML file gives."""
+    """Make the lookup of table types of the mission, of shipped apps, and of `--layout`."""
     problems: list[str] = []
     known = table_types(arguments.mission, problems)
     for problem in problems:
@@ -128,7 +128,7 @@ def _value(leaf: Leaf) -> str:
 
 
 def _read(name: str, find: Find) -> TableContents:
-    """A table file, or what a YAML file would make."""
+    """Read a table file, or build the table that a YAML file describes."""
     path = Path(name)
     if path.suffix in YAML_SUFFIXES:
         return table_yaml.read(path, find)
@@ -154,7 +154,7 @@ def _diff(arguments: argparse.Namespace, find: Find) -> int:
 
 
 def _fields(file: TableContents) -> dict[str, str]:
-    """Every field of a file as text, by its path."""
+    """Return every field of a file as text, by its path."""
     fields = {"table": file.table.table_name, "offset": str(file.table.offset), "bytes": str(len(file.image))}
     fields["mark"] = f"0x{file.table.reserved:08X}"
     fields |= {name: table_yaml.flow(getattr(file.header, name)) for name in HEADER_FIELDS}

@@ -1,7 +1,6 @@
-"""The commands of a ground system: cmd, tlm, console, mids, graph, export; here are their options.
+"""The commands of a ground system: cmd, tlm, console, mids, graph, export; their options are defined here.
 
-A command belongs here when it works with cFE's packets by their names, over the network or with a mission that it
-flies.
+A command belongs here if it works with cFE's packets by their names, over the network or with a mission that it flies.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`cfepy cmd`: send a command by its name to a flight computer, or fly a mission for it and show what it causes."""
+"""`cfepy cmd`: send a command by its name to a flight computer, or fly a mission for it and show its effects."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from cfepy.pilot import RunPlan, never_happened, takeoff
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
-ANSWER_S = 2.0  # virtual time to wait for what a command causes
-COMPANY_S = 5.0  # and for somebody who takes it, from when all processors are on: they have to find each other
+ANSWER_S = 2.0  # virtual time to wait for the effects of a command
+COMPANY_S = 5.0  # and for a receiver, counted from when all processors are on: they have to find each other
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -30,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: no such mission, host, command or field.
+        UsageError: there is no such mission, host, command or field.
     """
     target: str | None = arguments.target
     host = host_of(target, CI_PORT) if target is not None else None
@@ -96,7 +96,7 @@ def _say_problems(dictionary: Dictionary) -> None:
 
 
 def _fly(plan: RunPlan, dictionary: Dictionary, declared: Command, packet: bytes) -> int:
-    """Fly a mission until it is OPERATIONAL, send the command, and show what follows for the seconds of the plan."""
+    """Fly a mission until it is OPERATIONAL, send the command, and show its effects for the seconds of the plan."""
     trial = CommandTrial(dictionary, packet)
     seconds = ANSWER_S if plan.seconds is None else plan.seconds
     with takeoff(replace(plan, seconds=LONGEST_S), attachments=[trial]) as run:

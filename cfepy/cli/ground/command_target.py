@@ -14,7 +14,7 @@ LAST_PORT = 65535
 
 
 class RemoteHost(NamedTuple):
-    """A computer on the network and a UDP port of it."""
+    """The name and a UDP port of a computer on the network."""
 
     name: str
     port: int
@@ -24,14 +24,17 @@ class RemoteHost(NamedTuple):
 
 
 def host_of(text: str, port: int) -> RemoteHost | None:
-    """The computer that a word means; None when it looks like something else.
+    """Parse the name of a computer.
 
     Args:
-        text: an IPv4 address or "localhost", with or without a port, or any name with one.
-        port: taken when the word has none.
+        text: an IPv4 address or "localhost", with or without a port, or any name with a port.
+        port: the port if the text has none.
+
+    Returns:
+        The computer, or None if the text looks like something else.
 
     Raises:
-        UsageError: the port is none.
+        UsageError: the port is invalid.
     """
     match = _HOST.fullmatch(text)
     if match is None:
@@ -43,10 +46,10 @@ def host_of(text: str, port: int) -> RemoteHost | None:
 
 
 def check_is_mission(text: str) -> None:
-    """What is no computer must be a mission.
+    """Check that a target which is not a computer is a mission.
 
     Raises:
-        UsageError: it is neither.
+        UsageError: it is not a mission either.
     """
     try:
         if not is_node(text):
@@ -59,7 +62,7 @@ def check_is_mission(text: str) -> None:
 
 
 def dictionary_for(mission: str | None) -> Dictionary:
-    """The dictionary of a mission that was named on the command line; None takes all that cfepy brings along.
+    """Return the dictionary of a mission that the command line names; for None, of all packets that cfepy ships.
 
     Raises:
         UsageError: there is no such mission.

@@ -1,4 +1,4 @@
-"""`cfepy export`: values over time as CSV or Parquet; what a mission's packets mean, as XTCE or as ROS messages."""
+"""`cfepy export`: values over time as CSV or Parquet; descriptions of a mission's packets, as XTCE or ROS messages."""
 
 from __future__ import annotations
 
@@ -32,11 +32,12 @@ TIME, STAMP = "time", "stamp"
 """Columns of every table: virtual time of sending and time on board, in s."""
 
 TELEMETRY_PACKAGE: Hook[Callable[[Sequence[Telemetry], str], Mapping[str, str]]] = Hook("telemetry_package")
-"""Makes the files of a catkin package of telemetry: the packets and the name of the mission; texts by names."""
+"""Makes the files of a catkin package of telemetry. Arguments: the packets, the mission's name. Returns texts by path.
+"""
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Export what the command line names.
+    """Export the data that the command line names.
 
     Returns:
         The exit status.
@@ -96,7 +97,7 @@ def _values(arguments: argparse.Namespace) -> int:
     output = arguments.output
     folder = Path(output) if output.endswith("/") or os.path.isdir(output) else None
     if arguments.format == "parquet":
-        _parquet()  # that it is installed is better known before a long run than after it
+        _parquet()  # fail before a long run if it is not installed
     if folder is None and output != STDOUT:
         check_writable(output, "--output")
     series, status = look_at_series(arguments, arguments.names)
@@ -115,12 +116,12 @@ def _values(arguments: argparse.Namespace) -> int:
 
 
 def file_name(name: str) -> str:
-    """A file's name for a topic, which a bag may call anything."""
+    """Make a file name from the name of a topic; a bag allows any text as a topic."""
     return re.sub(r"[^\w.~-]", "_", name.strip("/").replace("/", "."))
 
 
 def _table(series: Series, fields: Sequence[str], from_s: float) -> ValueTable:
-    """The table of one series."""
+    """Make the table of one series."""
     columns = series.columns() if "" in fields else series.columns(*fields)
     wanted = series.times_ns >= from_s * NS_PER_S
     named = {f"{series.name}.{name}" if name in (TIME, STAMP) else name: each for name, each in columns.items()}
@@ -133,7 +134,7 @@ def _table(series: Series, fields: Sequence[str], from_s: float) -> ValueTable:
 
 
 def _joined(tables: Sequence[ValueTable]) -> ValueTable:
-    """All tables as one, by time; a row has values in the columns of its own table, whose names say which it is."""
+    """Join all tables by time. A row has values only in its table's columns, whose names begin with the table's."""
     import numpy
 
     if len(tables) == 1:
@@ -169,17 +170,17 @@ def _put_csv(stream: TextIO, table: ValueTable, quotes: bool) -> None:
 
 
 def _exact(time_ns: int) -> str:
-    """A time in s, with all its digits."""
+    """Format a time in s, with all its digits."""
     return f"{time_ns // NS_PER_S}.{time_ns % NS_PER_S:09d}"
 
 
 def _cells(column: NDArray[Any]) -> Iterable[Any]:
-    """What is written: nothing for a value that is missing, 0 and 1 for truth, hexadecimal digits for bytes."""
+    """Format a column: an empty text for a missing value, 0 and 1 for booleans, hexadecimal digits for bytes."""
     return map(_cell, column.tolist()) if column.dtype.kind in "Ofb" else column.tolist()
 
 
 def _cell(value: Any) -> Any:
-    if value is None or value != value:  # a number that is missing is not equal to itself
+    if value is None or value != value:  # a missing number is a NaN
         return ""
     if isinstance(value, bool):
         return int(value)
@@ -187,7 +188,7 @@ def _cell(value: Any) -> Any:
 
 
 def _parquet() -> Any:
-    """The library's module for the format.
+    """Return the library's module for the format.
 
     Raises:
         UsageError: it is not installed.

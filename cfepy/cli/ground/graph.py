@@ -1,4 +1,4 @@
-"""`cfepy graph`: who sends which messages into whose pipes, as text, as a drawing, for graphviz, for programs."""
+"""`cfepy graph`: senders, messages and receiving pipes, as text, as a drawing, for graphviz, or for programs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cfepy.cli.json_output import check_json, write_json, write_text
 from cfepy.cli.main import ENDED_WELL
 from cfepy.ground import Survey, graph_dot, graph_of, graph_svg, graph_text
 
-WIDEST = 100  # letters of a line that is no line of a terminal
+WIDEST = 100  # characters of a line if the output is not a terminal
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -1,4 +1,4 @@
-"""The flight in which `cfepy mids` and `cfepy graph` look at a mission: 10 virtual seconds by default."""
+"""The flight that `cfepy mids` and `cfepy graph` make to look at a mission: 10 virtual seconds by default."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cfepy.pilot import RunPlan, never_happened, takeoff
 
 
 def survey_plan(arguments: argparse.Namespace) -> tuple[RunPlan, MissionSpec]:
-    """The run in which a mission is looked at, and the mission.
+    """Return the plan of the flight, and the mission.
 
     Raises:
         UsageError: there is no such mission.
@@ -28,7 +28,7 @@ def survey_plan(arguments: argparse.Namespace) -> tuple[RunPlan, MissionSpec]:
 
 @contextmanager
 def surveyed(plan: RunPlan, spec: MissionSpec, attachments: Sequence[Attachment] = ()) -> Iterator[Mission]:
-    """Around a mission that has flown for the time of the plan, and has not been shut down."""
+    """Yield a mission that has flown for the time of the plan, and has not been shut down."""
     with takeoff(plan, spec=spec, attachments=attachments) as run:
         tell(run.notes)
         run.run_until(run.course.until_ns)

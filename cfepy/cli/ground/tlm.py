@@ -1,6 +1,6 @@
 """`cfepy tlm`: show telemetry by name, as it arrives over UDP or as a mission sends it in virtual time.
 
-It is shown a line each, as JSON lines, or on a terminal as a table of the newest packet of each kind.
+The output is a line a packet, JSON lines, or on a terminal a table with the newest packet of each kind.
 """
 
 from __future__ import annotations
@@ -33,26 +33,26 @@ REFRESH_S = 0.2
 
 
 class Output(Protocol):
-    """Shows packets."""
+    """Interface of an output for packets."""
 
     def show(self, packet: bytes, at_ns: int) -> None:
-        """A packet, and when it was sent in virtual ns, or arrived in ns since the start."""
+        """Show a packet and its time: virtual ns when it was sent, or ns since the start when it arrived."""
 
     def refresh(self) -> None:
-        """Some time has gone by: what was shown may be drawn."""
+        """Draw the packets shown so far; called at intervals."""
 
     def close(self) -> None:
-        """Nothing more comes."""
+        """End the output: no more packets follow."""
 
 
 @contextmanager
 def output_for(dictionary: Dictionary, arguments: argparse.Namespace, is_live: bool) -> Iterator[Output]:
-    """Around a flight or an hour at a port, what shows packets as the command line says.
+    """Yield the output for packets that the command line asks for.
 
     Args:
         dictionary: names the packets and their fields.
-        arguments: of the command line.
-        is_live: packets come as time goes by, so on a terminal a table is worth while.
+        arguments: the command line.
+        is_live: packets arrive in real time, so a terminal shows a table.
 
     Raises:
         UsageError: the file for JSON cannot be written.
@@ -68,10 +68,10 @@ def output_for(dictionary: Dictionary, arguments: argparse.Namespace, is_live: b
 
 
 class Several:
-    """Shows packets in more than one way.
+    """Shows packets in several outputs.
 
     Args:
-        outputs: the ways.
+        outputs: the outputs.
     """
 
     def __init__(self, outputs: Sequence[Output]) -> None:
@@ -91,7 +91,7 @@ class Several:
 
 
 class TextLines:
-    """`2.450 CFE_ES_HK_TLM CommandCounter=0 ...`"""
+    """Writes lines such as `2.450 CFE_ES_HK_TLM CommandCounter=0 ...`."""
 
     def __init__(self, dictionary: Dictionary, stream: TextIO) -> None:
         self._dictionary = dictionary
@@ -106,11 +106,11 @@ class TextLines:
         self._stream.flush()
 
     def close(self) -> None:
-        """The stream is not its own, so it stays open."""
+        """Leave the stream open, because the caller owns it."""
 
 
 class JsonLines(TextLines):
-    """An object with name, msg_id, sequence, time (spacecraft time, s), at (s) and values."""
+    """Writes objects with name, msg_id, sequence, time (spacecraft time, s), at (s) and values, one a line."""
 
     def show(self, packet: bytes, at_ns: int) -> None:
         decoded = self._dictionary.decode(packet)
@@ -128,7 +128,7 @@ class JsonLines(TextLines):
 
 
 class LiveTable:
-    """A row for each kind of packet: how many came, when the newest came, what is in it."""
+    """Shows a row for each kind of packet: their number, the time of the newest one, and its fields."""
 
     def __init__(self, dictionary: Dictionary, stream: TextIO) -> None:
         from rich.live import Live
@@ -172,7 +172,7 @@ class LiveTable:
 
 
 def content(decoded: Decoded, packet: bytes) -> str:
-    """The fields of a packet, or its bytes when they are not known."""
+    """Return the fields of a packet, or its bytes if its fields are not known."""
     return f"{packet.hex()} ({decoded.problem})" if decoded.problem else decoded.line()
 
 
@@ -180,10 +180,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Show telemetry.
 
     Returns:
-        The exit status: 1 when nothing came.
+        The exit status: 1 if no packet came.
 
     Raises:
-        UsageError: no such mission, packet or address.
+        UsageError: there is no such mission, packet or address.
     """
     words: list[str] = list(arguments.words)
     host = host_of(words[0], TO_PORT) if words else None
@@ -224,7 +224,7 @@ def _nothing(text: str) -> int:
 
 
 def _take(listener: udp.UdpListener, wanted: set[int], output: Output, arguments: argparse.Namespace) -> int:
-    """Show packets until there were enough or the time is over; how many there were."""
+    """Show packets until there were enough or the time is over. Returns their number."""
     watch = Stopwatch()
     shown = 0
     while shown != arguments.count:
@@ -241,7 +241,7 @@ def _take(listener: udp.UdpListener, wanted: set[int], output: Output, arguments
 
 
 def _is_telemetry(packet: bytes) -> bool:
-    """Whether a datagram can be a telemetry packet: anything may arrive at a port."""
+    """Return True if a datagram can be a telemetry packet; any data may arrive at a port."""
     return len(packet) >= TLM_HEADER_SIZE and get_header_size(packet) == TLM_HEADER_SIZE
 
 
@@ -283,7 +283,7 @@ def _msg_id(spec: MissionSpec, dictionary: Dictionary, name: str) -> int:
 
 
 def _show_flight(run: LiveRun, seen: list[Seen], output: Output, dictionary: Dictionary, most: int | None) -> int:
-    """Show packets until there were enough or the time is over; how many there were."""
+    """Show packets until there were enough or the time is over. Returns their number."""
     shown = 0
     while run.course.goes_on and shown != most:
         run.run_until(run.mission.kernel.now + PIECE_NS)

@@ -1,6 +1,6 @@
-"""The commands replay and diff, which work on journals; here are their options.
+"""The commands replay and diff, which work on journals; their options are defined here.
 
-A command belongs here when it does a recorded run again, also step by step, or compares two of them.
+A command belongs here if it repeats a recorded run, also step by step, or compares two of them.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from cfepy.cli.options import TASK_KINDS, add_from_disk, add_until
 from cfepy.plugins import Hook
 
 STOPS: Hook[Callable[[argparse.ArgumentParser], None]] = Hook("replay_options")
-"""Each adds the options that stop the whole mission for a debugger; their values are those of `NO_STOPS` by default."""
+"""Functions that add the options which stop the whole mission for a debugger. `NO_STOPS` has the default values."""
 NO_STOPS = {"stops": [], "step": False, "pdb": None, "gdb": None, "back": False, "back_to": None}
 _REPLAY_STATUS = """exit status:
   0    the same run as far as it is known: every checkpoint, and at the end the digests of trace and numbers

@@ -1,4 +1,4 @@
-"""`cfepy diff`: the first difference between two runs, and what else they differ in."""
+"""`cfepy diff`: the first difference between two runs, and a summary of the others."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ def compare_texts(one: str, other: str, before: int, stream: TextIO) -> bool:
     Args:
         one: path of the first.
         other: path of the second.
-        before: lines that are shown before the first that differs.
-        stream: where what was found is written.
+        before: number of lines to show before the first difference.
+        stream: the output.
 
     Returns:
-        Whether they are alike.
+        True if they are equal.
 
     Raises:
         UsageError: one is not UTF-8 text.
@@ -111,7 +111,7 @@ class _Comparison:
         self._lines = lines
 
     def run(self) -> int:
-        """Compare, and say what was found; the exit status."""
+        """Compare, and print the findings. Returns the exit status."""
         one, other = self._journals
         for line in differences(one, other):
             print(line)
@@ -143,25 +143,27 @@ class _Comparison:
             return (None if parting is None else parting.index), agreed
 
     def _facts(self, journal: Journal, index: int) -> dict[str, Any]:
-        """What there is to see at a record."""
+        """Return the facts that a replay shows at a record."""
         with started(_plan(journal, index, self._lines)) as run:
             return facts_of(run)
 
     def _without_difference(self) -> int:
-        """The replays are alike: then the journals are, or one of the replays is not what was recorded."""
+        """Report replays without a difference. Then the journals are equal too, unless a replay deviates from its
+        recording.
+        """
         cut_off = [journal.path for journal in self._journals if journal.end is None]
-        if cut_off:  # what the replays do beyond their ends is not what was recorded
+        if cut_off:  # the replays may deviate from the recordings after the ends of the journals
             text = "is truncated: its run" if len(cut_off) == 1 else "are truncated: their runs"
             print(f"{' and '.join(cut_off)} {text} may have gone on otherwise")
             return FOUND_PROBLEMS
         if all(journal.end is not None and journal.end.reason in SUDDEN for journal in self._journals):
-            return ENDED_WELL  # in the middle of something, after which there is nothing to compare
+            return ENDED_WELL  # the run was stopped in the middle of a task, and there is nothing to compare after that
         print("but the recorded runs differ: a replay deviates from its recording; `cfepy replay` reports where")
         return FOUND_PROBLEMS
 
 
 def _show_fields(one: Mapping[str, str], other: Mapping[str, str]) -> None:
-    """The fields in which two packets differ; of two that have hardly one in common, none."""
+    """Print the fields in which two packets differ, among the fields that both have."""
     names = [name for name in one if name in other and one[name] != other[name]]
     if names:
         print("\nfields that differ:")

@@ -1,4 +1,4 @@
-"""`cfepy replay`: do the run of a journal again, and say whether it was the same."""
+"""`cfepy replay`: repeat the run of a journal, and report whether it was the same."""
 
 from __future__ import annotations
 
@@ -28,13 +28,14 @@ from cfepy.units import NS_PER_S
 MOST_LINES = 12
 FlyWithStops = Callable[[argparse.Namespace, Replay, View, Sequence[Attachment]], tuple[int, Replay]]
 STOPPED_REPLAY: Hook[FlyWithStops] = Hook("replay_stops")
-"""Flies a replay that stops for a debugger: the command line, the replay, its view, what watches each flight;
-the exit status, and the last of the replays."""
-_FILES = ("json", "save_files", "bag", "trace")  # what a replay leaves behind
+"""Flies a replay that stops for a debugger. Arguments: the command line, the replay, its view, and the attachments of
+each flight. Returns the exit status, and the last of the replays.
+"""
+_FILES = ("json", "save_files", "bag", "trace")  # outputs of a replay
 
 
 def show_info(journal: Journal, stream: TextIO) -> None:
-    """Write it down, a line for each thing."""
+    """Write a summary of the journal, a line for each property."""
     header, end = journal.header, journal.end
     carried = sum(each.packed is not None for each in journal.files.values())
     events = sum(len(pause.events) for pause in journal.pauses) + len(journal.answers)
@@ -57,7 +58,7 @@ def show_info(journal: Journal, stream: TextIO) -> None:
 
 
 class RecordLines(Attachment):
-    """Makes text of records, with the names that the mission has for things."""
+    """Converts records to text, with the mission's names of objects."""
 
     def __init__(self) -> None:
         self._mission: Mission | None = None
@@ -66,7 +67,7 @@ class RecordLines(Attachment):
         self._mission = mission
 
     def describe(self, records: TimedRecords) -> list[str]:
-        """The first lines of them."""
+        """Return the first lines of the records."""
         text = TraceText()
         text.task = "?"
         if self._mission is not None:
@@ -81,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: it is no journal, or its mission cannot run.
+        UsageError: it is not a journal, or its mission cannot run.
     """
     journal = read_journal(arguments.journal)
     if arguments.info:
@@ -108,7 +109,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 @contextlib.contextmanager
 def replaying(arguments: argparse.Namespace, journal: Journal) -> Iterator[Replay]:
-    """Around the replay of a journal: what makes it one, and where its files are."""
+    """Yield the replay of a journal, with its files in place."""
     lines = RecordLines()
     for name in _FILES:  # the working directory is about to change
         path = getattr(arguments, name)
@@ -125,15 +126,15 @@ def replaying(arguments: argparse.Namespace, journal: Journal) -> Iterator[Repla
 
 
 def _fly(arguments: argparse.Namespace, replay: Replay) -> tuple[int, Replay]:
-    """Fly the mission of a replay, and report as its command does.
+    """Fly the mission of a replay, and report as the recorded command does.
 
     Args:
-        arguments: of `cfepy replay`.
+        arguments: the command line of `cfepy replay`.
         replay: the replay.
 
     Returns:
-        The exit status of that, and the replay that it is of, which has a verdict: the one that was given, or the last
-        of those that were flown to go back in it.
+        The exit status, and the replay that has the verdict. It is the given one, or the last of those that were flown
+        to go back in time.
     """
     view = _view(replay.plan.command, arguments)
     if not (arguments.stops or arguments.step or _looks_into(arguments) or _goes_back(arguments)):
@@ -143,7 +144,7 @@ def _fly(arguments: argparse.Namespace, replay: Replay) -> tuple[int, Replay]:
 
 
 def _tasks(arguments: argparse.Namespace, plan: RunPlan) -> str | None:
-    """What tasks run on, with which the run is the same; None for what the run was recorded with."""
+    """Return the task kind for the replay, or None for the recorded one. The run is the same with either."""
     asked: str | None = arguments.tasks
     if arguments.pdb is not None:
         if task_kind(asked or plan.tasks).name != THREAD:
@@ -151,29 +152,29 @@ def _tasks(arguments: argparse.Namespace, plan: RunPlan) -> str | None:
             print(f"cfepy: {text}", file=sys.stderr, flush=True)
         return THREAD
     if asked is None and _goes_back(arguments) and arguments.gdb is None and has_greenlets():
-        return GREENLET  # which the way back is shorter with
+        return GREENLET  # going back is faster with greenlets
     return asked
 
 
 def _goes_back(arguments: argparse.Namespace) -> bool:
-    """Whether the replay stops at its end, to go back from there."""
+    """Return True if the replay stops at its end, to go back from there."""
     return bool(arguments.back) or arguments.back_to is not None
 
 
 def _looks_into(arguments: argparse.Namespace) -> bool:
-    """Whether a debugger is opened in an application."""
+    """Return True if a debugger is opened in an application."""
     return arguments.pdb is not None or arguments.gdb is not None
 
 
 def _view(command: str, arguments: argparse.Namespace) -> View:
-    """What is shown of a run, as the command shows it that it was recorded with."""
+    """Return the view of the run, as the recorded command shows it."""
     if command == NODE:
         return NodeView(arguments.quiet)
     return NodesView(arguments.quiet) if command == LAUNCH and not arguments.console else View(arguments.quiet)
 
 
 def _tell(replay: Replay, stream: TextIO) -> None:
-    """Say whether it was the same run."""
+    """Report whether it was the same run."""
     sys.stdout.flush()
     journal, verdict = replay.journal, replay.verdict
     agreed = verdict.agreed

@@ -1,7 +1,7 @@
-"""The commands for ROS engineers: launch, node, rostest, topic, service, param, bag; here are their options.
+"""The commands for ROS engineers: launch, node, rostest, topic, service, param, bag; their options are defined here.
 
-A command belongs here when it shows a mission as one of ROS's own tools shows a robot. This module imports argparse
-only, for a quick start.
+A command belongs here if it shows a mission as one of ROS's own tools shows a robot. This module imports argparse only,
+for a quick start.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ def _add_topic(commands: _Actions[argparse.ArgumentParser]) -> None:
 def _flown(
     actions: _Actions[argparse.ArgumentParser], name: str, text: str, source_help: str = _SOURCE_HELP
 ) -> argparse.ArgumentParser:
-    """An action that looks into a mission which is flown for it."""
+    """Add an action that reads from a mission which is flown for it."""
     action = actions.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.", epilog=_TOPIC_STATUS)
     metavar = "SOURCE" if source_help == _SOURCE_HELP else "MISSION"
     add_mission(action, "source", metavar=metavar, help=source_help)

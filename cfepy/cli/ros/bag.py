@@ -1,4 +1,4 @@
-"""`cfepy bag`: what is in a bag or an MCAP file, what is left of a damaged one, and one format made of the other."""
+"""`cfepy bag`: show a bag or an MCAP file, recover a damaged one, and convert one format to the other."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ MOST_TOLD = 20
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do what the command line says.
+    """Carry out the action that the command line names.
 
     Returns:
         The exit status.
 
     Raises:
-        UsageError: there is no such recording, a file cannot be written, or is there already.
+        UsageError: there is no such recording, or a file cannot be written or exists already.
     """
     check_json(arguments)
     if arguments.action == "info":
@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _output_of(file: str, is_conversion: bool) -> str:
-    """The file to write when none is named: beside the other one."""
+    """Return the default output file, next to the input file."""
     path = Path(file)
     if not is_conversion:
         return str(path.with_suffix(f".recovered{path.suffix if path.suffix in _OTHER else '.bag'}"))
@@ -59,7 +59,7 @@ def _output_of(file: str, is_conversion: bool) -> str:
 
 
 def _spare(file: str, output: str, *, is_named: bool, is_conversion: bool) -> None:
-    """No recording is written over unasked, and a damaged one, which is the only evidence, not at all."""
+    """Check that no recording is overwritten without a request; a damaged one, the only evidence, never is."""
     if not os.path.exists(output):
         return
     if not is_named:

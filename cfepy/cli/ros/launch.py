@@ -1,4 +1,4 @@
-"""`cfepy launch`: run the ROS nodes of a launch file, or print what is in it."""
+"""`cfepy launch`: run the ROS nodes of a launch file, or print its contents."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: there is none, or something in it is wrong.
+        UsageError: there is no such file, or it has an error.
     """
     if arguments.nodes or arguments.dump_params:
         file, args = launch_file(launch_words(arguments))

@@ -17,15 +17,15 @@ from cfepy.mission import Mission
 from cfepy.pilot import BOOT_S, ENDED, NODE, FailureKind, Flown
 from cfepy.writing.escapes import node_text, raw
 
-FAULT = "cfepy fault "  # how lines about faults begin
-_OWN_LINE = re.compile(r"\[[\w/]+\] (.*)", re.DOTALL)  # as the console has what nodes print
+FAULT = "cfepy fault "  # prefix of lines about faults
+_OWN_LINE = re.compile(r"\[[\w/]+\] (.*)", re.DOTALL)  # format of node output on the console
 
 
 class NodeDisplay:
-    """Shows what the node prints, at once, with its colours, and nothing of the flight computer's console.
+    """Shows the output of the node at once, with its colours, and nothing of the flight computer's console.
 
     Args:
-        stream: where to.
+        stream: the output.
     """
 
     def __init__(self, stream: TextIO) -> None:
@@ -33,7 +33,7 @@ class NodeDisplay:
         self._colours = stream.isatty()
 
     def line(self, text: str) -> None:
-        """A line of the console."""
+        """Show a line of the console if it is from the node."""
         own = _OWN_LINE.fullmatch(text)
         if own is not None:
             stream = raw(self._stream)
@@ -42,27 +42,27 @@ class NodeDisplay:
             print(text, file=sys.stderr, flush=True)
 
     def tell(self, text: str) -> None:
-        """Standard output is the node's."""
+        """Print a message to standard error: standard output is the node's."""
         tell([text])
 
     def update(self, mission: Mission) -> None:
-        """Nothing is drawn between pieces of the run."""
+        """Do nothing: this display draws nothing."""
 
     def close(self) -> None:
-        """Every line is shown already."""
+        """Do nothing: every line is shown already."""
 
 
 class NodeView(View):
-    """See `View`; this one is of a single node, with its exit status."""
+    """The view of a single node, with its exit status; see `View`."""
 
     longer = "--for runs longer"
 
     def display(self, seconds: float) -> Display:
-        """What shows the node's output."""
+        """Make the display of the node's output."""
         return SilentDisplay() if self.quiet else NodeDisplay(sys.stdout)
 
     def end(self, flown: Flown, outputs: Outputs, longer: str) -> int:
-        """Print what went wrong apart from the node, and return the node's exit status, or that of the run's script."""
+        """Print problems other than the node's own. Returns the exit status of the node or of the run's script."""
         outputs.save_files(flown)
         tell(flown.results.never_happened)
         if flown.outcome is not None:
@@ -77,18 +77,18 @@ def run(arguments: argparse.Namespace) -> int:
         Its exit status.
 
     Raises:
-        UsageError: there is no such node, or it cannot run like this.
+        UsageError: there is no such node, or the options do not allow the run.
     """
     return fly_and_tell(arguments, plan_of(arguments, arguments.words, NODE), NodeView(arguments.quiet))
 
 
 def _status(flown: Flown, longer: str) -> int:
-    """The node's exit status, unless it is 0 and something went wrong nevertheless, which is printed."""
+    """Return the node's exit status. If it is 0 and the run had problems nevertheless, return another one."""
     mission, results = flown.mission, flown.results
     app = next(iter((*mission.spec.ros.nodes, *mission.spec.built)), "")
     statuses = {} if mission.ros is None else mission.ros.monitor.statuses
     end = int(statuses.get(app, 0)) & 0xFF
-    is_end = [FailureKind.ENDED, FailureKind.RAISED]  # of which the node's own output and status tell
+    is_end = [FailureKind.ENDED, FailureKind.RAISED]  # the node's own output and status show these
     tell(
         problem.text
         for problem in flown.problems

@@ -21,13 +21,13 @@ from cfepy.status import UsageError
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do what the command line asks of parameters.
+    """Carry out the action on parameters that the command line names.
 
     Returns:
-        The exit status: 1 when there is no such parameter.
+        The exit status: 1 if there is no such parameter.
 
     Raises:
-        UsageError: no such mission, a mission that cannot boot, or a wrong file.
+        UsageError: there is no such mission, it cannot boot, or a file is wrong.
     """
     action: Callable[[argparse.Namespace], int] = ACTIONS[arguments.action]
     return action(arguments)
@@ -111,7 +111,7 @@ def _delete(arguments: argparse.Namespace) -> int:
 
 
 def _change(arguments: argparse.Namespace, value: Any) -> int:
-    """Change table files in place, or with --output leave them alone and write those that change there."""
+    """Change table files in place. With --output, write the changed ones there and keep the originals."""
     files = changed(Path(arguments.file), _full(arguments.name), value)
     for path, data in files.items():
         target = path if arguments.output is None else _folder(arguments.output) / path.name
@@ -136,7 +136,7 @@ def _folder(name: str) -> Path:
 
 
 def _value(text: str) -> Any:
-    """A value as `rosparam set` reads it."""
+    """Parse a value as `rosparam set` does."""
     from cfepy.mission.parameter_files import checked
 
     try:

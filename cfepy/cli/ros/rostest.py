@@ -31,13 +31,13 @@ from cfepy.writing.markup import printable
 from rospy_shim.roslaunch.launch_plan import LaunchPlan, PlannedTest, plan_of
 
 FAILURE, ERROR = "failure", "error"
-BOARD = "workstation"  # where the calls of nodes take time, as tests of nodes that never rest expect
-LAST_LINES = 25  # of what a test printed, when it leaves no results
+BOARD = "workstation"  # calls of nodes take time on it, as required by tests of nodes that never rest
+LAST_LINES = 25  # of the output of a test that leaves no results
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """Why a test did not pass: `kind` is FAILURE or ERROR, `text` what it says."""
+    """A reason why a test did not pass: `kind` is FAILURE or ERROR, `text` its message."""
 
     kind: str
     text: str
@@ -55,7 +55,7 @@ class Case:
 
 @dataclass(slots=True)
 class TestResults:
-    """What came of one or more suites; the counts are those that the suites give."""
+    """The results of one or more suites; the counts are those that the suites report."""
 
     tests: int = 0
     errors: int = 0
@@ -64,25 +64,25 @@ class TestResults:
 
     @property
     def passed(self) -> bool:
-        """Whether nothing went wrong."""
+        """True if there were no errors and no failures."""
         return not self.errors and not self.failures
 
     def add(self, other: TestResults) -> None:
-        """Count another one's tests too."""
+        """Add the tests of another result."""
         self.tests += other.tests
         self.errors += other.errors
         self.failures += other.failures
         self.cases += other.cases
 
     def text(self) -> str:
-        """A line for each test with what went wrong, and a summary as rostest has it."""
+        """Return a line for each test with its problems, and a summary in the format of rostest."""
         lines = [line for case in self.cases for line in _case_lines(case)]
         verdict = "SUCCESS" if self.passed else "FAIL"
         counts = [f" * TESTS: {self.tests}", f" * ERRORS: {self.errors}", f" * FAILURES: {self.failures}"]
         return "\n".join([f"[ROSTEST]{'-' * 71}", "", *lines, "", "SUMMARY", f" * RESULT: {verdict}", *counts])
 
     def xml(self, name: str) -> bytes:
-        """All of it as one JUnit suite called `name`."""
+        """Return everything as one JUnit suite called `name`."""
         counts = {"tests": str(self.tests), "errors": str(self.errors), "failures": str(self.failures)}
         suite = ElementTree.Element("testsuite", {"name": printable(name), **counts})
         for case in self.cases:
@@ -97,21 +97,24 @@ class TestResults:
 
 
 def broken(suite: str, name: str, text: str, kind: str = ERROR) -> TestResults:
-    """The result of a test program that did not run as it should."""
+    """Make the result of a test program that did not run properly."""
     case = Case(suite, name, problems=(Problem(kind, text),))
     return TestResults(1, int(kind == ERROR), int(kind == FAILURE), [case])
 
 
 def read_results(file: Path, suite: str) -> TestResults:
-    """The results that a test program wrote.
+    """Read the results that a test program wrote.
 
     Args:
         file: the XML file.
         suite: package and name of the test.
 
+    Returns:
+        The results.
+
     Raises:
         OSError: there is no such file.
-        ValueError: it is no XML, or has no suite.
+        ValueError: it is not XML, or has no suite.
     """
     try:
         root = plain_xml(read_limited(file, XML_BYTES))
@@ -154,7 +157,7 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: there is no such file, something in it is wrong, or it has no test.
+        UsageError: there is no such file, it has an error, or it has no test.
     """
     file, args = launch_file(launch_words(arguments))
     with tempfile.TemporaryDirectory() as folder, Interrupts() as interrupts:
@@ -183,11 +186,11 @@ class _Runner:
 
     Args:
         file: the launch file.
-        plan: what is in it (`rospy_shim.roslaunch.launch_plan.LaunchPlan`).
+        plan: its contents (`rospy_shim.roslaunch.launch_plan.LaunchPlan`).
         built: its nodes in C++.
         build: builds tests in C++.
-        arguments: of the command line.
-        interrupts: says whether the user pressed Ctrl-C.
+        arguments: the command line.
+        interrupts: reports whether the user pressed Ctrl-C.
     """
 
     def __init__(
@@ -207,7 +210,9 @@ class _Runner:
         self._interrupts = interrupts
 
     def run(self, test: PlannedTest) -> TestResults:
-        """Run a test (`rospy_shim.roslaunch.launch_plan.PlannedTest`), again and again as long as it fails and may."""
+        """Run a test (`rospy_shim.roslaunch.launch_plan.PlannedTest`), and retry it as often as it permits while it
+        fails.
+        """
         results = self._once(test)
         for number in range(1, test.retry + 1):
             if results.passed or self._interrupts.asked:
@@ -217,7 +222,7 @@ class _Runner:
         return results
 
     def _once(self, test: PlannedTest, number: int = 0) -> TestResults:
-        """A run of a test; that of a retry has another seed, for with the same one it would be the same run."""
+        """Run a test once. A retry gets another seed, because the same seed would repeat the same run."""
         suite = f"{test.package}.{test.test_name}"
         nodes, built = dict(self._plan.nodes), dict(self._built)
         if test.compiled is not None:
@@ -243,7 +248,7 @@ class _Runner:
         return self._judged(test, node, suite, flown)
 
     def _program(self, node: CppNode) -> BuiltProgram:
-        """A test in C++, built.
+        """Build a test in C++.
 
         Raises:
             UsageError: it cannot be built.
@@ -255,16 +260,16 @@ class _Runner:
         return NodesDisplay(PlainDisplay(sys.stdout)) if self._arguments.text else SilentDisplay()
 
     def _judged(self, test: PlannedTest, node: NodeConfig, suite: str, flown: Flown) -> TestResults:
-        """What the test wrote, or why it wrote nothing; of a test that passed, what went wrong besides in its run."""
+        """Return the results of the test, or why it wrote none. If it passed, add other problems of its run."""
         results = self._own_results(test, node, suite, flown)
         if results.passed:
             for problem in flown.problems:
-                if not is_reported(problem):  # such as ROS_ERROR of a node in C++, which fails no test of rostest
+                if not is_reported(problem):  # such as ROS_ERROR of a node in C++, which is not a failure in rostest
                     results.add(broken(suite, "nodes", problem.text))
         return results
 
     def _own_results(self, test: PlannedTest, node: NodeConfig, suite: str, flown: Flown) -> TestResults:
-        """What the test itself came to."""
+        """Return the results of the test itself."""
         ros = flown.mission.ros
         died = [each for each in flown.results.problems if each.startswith(f"{node.app} died")]
         if died:  # a node in C++; one in Python ends with an exit status
@@ -282,7 +287,7 @@ class _Runner:
 
 
 def _keep_results(test: PlannedTest, flown: Flown) -> None:
-    """What a test in C++ has written is in the mission's own files: put it where it was to write."""
+    """Copy the results of a test in C++ from the mission's own files to their place on the host."""
     assert test.compiled is not None
     file = flown.mission.files.find(TEST_RESULTS)
     if file is not None:
@@ -290,7 +295,7 @@ def _keep_results(test: PlannedTest, flown: Flown) -> None:
 
 
 def _last_lines(node: NodeConfig, flown: Flown) -> str:
-    """The end of what the test node printed."""
+    """Return the last lines that the test node printed."""
     begins = (f"[{node.name}] ", f"[/{node.name}] ")  # of a node in C++
     lines = [line.partition("] ")[2] for line in flown.mission.console.lines if line.startswith(begins)]
     return "".join(f"\n| {line}" for line in lines[-LAST_LINES:])

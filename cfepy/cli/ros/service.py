@@ -1,4 +1,4 @@
-"""`cfepy service`: rosservice's answers and calls, on a mission that is flown for them."""
+"""`cfepy service`: the answers and calls of rosservice, on a mission that is flown for them."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from rospy_shim.graph.compiled import DeclaredType
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do what the command line says.
+    """Carry out the action that the command line names.
 
     Returns:
-        The exit status: 1 when nothing was found, or the call failed.
+        The exit status: 1 if nothing was found, or the call failed.
 
     Raises:
-        UsageError: no such mission or service.
+        UsageError: there is no such mission or service.
     """
     if is_bag(arguments.source):
         raise UsageError("a bag has no services; give a mission", file=arguments.source)
@@ -38,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _services(arguments: argparse.Namespace) -> dict[str, dict[str, Any]]:
-    """What is offered when the mission has flown, by name."""
+    """Fly the mission, and return its services at the end, by name."""
     with FlightSource(flight_plan(arguments)) as source:
         ros = source.fly().ros
         found = {} if ros is None else dict(sorted(ros.graph.services.items()))
@@ -53,7 +53,9 @@ def _described(name: str, service: Any, near: Path) -> dict[str, Any]:
 
 
 def _arguments(kind: Any, near: Path) -> list[str]:
-    """Fields of the request; a compiled node names the type only: its definition is looked for near the mission."""
+    """Return the fields of the request. A compiled node has only the type, whose definition is searched near the
+    mission.
+    """
     if isinstance(kind, DeclaredType):
         try:
             kind = library_near(near).service_class(kind._type)

@@ -21,7 +21,7 @@ PIECE_NS = 100 * NS_PER_MS
 
 
 class SeenTopic(NamedTuple):
-    """What there is on a topic; nodes by name."""
+    """The state of a topic; nodes by name."""
 
     name: str
     type: str
@@ -34,7 +34,7 @@ class BagSource:
 
     Args:
         file: the bag.
-        seconds: how much of it; None is all.
+        seconds: length to read, in s; None is all.
     """
 
     def __init__(self, file: str, seconds: float | None) -> None:
@@ -42,14 +42,14 @@ class BagSource:
         self._end_ns = None if seconds is None else round(seconds * NS_PER_S)
 
     def messages(self, patterns: Sequence[str] = ()) -> Generator[TopicMessage, None, None]:
-        """The messages by time, as far as the command line wants them."""
+        """Yield the messages by time, up to the end that the command line sets."""
         for message in self._bag.messages(patterns):
             if self._end_ns is not None and message.at_ns > self._end_ns:
                 return
             yield message
 
     def topics(self) -> list[SeenTopic]:
-        """The topics, by name; a bag knows no subscribers."""
+        """Return the topics, by name; a bag knows no subscribers."""
         publishers: dict[tuple[str, str], dict[str, None]] = {}
         for each in self._bag.connections:
             names = publishers.setdefault((each.topic, each.datatype), {})
@@ -59,7 +59,7 @@ class BagSource:
         return [SeenTopic(*key, tuple(names), ()) for key, names in sorted(publishers.items())]
 
     def addresses(self) -> dict[str, str]:
-        """The URIs of nodes by name; a bag knows none."""
+        """Return the URIs of nodes by name; a bag has none."""
         return {}
 
     def __enter__(self) -> BagSource:
@@ -77,8 +77,8 @@ class FlightSource:
 
     Args:
         plan: the run.
-        spec: the mission, when it is not that of the plan as it is.
-        console: takes the mission's lines; None takes them away.
+        spec: the mission, if it differs from the mission of the plan.
+        console: receives the mission's lines; None discards them.
     """
 
     def __init__(self, plan: RunPlan, spec: MissionSpec | None = None, console: Console | None = None) -> None:
@@ -90,19 +90,19 @@ class FlightSource:
 
     @property
     def mission(self) -> Mission:
-        """The mission, as far as it has flown."""
+        """The mission, in its present state."""
         assert self._run is not None
         return self._run.mission
 
     def messages(self, patterns: Sequence[str] = ()) -> Generator[TopicMessage, None, None]:
-        """Fly, and give the messages as they come; see `TopicWatch` for the patterns."""
+        """Fly the mission, and yield the messages as they arrive; see `TopicWatch` for the patterns."""
         seen: list[TopicMessage] = []
         for _ in self._pieces([TopicWatch(seen.append, patterns)]):
             yield from seen
             seen.clear()
 
     def _pieces(self, watches: Sequence[TopicWatch] = ()) -> Iterator[None]:
-        """Fly piece by piece."""
+        """Fly the mission in short steps."""
         flight = takeoff(self._plan, spec=self._spec, attachments=watches, console=self._console)
         self._run = run = self._flight.enter_context(flight)
         tell(run.notes)
@@ -111,19 +111,19 @@ class FlightSource:
             yield
 
     def fly(self, is_enough: Callable[[], bool] = lambda: False) -> Mission:
-        """Fly without looking at messages, until there is enough; the mission, as it is at the end."""
+        """Fly without looking at messages until `is_enough` or to the end. Returns the mission in its final state."""
         for _ in self._pieces():
             if is_enough():
                 break
         return self.mission
 
     def topics(self) -> list[SeenTopic]:
-        """The topics that there are when it has flown, by name."""
+        """Return the topics that exist after the flight, by name."""
         found = [] if self.mission.ros is None else self.mission.ros.topics()
         return [SeenTopic(row.name, row.type, row.publishers, row.subscribers) for row in found]
 
     def addresses(self) -> dict[str, str]:
-        """The URIs of the nodes that there are when it has flown, by name."""
+        """Return the URIs of the nodes that exist after the flight, by name."""
         nodes = {} if self.mission.ros is None else self.mission.ros.graph.nodes
         return {name: node.client.get_node_uri() or "" for name, node in nodes.items()}
 
@@ -144,7 +144,7 @@ Source = BagSource | FlightSource
 
 
 def source_of(arguments: argparse.Namespace) -> Source:
-    """What the command line names: a bag or a mission."""
+    """Make the source that the command line names: a bag or a mission."""
     if is_bag(arguments.source):
         refuse_run_options(
             arguments, f"only valid for a mission, and {arguments.source} is a bag; leave it out", but=["seconds"]

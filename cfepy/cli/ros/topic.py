@@ -1,4 +1,4 @@
-"""`cfepy topic`: rostopic's answers, from a mission that is flown for them or from a bag."""
+"""`cfepy topic`: the answers of rostopic, from a mission that is flown for them or from a bag."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from cfepy.writing.escapes import visible_line
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do what the command line says.
+    """Carry out the action that the command line names.
 
     Returns:
-        The exit status: 1 when nothing was found.
+        The exit status: 1 if nothing was found.
 
     Raises:
-        UsageError: no such mission or bag, or an argument that cannot be.
+        UsageError: there is no such mission or bag, or an argument is invalid.
     """
     actions: dict[str, Callable[[argparse.Namespace], int]] = {
         "list": _list,
@@ -54,7 +54,7 @@ def _rows(arguments: argparse.Namespace) -> list[SeenTopic]:
 
 
 def _rows_and_addresses(arguments: argparse.Namespace) -> tuple[list[SeenTopic], dict[str, str]]:
-    """The topics, and the URIs of nodes."""
+    """Return the topics, and the URIs of nodes."""
     with source_of(arguments) as source:
         if isinstance(source, FlightSource):
             source.fly()
@@ -92,10 +92,10 @@ def _counted(row: SeenTopic, names: tuple[str, ...], what: str) -> str:
 
 
 def _known(arguments: argparse.Namespace) -> tuple[SeenTopic, dict[str, str]]:
-    """The topic that is meant, and the URIs of nodes.
+    """Return the topic that the command line names, and the URIs of nodes.
 
     Raises:
-        UsageError: there is none such.
+        UsageError: there is no such topic.
     """
     found, addresses = _rows_and_addresses(arguments)
     rows = {row.name: row for row in found}
@@ -151,10 +151,10 @@ def _echo(arguments: argparse.Namespace) -> int:
 
 
 def _filter(expression: str | None) -> Callable[[Any], Any]:
-    """Whether a message is to be shown.
+    """Make the filter of messages.
 
     Raises:
-        UsageError: the expression is none.
+        UsageError: the expression is invalid.
     """
     if expression is None:
         return lambda message: True
@@ -168,7 +168,7 @@ def _filter(expression: str | None) -> Callable[[Any], Any]:
     def wanted(message: Any) -> Any:
         try:
             return eval(code, {"m": message})
-        except Exception as error:  # whatever the expression makes of the message
+        except Exception as error:  # the expression may raise any error
             raise UsageError(
                 f"{described(error)}; m is the message, here of type {message._type}", field="--filter"
             ) from None
@@ -185,7 +185,7 @@ def _measure(arguments: argparse.Namespace, meter: Meter) -> int:
 
 
 def _show(arguments: argparse.Namespace, take: Callable[[Any], bool]) -> tuple[int, list[str]]:
-    """Show messages until there were enough; how many there were, and the topics that there are."""
+    """Show messages until there were enough. Returns their number, and the names of the existing topics."""
     shown, topics = 0, candidates(_rooted(arguments.topic))
     with source_of(arguments) as source, closing(source.messages(topics)) as messages:
         for message in messages:
@@ -202,7 +202,7 @@ def _rooted(topic: str) -> str:
 
 
 def _ended(arguments: argparse.Namespace, is_shown: bool, known: list[str]) -> int:
-    """The exit status; that nothing came is told, with the topic that was probably meant."""
+    """Return the exit status. If no message came, report it, with a similar topic as a hint."""
     if is_shown:
         return ENDED_WELL
     topic = _rooted(arguments.topic)

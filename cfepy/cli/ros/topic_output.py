@@ -1,4 +1,4 @@
-"""How `cfepy topic` shows messages: as rostopic's echo, hz, bw and delay do, or as JSON."""
+"""The output formats of `cfepy topic`: those of rostopic's echo, hz, bw and delay, and JSON."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class Echo:
     """Shows messages as `rostopic echo` does.
 
     Args:
-        stream: where to.
-        name: the topic, with a field behind it or not.
+        stream: the output.
+        name: the topic, with or without a field after it.
         style: "text", "json" or "csv".
-        is_wanted: whether a message is to be shown.
-        hides: what is left out of the text: "array", "str".
+        is_wanted: returns whether to show a message.
+        hides: fields to omit from the text: "array", "str".
     """
 
     def __init__(
@@ -35,7 +35,7 @@ class Echo:
         self._has_head = False
 
     def show(self, message: TopicMessage) -> bool:
-        """Show a message; False when it is not meant."""
+        """Show a message. Returns False if it is not wanted."""
         decoded = self._decoder.decode(message)
         try:
             value = value_at(decoded, steps_of(self._name.removeprefix(message.topic)))
@@ -53,7 +53,7 @@ class Echo:
         self._stream.write(f"{text}\n---\n")
 
     def _shown_fields(self, value: Any) -> list[str]:
-        """Names of the fields that are not hidden."""
+        """Return the names of the fields that are not hidden."""
         hidden = {"array": lambda kind: kind.endswith("]"), "str": lambda kind: kind == "string"}
         pairs = zip(value.__slots__, value._slot_types, strict=True)
         return [name for name, kind in pairs if not any(hidden[each](kind) for each in self._hides)]
@@ -72,7 +72,7 @@ class Echo:
 
 
 def flat(value: Any, name: str) -> Iterable[tuple[str, str]]:
-    """The numbers and texts in a message, with their names, for a table."""
+    """Yield the numbers and texts in a message, with their names, for a table."""
     if hasattr(value, "to_nsec"):
         yield name, str(value.to_nsec())
     elif hasattr(value, "_slot_types"):
@@ -93,10 +93,10 @@ def _seconds(ns: int | None) -> float | None:
 
 
 class Hz:
-    """How often messages come (`rostopic hz`).
+    """The rate of messages (`rostopic hz`).
 
     Args:
-        window: how many of the newest messages count; None is all.
+        window: how many of the newest messages to count; None is all.
     """
 
     def __init__(self, window: int | None) -> None:
@@ -109,17 +109,17 @@ class Hz:
         return True
 
     def values(self) -> dict[str, float]:
-        """rate in Hz; min, max and std_dev of the periods in s; window; none with less than two messages."""
+        """Return rate in Hz; min, max and std_dev of the periods in s; window. Empty with less than two messages."""
         times = self._times if self._window is None else self._times[-self._window :]
         return {} if len(times) < 2 else _periods([(later - earlier) / NS_PER_S for earlier, later in pairwise(times)])
 
     def text(self) -> str:
-        """The values as rostopic shows them."""
+        """Return the values in the format of rostopic."""
         return _rate_text("average rate", self.values(), "rate")
 
 
 class Delay:
-    """How old messages are when they come, by the stamp in their header (`rostopic delay`); arguments as `Hz`."""
+    """The age of messages on arrival, by the stamp in their header (`rostopic delay`); arguments as for `Hz`."""
 
     def __init__(self, window: int | None) -> None:
         self._window = window
@@ -140,7 +140,7 @@ class Delay:
         return True
 
     def values(self) -> dict[str, float]:
-        """delay, min, max and std_dev in s; window; none without messages."""
+        """Return delay, min, max and std_dev in s; window. Empty without messages."""
         delays = self._delays if self._window is None else self._delays[-self._window :]
         if not delays:
             return {}
@@ -148,12 +148,12 @@ class Delay:
         return {"delay": mean, **_spread(delays, mean), "window": len(delays)}
 
     def text(self) -> str:
-        """The values as rostopic shows them."""
+        """Return the values in the format of rostopic."""
         return _rate_text("average delay", self.values(), "delay")
 
 
 class Bandwidth:
-    """How many bytes come (`rostopic bw`); arguments as `Hz`."""
+    """The bytes per second (`rostopic bw`); arguments as for `Hz`."""
 
     def __init__(self, window: int | None) -> None:
         self._window = window
@@ -165,7 +165,7 @@ class Bandwidth:
         return True
 
     def values(self) -> dict[str, float]:
-        """bandwidth in bytes/s; mean, min and max size in bytes; window; none with less than two messages."""
+        """Return bandwidth in bytes/s; mean, min and max size in bytes; window. Empty with less than two messages."""
         seen = self._seen if self._window is None else self._seen[-self._window :]
         if len(seen) < 2 or seen[0][0] == seen[-1][0]:
             return {}
@@ -181,7 +181,7 @@ class Bandwidth:
         }
 
     def text(self) -> str:
-        """The values as rostopic shows them."""
+        """Return the values in the format of rostopic."""
         values = self.values()
         if not values:
             return "no new messages"

@@ -1,6 +1,6 @@
-"""What a ROS engineer sees of a run: what the nodes print, and a report of topics and nodes.
+"""A ROS engineer's view of a run: the output of the nodes, and a report of topics and nodes.
 
-The flight computer below them, its console and its own messages, is shown by `cfepy.cli.run.run.View`.
+`cfepy.cli.run.run.View` shows the flight computer below them, its console and its own messages.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from cfepy.mission import Mission
 from cfepy.pilot import BOOT_S, ENDED, NOT_STARTED, Flown, Results
 
 LOG_TOPIC = "/rosout"
-_OF_NODES = re.compile(r"\[[\w/]+\] |launch: |cfepy fault ")  # how lines of nodes begin, and what is said about them
+_OF_NODES = re.compile(r"\[[\w/]+\] |launch: |cfepy fault ")  # prefixes of lines from nodes and about nodes
 _STATES = {NOT_STARTED: "not started", ENDED: "ended"}
 
 
 class NodesDisplay:
-    """Shows what nodes print, and nothing of the flight computer's console.
+    """Shows the output of nodes, and nothing of the flight computer's console.
 
     Args:
-        display: shows what is left.
+        display: shows the remaining lines.
     """
 
     def __init__(self, display: Display) -> None:
@@ -35,16 +35,16 @@ class NodesDisplay:
         self.close = display.close
 
     def line(self, text: str) -> None:
-        """A line of the console."""
+        """Show a line of the console if it is from a node."""
         if _OF_NODES.match(text):
             self._display.line(text)
 
 
 class NodesView(View):
-    """See `View`; this one is of the nodes."""
+    """The view of the nodes; see `View`."""
 
     def display(self, seconds: float) -> Display:
-        """What shows the nodes' output."""
+        """Make the display of the nodes' output."""
         return NodesDisplay(super().display(seconds))
 
     def report(self, flown: Flown) -> None:
@@ -71,7 +71,7 @@ def _topics(results: Results, mission: Mission) -> Table:
 
 
 def _missing(row: Any) -> str:
-    """Why no messages were sent to all on a topic (`rospy_shim.graph.graph.TopicRow`)."""
+    """Explain why messages of a topic did not reach all nodes (`rospy_shim.graph.graph.TopicRow`)."""
     if not row.publishers:
         return "no publisher"
     if not row.subscribers:

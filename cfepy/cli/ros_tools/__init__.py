@@ -1,7 +1,7 @@
-"""ROS's own tools as commands: rosbag, rosmsg, rossrv, rosnode, tf; here are their options.
+"""ROS's own tools as commands: rosbag, rosmsg, rossrv, rosnode, tf; their options are defined here.
 
-A command belongs here when it is one of ROS's own and a library of nodes already. The words of the command line are
-handed to it as they are, so what it prints is what it prints to a node (`cfepy.cli.ros_tools.tool`).
+A command belongs here if it is one of ROS's own and its library for nodes exists already. It gets the words of the
+command line unchanged, so its output is the same as for a node (`cfepy.cli.ros_tools.tool`).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _Actions = argparse._SubParsersAction
 
 
 class _Handed(argparse.Action):
-    """An option that is handed to the tool as it is."""
+    """An option that is passed on to the tool unchanged."""
 
     def __call__(self, parser: Any, namespace: Any, values: Any, option_string: str | None = None) -> None:
         words = [self.option_strings[0], *([] if self.nargs == 0 else [values])]
@@ -58,7 +58,7 @@ def _action(
 
 
 def _hand(action: argparse.ArgumentParser, *names: str, text: str, value: str | None = None) -> None:
-    """Add an option that is handed to the tool, with a value or without one."""
+    """Add an option that is passed on to the tool, with a value or without one."""
     shape: dict[str, Any] = {"nargs": 0} if value is None else {"metavar": value}
     action.add_argument(*names, action=_Handed, dest="handed", default=[], help=text, **shape)
 
@@ -70,7 +70,7 @@ _ELSEWHERE = {
     "play": "`cfepy run MISSION --play FILE` plays a bag into a mission",
     "fix": "there are no migration rules here; `cfepy rosbag check FILE` says what does not fit",
 }
-"""What other commands do, or none does."""
+"""Hints for actions of rosbag that other commands replace, or that are not available."""
 
 
 def _add_rosbag(commands: _Actions[argparse.ArgumentParser]) -> None:
@@ -152,7 +152,7 @@ def _add_rosnode(commands: _Actions[argparse.ArgumentParser]) -> None:
 def _flown(
     actions: _Actions[argparse.ArgumentParser], name: str, text: str, words: tuple[str, str] | None = None
 ) -> argparse.ArgumentParser:
-    """An action on a mission that is flown for it."""
+    """Add an action on a mission that is flown for it."""
     action = _action(actions, name, text)
     add_mission(action, "source")
     if words is not None:
@@ -186,11 +186,11 @@ def _source(action: argparse.ArgumentParser) -> None:
 
 
 def words_of(arguments: argparse.Namespace, more: Sequence[str] = ()) -> list[str]:
-    """The command line of the tool itself.
+    """Return the command line of the tool itself.
 
     Args:
-        arguments: of `cfepy`.
-        more: what comes after its options.
+        arguments: the command line of `cfepy`.
+        more: words after its options.
     """
     words = getattr(arguments, "words", None) or []
     return [arguments.action, *arguments.handed, *more, *([words] if isinstance(words, str) else words)]

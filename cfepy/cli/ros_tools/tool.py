@@ -1,6 +1,6 @@
-"""`cfepy rosbag`, `rosmsg`, `rossrv`, `rosnode` and `tf`: a tool of ROS runs as a node of the ground's.
+"""`cfepy rosbag`, `rosmsg`, `rossrv`, `rosnode` and `tf`: a ROS tool that runs as a node of the ground.
 
-What needs no mission runs in one that has nothing else; a bag that tf is to look into is played there.
+A tool that needs no mission runs in an empty one. A bag for tf is played in an empty one.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 from cfepy.writing.console import Console
 
-AFTER_BAG_S = 1.0  # until what was played last has come
+AFTER_BAG_S = 1.0  # time for the last messages of the bag to arrive
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do what the command line says.
+    """Carry out the action that the command line names.
 
     Returns:
-        The exit status: that of the tool.
+        The exit status of the tool.
 
     Raises:
         UsageError: there is no such mission or bag.
@@ -49,11 +49,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 class ToolConsole(GroundConsole):
-    """Takes what a tool prints, and shows it between two pieces of the flight: no task may fail with the reader.
+    """Takes the output of a tool, and shows it between two steps of the flight, so that no task fails with the reader.
 
     Args:
-        show: takes its lines; those of its standard error go to that of this process.
-        with_others: show what other nodes print as well.
+        show: receives its lines; lines of its standard error go to the standard error of this process.
+        with_others: show the output of other nodes as well.
 
     Attributes:
         status: the tool's exit status, when it has ended.
@@ -66,17 +66,17 @@ class ToolConsole(GroundConsole):
         self._waiting: list[tuple[str, str]] = []
 
     def take(self, said: dict[str, Any]) -> None:
-        """A line of the tool, or its end."""
+        """Keep a line of the tool, or its exit status."""
         self.status = said.pop("status", self.status)
         self._waiting += said.items()
 
     def overhear(self, text: str) -> None:
-        """A line of another node."""
+        """Keep a line of another node."""
         if self._with_others:
             self._waiting.append(("out", text))
 
     def show(self) -> None:
-        """Show what has come since the last time."""
+        """Show the lines since the last call."""
         waiting, self._waiting = self._waiting, []
         for stream, line in waiting:
             if stream == "out":
@@ -139,7 +139,7 @@ def _tf(arguments: argparse.Namespace) -> int:
 
 
 def _played(arguments: argparse.Namespace) -> tuple[RunPlan, MissionSpec]:
-    """The run in which a bag is played and nothing else, with its time as ROS time."""
+    """Make the run that only plays a bag, with the time of the bag as ROS time."""
     refuse_run_options(
         arguments, f"only valid for a mission, and {arguments.source} is a bag; leave it out", but=["seconds"]
     )
@@ -152,7 +152,7 @@ def _played(arguments: argparse.Namespace) -> tuple[RunPlan, MissionSpec]:
 
 
 def _tell_transforms(plan: RunPlan, base: MissionSpec, words: Sequence[str], console: ToolConsole) -> None:
-    """Fly a mission with a tool that listens to its transforms; a bag begins to be played when that listens."""
+    """Fly a mission with a tool that listens to its transforms. A bag is played from when the tool listens."""
     spec = plan.with_played_bag(with_ground_node(base, "ground_tool", ["tf", words, None]))
     _fly(plan, spec, console)
 
@@ -191,14 +191,17 @@ def _frames(arguments: argparse.Namespace, plan: RunPlan, base: MissionSpec) -> 
 
 
 def drawn(dot: str, kind: str) -> bytes:
-    """A drawing by graphviz, as view_frames has it made.
+    """Draw a graph with graphviz, as view_frames does.
 
     Args:
         dot: the graph.
-        kind: what `dot -T` takes, such as "pdf".
+        kind: a format of `dot -T`, such as "pdf".
+
+    Returns:
+        The drawing.
 
     Raises:
-        UsageError: graphviz is not installed, or does not understand.
+        UsageError: graphviz is not installed, or rejects the graph.
     """
     try:
         run = subprocess.run(["dot", f"-T{kind}"], input=dot.encode(), capture_output=True, check=True)
@@ -213,10 +216,13 @@ def drawn(dot: str, kind: str) -> bytes:
 
 
 def tree_text(frames: dict[str, dict[str, Any]]) -> str:
-    """Frames as a tree of lines, children below their parent.
+    """Format frames as a tree of lines, children below their parent.
 
     Args:
-        frames: as tf2 tells them (`allFramesAsYAML`), by name.
+        frames: the result of `allFramesAsYAML` of tf2, by name.
+
+    Returns:
+        The text.
     """
     children: dict[str, list[str]] = {}
     for name, frame in frames.items():
@@ -232,7 +238,7 @@ def tree_text(frames: dict[str, dict[str, Any]]) -> str:
 
 
 def _about(frame: dict[str, Any]) -> str:
-    """Who tells where a frame is, and how often."""
+    """Describe who broadcasts a frame, and how often."""
     if not frame["buffer_length"]:
         return f"once, by {frame['broadcaster']}"
     return f"{frame['rate']:.3f} Hz for {frame['buffer_length']:.1f} s, by {frame['broadcaster']}"

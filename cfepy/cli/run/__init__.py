@@ -1,7 +1,6 @@
-"""The commands run, check and new; here are their options.
+"""The commands run, check and new; their options are defined here.
 
-A command belongs here when it flies a mission once and reports the results, or makes or checks a mission before it
-flies.
+A command belongs here if it flies a mission once and reports the results, or makes or checks a mission before it flies.
 """
 
 from __future__ import annotations

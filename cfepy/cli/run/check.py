@@ -1,6 +1,6 @@
 """`cfepy check`: print everything that is wrong with a mission, a line each: `file:line: what; what to do`.
 
-Warnings stand behind the errors, as `file:line: warning: what`.
+Warnings follow the errors, as `file:line: warning: what`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Check the mission that the command line names.
 
     Returns:
-        The exit status: 0 when nothing but warnings was found.
+        The exit status: 0 if only warnings or nothing were found.
 
     Raises:
         UsageError: there is no such mission, or the JSON cannot be written.
@@ -53,7 +53,7 @@ def _as_json(errors: list[MissionProblem], warnings: list[MissionProblem]) -> di
 
 
 def _check_faults(arguments: argparse.Namespace, flies: bool) -> list[MissionProblem]:
-    """What is wrong with a fault plan; a mission that cannot boot is not searched for targets."""
+    """Return the errors of a fault plan. A mission that cannot boot is not searched for targets."""
     from cfepy.faults import check_plan, look_at, plan_of, read_plan
 
     try:
@@ -72,7 +72,7 @@ def _line(finding: MissionProblem) -> str:
 
 
 def _shown(path: Path) -> str:
-    """A path as short as it can be named from here."""
+    """Return a path in its shortest form relative to the working directory."""
     try:
         return os.path.relpath(path) if path.is_relative_to(Path.cwd()) else str(path)
     except OSError:

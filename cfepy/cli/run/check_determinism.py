@@ -1,6 +1,7 @@
-"""`--check-determinism`: a mission is flown several times, and the first difference is printed.
+"""`--check-determinism`: fly a mission several times, and print the first difference.
 
-The runs differ in what must not matter: the hash seed of the process, the addresses of its objects, the kind of tasks.
+The runs differ in conditions that must not matter: the hash seed of the process, the addresses of its objects, the kind
+of tasks.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from cfepy.rtos import AUTO, GREENLET, THREAD, has_greenlets
 from cfepy.status import UsageError
 
 MOST_CONTACTS = 20
-ATTEMPTS = 3  # runs that follow addresses or the host do not part at the same record twice
+ATTEMPTS = 3  # runs that depend on addresses or the host do not differ first at the same record twice
 _SETS = """with `ordered_sets: true` in the mission file these two agree: somewhere the order of a set decides;
 sort it in the code (for name in sorted(names)), or switch ordered sets on"""
 _OUTSIDE = """even two runs alike differ: something outside decides, such as the address of an object (id(), the order
@@ -42,7 +43,7 @@ _NOT_TOGETHER = ("realtime", "json", "save_files", "trace", "record", "bag")
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """How a run differs from the others: PYTHONHASHSEED and `--tasks`."""
+    """The conditions of a run: PYTHONHASHSEED and `--tasks`."""
 
     hash_seed: int
     tasks: str
@@ -55,14 +56,14 @@ def check(arguments: argparse.Namespace, plan: RunPlan) -> int:
     """Run and compare.
 
     Args:
-        arguments: with the options of `add_flight`.
-        plan: what is run.
+        arguments: the command line with the options of `add_flight`.
+        plan: the run.
 
     Returns:
-        The exit status: 0 when all runs made one trace and nothing went wrong in them, 1 otherwise.
+        The exit status: 0 if all runs made one trace and had no problems, 1 otherwise.
 
     Raises:
-        UsageError: the mission cannot run, or an option does not go with this one.
+        UsageError: the mission cannot run, or an option conflicts with `--check-determinism`.
     """
     for name, option in flight_add_ons.options():
         if getattr(arguments, name) not in (None, []):
@@ -78,10 +79,10 @@ def check(arguments: argparse.Namespace, plan: RunPlan) -> int:
 
 
 def compare(plan: RunPlan, count: int) -> list[str] | None:
-    """Run a plan so many times and show the first difference.
+    """Run a plan `count` times and show the first difference.
 
     Returns:
-        What went wrong in each of the runs; None when they differ.
+        The problems of each of the runs, or None if the runs differ.
 
     Raises:
         UsageError: the mission cannot run.
@@ -106,7 +107,7 @@ def compare(plan: RunPlan, count: int) -> list[str] | None:
 
 
 def _tell_contacts(contacts: Sequence[str]) -> None:
-    """What another run, or another computer, may answer otherwise."""
+    """Report contacts outside the simulation, whose answers may differ in another run or on another computer."""
     if contacts:
         print("past the simulated computer, where cfepy cannot answer for it:")
     for text in contacts[:MOST_CONTACTS]:
@@ -130,7 +131,7 @@ class Runs:
     """Makes runs of one mission.
 
     Args:
-        plan: what is run.
+        plan: the run.
     """
 
     def __init__(self, plan: RunPlan) -> None:
@@ -142,7 +143,8 @@ class Runs:
         """Run side by side.
 
         Returns:
-            Two variants that part and the number of the record, None when there are none such; how the runs ended.
+            Two variants that differ and the number of the record, or None if all are equal; then the facts at their
+            ends.
         """
         with contextlib.ExitStack() as stack:
             runs = [stack.enter_context(self._started(each, ordered_sets=ordered_sets)) for each in variants]
@@ -155,12 +157,12 @@ class Runs:
             return None, {**(runs[0].reader.facts or {}), "records": agreed}
 
     def look(self, variant: Variant, index: int) -> Look:
-        """Run again, up to a record, and look at it."""
+        """Run again up to a record, and return a look at it."""
         with self._started(variant, look_at=index) as run:
             return Look.from_dict(facts_of(run))
 
     def cause(self, one: Variant, other: Variant) -> str:
-        """What the difference hangs on, found out by running again."""
+        """Find the cause of the difference by more runs."""
         if self.compare([one, other, one, other], ordered_sets=True)[0] is None:
             return _SETS
         if self.compare([one, one])[0] is not None:

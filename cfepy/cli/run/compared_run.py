@@ -1,7 +1,7 @@
-"""A run in a process of its own whose trace another process reads: what `--check-determinism` starts.
+"""A run in a process of its own whose trace another process reads; `--check-determinism` starts it.
 
-`python -m cfepy.cli.run.compared_run RUN`, where RUN is a `ComparedRun` as JSON. It writes to the pipe: all
-records, or, with `look_at`, a description of one of them.
+`python -m cfepy.cli.run.compared_run RUN`, where RUN is a `ComparedRun` as JSON. It writes to the pipe: all records,
+or, with `look_at`, a description of one of them.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ LINES = 6  # records that are shown before the one that is looked at
 
 
 def fields_of(record: bytes, mission: Mission) -> dict[str, str]:
-    """Name and value of each field; none for a record of another kind, or of a type that is not known."""
+    """Return name and value of each field; empty for a record of another kind, or of an unknown type."""
     if record[:1] == UNSENT:
         topic, _, message = record[1:].partition(b"\0")
         if topic:
@@ -53,13 +53,13 @@ def fields_of(record: bytes, mission: Mission) -> dict[str, str]:
 
 
 def _of_message(name: str, data: bytes, mission: Mission) -> dict[str, str]:
-    """The facts of a message that the bus does not carry."""
+    """Return the fields of a message that the bus does not carry."""
     topic = next((each for each in topics_of(mission) if each.name == name), None)
     if topic is None or not topic.type:
         return {}
     try:
         return _texts(plain(library_of(topic).message_class(topic.type)().deserialize(data)))
-    except Exception:  # whatever the generated code raises for bytes that are no such message
+    except Exception:  # the generated code may raise any error for bytes of another type
         return {}
 
 
@@ -69,16 +69,16 @@ def _texts(values: object) -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class ComparedRun:
-    """A run whose records another process reads, and what it is to write of them.
+    """A run whose records another process reads, and the choice of the records.
 
     Attributes:
-        plan: the run; None for that of the journal.
-        journal: path of a journal that is replayed; None for none.
+        plan: the run; None for the run of the journal.
+        journal: path of a journal to replay, or None.
         pipe: number of the pipe to write to.
         look_at: number of the record to look at; None writes all records.
-        ordered_sets: all nodes get ordered sets, whatever the mission file says.
-        lines: records that are shown before the one that is looked at.
-        scratch: folder for what the run needs for a while; empty for that of the computer.
+        ordered_sets: all nodes get ordered sets, regardless of the mission file.
+        lines: number of records to show before the one that is looked at.
+        scratch: folder for temporary files; empty for the computer's default.
     """
 
     plan: RunPlan | None = None
@@ -90,22 +90,22 @@ class ComparedRun:
     scratch: str = ""
 
     def to_json(self) -> str:
-        """Itself as text, for the command line of the process."""
+        """Serialize to JSON for the child's command line."""
         plain = {each.name: getattr(self, each.name) for each in dataclasses.fields(self)}
         return json.dumps({**plain, "plan": None if self.plan is None else self.plan.to_dict()})
 
     @classmethod
     def from_json(cls, text: str) -> ComparedRun:
-        """The other way round."""
+        """Parse the result of `to_json`."""
         plain = json.loads(text)
         return cls(**{**plain, "plan": None if plain["plan"] is None else RunPlan.from_dict(plain["plan"])})
 
 
 class RecordPipe(Recorder):
-    """The recorder of a run that writes all records, and at last what it did past the simulated computer.
+    """The recorder of a run that writes all records, and at the end its contacts outside the simulated computer.
 
     Attributes:
-        problems: what went wrong in it, for whoever compares; set when it is over.
+        problems: the problems of the run, for the comparing process; set when it is over.
     """
 
     def __init__(self, writer: RecordWriter, world: OpenWorld) -> None:
@@ -120,15 +120,15 @@ class RecordPipe(Recorder):
             self._writer.end({"digest": self.trace.digest(), "contacts": contacts, "problems": self.problems})
 
     def begin(self, mission: Mission) -> None:
-        """Hear the calls of compiled applications as well."""
+        """Watch the calls of compiled applications as well."""
         hear_calls(mission.kernel, self.trace)
 
 
 class Lookout(Recorder):
-    """The recorder of a run that looks at one record, and ends the process then and there.
+    """The recorder of a run that looks at one record, and then ends the process.
 
     Args:
-        writer: gets what was seen.
+        writer: receives the look.
         index: number of the record.
         lines: how many records before it are shown.
         root: folder in which the files of a journal were unpacked for this run, if they were.
@@ -156,7 +156,9 @@ class Lookout(Recorder):
         return list(self._text.lines(records))[-self._before - 1 :]
 
     def _seen(self, look: Look) -> NoReturn:
-        """It is called from deep inside the simulation, where a run cannot be given up in an orderly way."""
+        """Write the look and end the process. It is called deep inside the simulation, where a run cannot be ended
+        properly.
+        """
         fields = {} if self._mission is None else fields_of(look.record, self._mission)
         self._writer.end({**look.without_root(self._root).to_dict(), "fields": fields})
         os._exit(ENDED_WELL)
@@ -166,7 +168,7 @@ def run(asked: ComparedRun) -> None:
     """Fly the run that the command line describes.
 
     Raises:
-        UsageError: the mission cannot run like this.
+        UsageError: the mission cannot run.
     """
     if asked.plan is None:
         _run_again(asked)
@@ -215,7 +217,7 @@ def _with_ordered_sets(spec: MissionSpec) -> MissionSpec:
 
 
 def main() -> int:
-    """Run the plan on the command line; the exit status."""
+    """Run the plan on the command line. Returns the exit status."""
     try:
         asked = ComparedRun.from_json(sys.argv[1])
         tempfile.tempdir = asked.scratch or None

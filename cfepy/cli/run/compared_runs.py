@@ -1,4 +1,4 @@
-"""Runs in processes of their own: their records are compared while they are made, and the first difference as text."""
+"""Runs in processes of their own: they are compared record by record, and the first difference is shown as text."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from cfepy.status import UsageError
 MOST_SUSPECTS = 8
 MOST_BYTES = 16
 _ADDRESS = re.compile(rb"[\w.<]* [\w. ]*at 0x[0-9a-f]{6,16}>?")
-"""What the text of an object without one of its own ends with."""
+"""The default text of an object, which ends with its address."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunInProcess:
-    """A run in its process: the reader of its records, and what it printed besides."""
+    """A run in its process, the reader of its records, and its other output."""
 
     process: subprocess.Popen[bytes]
     reader: RecordReader
@@ -37,17 +37,17 @@ class RunInProcess:
 
 @contextlib.contextmanager
 def started(asked: ComparedRun, hash_seed: int | None = None) -> Iterator[RunInProcess]:
-    """Around a run that is compared.
+    """Start a run that is compared, as a context manager.
 
     Args:
-        asked: what to run; its pipe is made here.
-        hash_seed: PYTHONHASHSEED of the process; None for that of this one.
+        asked: the run; its pipe is made here.
+        hash_seed: PYTHONHASHSEED of the process; None for the value of this process.
     """
     out, into = os.pipe()
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as said, open(out, "rb") as pipe:
         there = dataclasses.replace(
             asked, pipe=number_of(into), scratch=folder
-        )  # it is killed in the end, and cannot tidy up
+        )  # the process is killed in the end, and cannot tidy up
         command = [*python_command(), "-m", "cfepy.cli.run.compared_run", there.to_json()]
         environment = {**os.environ, "PYTHONPATH": import_path()}
         if hash_seed is not None:
@@ -62,10 +62,10 @@ def started(asked: ComparedRun, hash_seed: int | None = None) -> Iterator[RunInP
 
 
 def facts_of(run: RunInProcess) -> dict[str, Any]:
-    """What a run has to say that looks at one record.
+    """Return the facts of a run that looks at one record.
 
     Raises:
-        UsageError: it did not come to its end.
+        UsageError: it was not completed.
     """
     try:
         run.reader.fill()
@@ -75,7 +75,7 @@ def facts_of(run: RunInProcess) -> dict[str, Any]:
 
 
 def failure(runs: Sequence[RunInProcess]) -> UsageError:
-    """Why a run did not come to its end."""
+    """Return the error of a run that was not completed."""
     for run in runs:
         if run.process.poll() is None and run.reader.facts is None:
             with contextlib.suppress(subprocess.TimeoutExpired):
@@ -89,7 +89,7 @@ def failure(runs: Sequence[RunInProcess]) -> UsageError:
 
 @dataclass(frozen=True, slots=True)
 class FirstDifference:
-    """Two runs, the number of the first record that differs, and what was seen there in each."""
+    """Two runs, the number of the first record that differs, and the look at it in each."""
 
     runs: tuple[str, str]
     index: int
@@ -97,12 +97,12 @@ class FirstDifference:
 
 
 def show(found: FirstDifference, cause: str, stream: TextIO) -> None:
-    """Write it down.
+    """Write the first difference and its cause.
 
     Args:
-        found: what was found.
-        cause: what it hangs on.
-        stream: where to.
+        found: the difference.
+        cause: explains the cause.
+        stream: the output.
     """
     print(f"\nnot deterministic: record {found.index} is the first that differs", file=stream)
     show_sides(found, stream)
@@ -111,7 +111,7 @@ def show(found: FirstDifference, cause: str, stream: TextIO) -> None:
 
 
 def show_sides(found: FirstDifference, stream: TextIO) -> None:
-    """Write down what was before the record, and what each run did then."""
+    """Write the records before the difference, and the record of each run."""
     one, other = found.looks
     if one.lines[:-1]:
         print("\nbefore it, in both:", file=stream)
@@ -138,7 +138,7 @@ def _side(look: Look, stream: TextIO) -> None:
 
 
 def _bytes(one: bytes, other: bytes, stream: TextIO) -> None:
-    """Records that read alike may differ in what they carry."""
+    """Write the first bytes that differ, because records with the same text may have different contents."""
     at = next(place for place, (a, b) in enumerate(zip_longest(one, other)) if a != b)
     parts = " and ".join(record[at : at + MOST_BYTES].hex(" ") or "nothing" for record in (one, other))
     print(f"\nthe two records ({len(one)} and {len(other)} bytes) differ from byte {at} on: {parts}", file=stream)
@@ -159,7 +159,7 @@ def _suspects(found: FirstDifference, stream: TextIO) -> None:
 
 
 def _files(look: Look) -> list[str]:
-    """Files of the mission's own code that was being executed."""
+    """Return the files of the mission's own code that was being executed."""
     return [line.file for line in look.stack if line == look.culprit]
 
 

@@ -1,7 +1,7 @@
-"""`cfepy new`: write the skeleton of an application or a mission, which runs as it is.
+"""`cfepy new`: write the skeleton of an application or a mission, which runs unchanged.
 
-An application in Python is a copy of apps/sample_app under another name, so that there is one example to keep good; one
-in C, and the files around the others, are in `templates`.
+An application in Python is a copy of apps/sample_app under another name, so that only one example needs maintenance.
+One in C, and the files around the others, are in `templates`.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from cfepy.tbl import image
 
 TEMPLATES = Path(__file__).with_name("templates")
 APP_SUFFIX = "_app"
-LONGEST_APP = 14  # its entry point, NAME_Main, must fit the 19 characters that cFE takes
+LONGEST_APP = 14  # its entry point, NAME_Main, must fit the 19 characters that cFE permits
 LONGEST = {"app": LONGEST_APP, "mission": LONGEST_APP - len(APP_SUFFIX)}
 SHIPPED = ("ci_lab", "hk", "sample_app", "sample_lib", "sch", "sch_lab", "sch_lib", "to_lab")
 TAKEN = ("cfepy", "ros_libraries", "rospy", "rospy_shim", "std_msgs", *SHIPPED)
 OF_CFE = ("cfe_", "ccsds_", "os_", "osal_")
-LIBRARY = "library"  # the sample's use of the sample library, which nothing of one's own needs
-FIRST_TOPIC, TOPIC_PAIRS = 0xA0, 0x30  # topic ids of new apps: behind those of NASA's apps, before those of ROS topics
-FIRST_PERF_ID, PERF_IDS = 100, 28  # behind those of NASA's apps, up to the last of cFE's 128
+LIBRARY = "library"  # the sample's use of the sample library, which a new application does not need
+FIRST_TOPIC, TOPIC_PAIRS = 0xA0, 0x30  # topic ids of new apps: after NASA's apps, before ROS topics
+FIRST_PERF_ID, PERF_IDS = 100, 28  # after NASA's apps, up to the last of cFE's 128
 
 Files = dict[str, bytes]
 
@@ -40,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: the name cannot be used, or there is such a file or folder already.
+        UsageError: the name cannot be used, or such a file or folder exists already.
     """
     kind, name = arguments.kind, arguments.name
     _check_name(kind, name)
@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def app_files(name: str) -> Files:
-    """An application and the smallest mission around it: path to content."""
+    """Return an application and the smallest mission around it: path to content."""
     return {
         "README.md": _rendered("app/README.md.in", name, name),
         "startup.scr": _rendered("app/startup.scr.in", name, name),
@@ -73,14 +73,14 @@ def app_files(name: str) -> Files:
 
 
 def c_app_files(name: str) -> Files:
-    """An application in C, in the form that cFS has, which is a mission, too: path to content."""
+    """Return an application in C, in the layout of cFS, which is a mission, too: path to content."""
     templates = sorted(file.relative_to(TEMPLATES) for file in (TEMPLATES / "c_app").rglob("*.in"))
     made = {template: template.with_suffix("").relative_to("c_app").as_posix() for template in templates}
     return {path.replace("NAME", name): _rendered(template.as_posix(), name, name) for template, path in made.items()}
 
 
 def mission_files(folder: str) -> Files:
-    """A mission of an application and two ROS nodes: path to content."""
+    """Return a mission of an application and two ROS nodes: path to content."""
     app = folder + APP_SUFFIX
     plain = ("README.md", "startup.scr", "mission.yaml", "talker.py", "listener.py")
     return {
@@ -125,12 +125,12 @@ def _rendered(template: str, name: str, folder: str) -> bytes:
 
 
 def _topic(name: str) -> int:
-    """The first of the two topics of an application."""
+    """Return the first of the two topics of an application."""
     return FIRST_TOPIC + 2 * (zlib.crc32(name.encode()) % TOPIC_PAIRS)
 
 
 def _package(name: str) -> Files:
-    """apps/sample_app under another name, with message ids and a table of its own."""
+    """Return apps/sample_app under another name, with message ids and a table of its own."""
     sample = shipped("apps") / "sample_app"
     files: Files = {}
     for source in sorted([*sample.glob("*.py"), *sample.glob("tables/*.py")]):

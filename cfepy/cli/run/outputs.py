@@ -1,7 +1,7 @@
-"""What a run leaves behind on this computer: its numbers, files, trace, bag and journal, as the command line asks.
+"""Output of a run on this computer: its numbers, files, trace, bag and journal, as the command line asks.
 
-That a file can be written is found out before the run. A run itself never writes to the host, so that it cannot change
-the next: what it wrote on its virtual disks is saved after it.
+cfepy checks before the run that each file can be written. A run itself never writes to the host, so that it cannot
+change the next. Files on its virtual disks are saved after it.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ SAVE_FILES = "--save-files"
 
 
 class TraceFile(Recorder):
-    """`--trace FILE`: writes the records of the trace as text; only a trace file makes this text.
+    """`--trace FILE`: writes the records of the trace as text. This text is made for a trace file only.
 
     Args:
         path: the file.
 
     Attributes:
-        trace: for the mission to record in.
+        trace: the trace for the mission.
 
     Raises:
         UsageError: it cannot be written.
@@ -70,7 +70,7 @@ class TraceFile(Recorder):
         self._text.watch(mission)
 
     def write(self, records: list[bytes]) -> None:
-        """The sink of a `Trace`; it is called inside the simulation, where no error of the disk may be raised."""
+        """Write records as the sink of a `Trace`. It runs inside the simulation, so it keeps errors of the disk."""
         if self._error is not None:
             return
         try:
@@ -80,15 +80,15 @@ class TraceFile(Recorder):
 
 
 class SavedRunFiles(Attachment):
-    """Copies what apps and nodes wrote among the host's files, at the end of the mission.
+    """Copies the files that apps and nodes wrote on the host, at the end of the mission.
 
     Args:
-        folder: where to.
-        below: only what is in this folder.
+        folder: the target folder.
+        below: copy only files in this folder.
 
     Attributes:
-        count: files that were copied.
-        error: why one could not be; None when each could.
+        count: number of copied files.
+        error: the first error, or None.
     """
 
     def __init__(self, folder: Path, below: str = "/") -> None:
@@ -102,7 +102,7 @@ class SavedRunFiles(Attachment):
         self._mission = mission
 
     def close(self) -> None:
-        """The run's own files are about to go."""
+        """Copy the run's own files before they are removed."""
         files = None if self._mission is None else self._mission.run_files
         for name, place in files.written() if files is not None else ():
             if not name.startswith(self._below):
@@ -116,18 +116,18 @@ class SavedRunFiles(Attachment):
 
 
 class Outputs:
-    """What one run leaves behind; use as a context manager around the run.
+    """The output of one run; use as a context manager around the run.
 
     Args:
-        arguments: of a command line with `add_outputs`.
+        arguments: a command line with `add_outputs`.
         plan: the run.
 
     Attributes:
-        attachments: what takes it down during the run.
-        trace: for the records; None when only their digest is wanted.
+        attachments: attachments that record the run.
+        trace: the trace for the records; None if only their digest is wanted.
 
     Raises:
-        UsageError: something cannot be written, or does not go together.
+        UsageError: a file cannot be written, or options conflict.
     """
 
     def __init__(self, arguments: argparse.Namespace, plan: RunPlan) -> None:
@@ -141,7 +141,7 @@ class Outputs:
         self._trace_file = TraceFile(arguments.trace) if arguments.trace else None
         self._bag = arguments.bag
         self._bag_topics = arguments.bag_topics
-        usual = RunPlan(plan.words)  # what a run is on decides nothing of it
+        usual = RunPlan(plan.words)  # the kind of tasks and the stall limit do not affect the run
         self._command = plan.command_line(tasks=usual.tasks, stall=usual.stall)
         if self._bag is None and self._bag_topics:
             raise UsageError("requires --bag FILE", field="--bag-topics")
@@ -163,7 +163,7 @@ class Outputs:
         self._open.__exit__(*error)
 
     def write_numbers(self, flown: Flown) -> UsageError | None:
-        """Write the numbers; an error is returned, for the report of a long run must not be lost with them."""
+        """Write the numbers. Returns the error instead of raising it, so that the report of a long run is not lost."""
         numbers = flown.results.to_dict()
         if flown.outcome is not None:
             numbers["script"] = flown.outcome.to_dict()
@@ -174,7 +174,7 @@ class Outputs:
         return None
 
     def save_files(self, flown: Flown) -> None:
-        """Write the files that the mission wrote, and say where they are.
+        """Write the files that the mission wrote, and print their place.
 
         Raises:
             UsageError: one cannot be written.
@@ -192,7 +192,7 @@ class Outputs:
 
 
 def _saving_to(folder: str) -> Path:
-    """The folder to save to, made if it is not there."""
+    """Return the folder to save to; make it if it does not exist."""
     path = Path(folder)
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -202,7 +202,7 @@ def _saving_to(folder: str) -> Path:
 
 
 def _write(folder: Path, name: str, data: bytes) -> None:
-    """/ram/cfe_evs.log becomes DIR/ram/cfe_evs.log; a file of the same name is written over."""
+    """Write /ram/cfe_evs.log to DIR/ram/cfe_evs.log; overwrite a file of the same name."""
     from cfepy.reading.contained_files import write_contained
 
     inside = f"/{name.lstrip('/')}"
@@ -212,10 +212,10 @@ def _write(folder: Path, name: str, data: bytes) -> None:
 
 @contextlib.contextmanager
 def recording(arguments: argparse.Namespace, plan: RunPlan) -> Iterator[JournalRecorder | None]:
-    """`--record FILE`: around reading a mission and running it, what writes its journal; None when none is asked for.
+    """Yield the recorder for `--record FILE`, or None without it, around reading a mission and running it.
 
     Args:
-        arguments: of a command line with `add_recording`.
+        arguments: a command line with `add_recording`.
         plan: the run.
 
     Raises:

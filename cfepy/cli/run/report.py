@@ -1,4 +1,4 @@
-"""The report at the end of a run: what the numbers of `cfepy.pilot.results` look like to a person."""
+"""The report at the end of a run: the numbers of `cfepy.pilot.results` as text for a person."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from cfepy.plugins import Hook
 from cfepy.units import NS_PER_S, time_text
 
 REPORT_TABLES: Hook[Callable[[Results], Iterable[Table]]] = Hook("report_tables")
-"""Each makes more tables for the end of a report."""
+"""Functions that make more tables for the end of a report."""
 
 
 def load_add_ons() -> None:
-    """Import what makes tables, before a run: after it, an error would cost its report.
+    """Import the add-ons that make tables before a run; an error after the run would cost its report.
 
     Raises:
         UsageError: an add-on of another package cannot be imported.
@@ -44,7 +44,7 @@ def show(results: Results, stream: TextIO) -> None:
 
 
 def show_speed(results: Results, stream: TextIO) -> None:
-    """Print how long the run was, and what it was on."""
+    """Print the length of the run, the board, the kind of tasks and the seed."""
     line = f"{results.virtual_s:.3f} virtual s in {results.wall_s:.3f} s: {results.speed:.1f} x real time"
     stream.write("\n")
     show_paragraph(f"{line}, board {results.board}, {results.task_kind}, seed {results.seed}", stream)
@@ -94,7 +94,7 @@ def _resets(results: Results) -> list[Table]:
 
 
 def faults(results: Results) -> list[Table]:
-    """The faults of the plan and how often each happened; no table without faults."""
+    """Return a table with the faults of the plan and how often each happened, or no table without faults."""
     table = Table(
         "Faults", ("name", "what", "times", "first at, s", "last at, s", "what happened"), right=(2, 3, 4), least=(4, 3)
     )
@@ -106,7 +106,7 @@ def faults(results: Results) -> list[Table]:
 
 
 def _peers(title: str, rows: list[dict[str, Any]]) -> list[Table]:
-    """Who outside the run was joined to, topic by topic, and what was lost on the way."""
+    """Return a table with the external peers by topic, and the messages lost on the way."""
     table = Table(
         title,
         ("name", "peer", "way", "messages", "dropped", "connected", "ended", "refused", "why"),
@@ -120,7 +120,7 @@ def _peers(title: str, rows: list[dict[str, Any]]) -> list[Table]:
 
 
 def _beside(results: Results) -> list[Table]:
-    """The missions that flew beside this one, and their datagrams."""
+    """Return a table with the missions that flew beside this one, and their datagrams."""
     table = Table(
         "Beside it",
         ("mission", "booted, s", "sent", "taken", "lost", "resets", "died of", "trace"),
@@ -134,7 +134,7 @@ def _beside(results: Results) -> list[Table]:
 
 
 def _pipes(results: Results) -> list[Table]:
-    """Only pipes that were ever full, or lost something."""
+    """Return a table with the pipes that were ever full, or dropped messages."""
     table = Table("Pipes that were full", ("name", "application", "depth", "peak", "dropped"), right=(2, 3, 4))
     for pipe in results.pipes:
         if pipe.dropped or pipe.peak >= pipe.depth:
@@ -143,7 +143,7 @@ def _pipes(results: Results) -> list[Table]:
 
 
 def _deadlines(results: Results) -> list[Table]:
-    """What the mission is held to, each deadline with its worst case."""
+    """Return a table with the mission's deadlines, each with its worst case."""
     table = Table(
         "Deadlines",
         ("of", "what", "limit", "measured", "missed", "worst", "first at, s"),
@@ -164,7 +164,9 @@ def _deadlines(results: Results) -> list[Table]:
 
 
 def _inversions(results: Results) -> list[Table]:
-    """Whom a less urgent task held up that did not have what it waited for: of each the longest time."""
+    """Return a table of priority inversions: for each delayed task, the longest delay by a lower-priority task that did
+    not hold the resource.
+    """
     table = Table(
         "Priority inversions", ("of", "times", "longest", "at, s", "what happened"), right=(1, 2, 3), least=(4,)
     )
@@ -175,7 +177,7 @@ def _inversions(results: Results) -> list[Table]:
 
 
 def _invariants(results: Results) -> list[Table]:
-    """What must hold of messages; one that was never judged says nothing."""
+    """Return a table with the invariants of messages; it marks those that were never judged."""
     table = Table(
         "Invariants", ("name", "judged", "violated", "first at, s", "what was wrong"), right=(1, 2, 3), least=(3, 1)
     )

@@ -1,4 +1,4 @@
-"""`cfepy run`, and what it has in common with launch, node and replay: flying a plan, and reporting the run."""
+"""`cfepy run`, and its common part with launch, node and replay: flying a plan, and reporting the run."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 
 class View:
-    """What a person sees of a run: the flight computer's console, and a report of all that is on it.
+    """The view of a run: the flight computer's console, and a full report.
 
     Args:
-        quiet: nothing while the mission runs.
+        quiet: show nothing while the mission runs.
     """
 
     longer = "run it for longer (--for)"
@@ -35,20 +35,20 @@ class View:
         self.quiet = quiet
 
     def display(self, seconds: float) -> Display:
-        """What shows the console during a run of so many virtual seconds."""
+        """Make the display of the console during a run of so many virtual seconds."""
         return make_display(self.quiet, seconds)
 
     def report(self, flown: Flown) -> None:
-        """Print what the run came to."""
+        """Print the results of the run."""
         report.show(flown.results, sys.stdout)
 
     def end(self, flown: Flown, outputs: Outputs, longer: str) -> int:
-        """Print everything that there is to say after a run.
+        """Print the report and all messages after a run.
 
         Args:
             flown: the run.
             outputs: saves the mission's files.
-            longer: what to do when it was too short.
+            longer: advice for a run that was too short.
 
         Returns:
             The exit status.
@@ -69,24 +69,24 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: it cannot run like this.
+        UsageError: the options do not allow the run.
     """
     return fly_and_tell(arguments, plan_of_mission(arguments), View(arguments.quiet))
 
 
 def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> int:
-    """Fly a plan as the command line says, and report; or compare several runs of it.
+    """Fly a plan as the command line asks, and report; or compare several runs of it.
 
     Args:
-        arguments: with the options of `add_flight`.
-        plan: what to fly.
-        view: what is shown of it.
+        arguments: the command line with the options of `add_flight`.
+        plan: the run.
+        view: shows the run.
 
     Returns:
         The exit status.
 
     Raises:
-        UsageError: it cannot run like this.
+        UsageError: the options do not allow the run.
     """
     check_pace(arguments)
     report.load_add_ons()
@@ -95,7 +95,7 @@ def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> in
 
         return check(arguments, plan)
     with recording(arguments, plan) as journal, Interrupts() as interrupts, Outputs(arguments, plan) as outputs:
-        spec = plan.spec()  # a journal has the files that are read for it
+        spec = plan.spec()  # inside the context, so that the journal has the files that are read here
         with (
             FlightAddOns(arguments, spec.name, note) as add_ons,
             WatchedHost(
@@ -122,12 +122,12 @@ def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> in
 
 
 def fly_again(arguments: argparse.Namespace, replay: Replay, view: View) -> int:
-    """Do the run of a journal again as the command line says, and report.
+    """Repeat the run of a journal as the command line asks, and report.
 
     Args:
-        arguments: with the options of `add_outputs`.
+        arguments: the command line with the options of `add_outputs`.
         replay: the replay; it has a verdict afterwards.
-        view: what is shown of it.
+        view: shows the run.
 
     Returns:
         The exit status of the run.
@@ -155,7 +155,7 @@ def _tell(flown: Flown, outputs: Outputs, view: View, longer: str) -> int:
 
 
 def _nothing() -> None:
-    """What happens between two pieces of a run that is not recorded."""
+    """Do nothing between two steps of a run that is not recorded."""
 
 
 def _explain(flown: Flown, longer: str) -> None:
@@ -171,12 +171,12 @@ def _explain(flown: Flown, longer: str) -> None:
 
 
 def told_problems(flown: Flown) -> list[str]:
-    """What went wrong, a line each, but for steps of the script, which have a report of their own."""
+    """Return the problems, a line each, except steps of the script, which have a report of their own."""
     return [problem.text for problem in flown.problems if not problem.is_step]
 
 
 def status_of(flown: Flown) -> int:
-    """The exit status of a command that flew a mission: that of its problems, if it has any."""
+    """Return the exit status of a command that flew a mission; problems decide it, if there are any."""
     if flown.interrupted:
         return INTERRUPTED
     if flown.results.problems:

@@ -1,6 +1,6 @@
-"""The command completion, and what a shell is told; here are its options.
+"""The command completion, and the shell's side of it; its options are defined here.
 
-A command belongs here when it serves the shell that `cfepy` is typed into.
+A command belongs here if it serves the shell that `cfepy` is typed into.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """`cfepy completion SHELL`: completion of commands, options and names in a shell, by argcomplete.
 
-The shell asks this command what a word may become. What it says comes from the parsers and from files: no mission is
-flown for it.
+The shell asks this command for the completions of a word. They are taken from the parsers and from files; no mission is
+flown.
 """
 
 from __future__ import annotations
@@ -49,17 +49,17 @@ def complete(
     stream: TextIO | None = None,
     end: Callable[[int], object] = os._exit,
 ) -> None:
-    """Tell the shell that asks what its word may become, and end the process.
+    """Print the completions of a word for the shell, and end the process.
 
     Args:
         make_parser: makes the parser for the words of a command line.
-        stream: where to; None is where the shell's script wants it.
+        stream: the output; None is the one that the shell's script expects.
         end: ends the process.
     """
     try:
         from argcomplete.finders import CompletionFinder, safe_actions
     except ImportError:
-        sys.exit(1)  # its script was left in the shell; there is nobody to tell
+        sys.exit(1)  # its script was left in the shell; a message would reach no one
     safe_actions.add(MissionAction)
     parser = make_parser(os.environ["COMP_LINE"].split()[1:])
     for each in _all(parser):
@@ -70,13 +70,13 @@ def complete(
                 action.completer = completer  # type: ignore[attr-defined]  # argcomplete's
 
     class Finder(CompletionFinder):
-        """As argcomplete's, but for a mission in two words."""
+        """The finder of argcomplete, extended for a mission in two words."""
 
         def _init_debug_stream(self) -> None:
-            """It would take descriptor 9, whosever that is."""
+            """Do nothing: argcomplete would take descriptor 9, which may belong to another program."""
 
         def collect_completions(self, active_parsers: Any, parsed_args: Any, cword_prefix: str) -> list[str]:
-            """After a package, also the launch files in it."""
+            """Add the launch files of a package after its name."""
             found = super().collect_completions(active_parsers, parsed_args, cword_prefix)
             return [*found, *_second_words(active_parsers[-1], parsed_args, cword_prefix)]
 
@@ -93,7 +93,7 @@ def _all(parser: argparse.ArgumentParser) -> Iterator[CommandParser]:
 
 
 def _completer(action: argparse.Action) -> _Complete | None:
-    """What completes an argument; None for one of choices, and for a file."""
+    """Return the completer of an argument; None for one with choices, and for a file."""
     if isinstance(action, MissionAction):
         return missions
     if action.choices is not None or action.metavar in _FILES:
@@ -103,7 +103,7 @@ def _completer(action: argparse.Action) -> _Complete | None:
 
 
 def _nothing(**_: object) -> list[str]:
-    """A number, a time, a text of one's own."""
+    """Complete nothing: a number, a time, or free text."""
     return []
 
 
@@ -111,7 +111,7 @@ def _nothing(**_: object) -> list[str]:
 
 
 def missions(prefix: str, parsed_args: argparse.Namespace, action: argparse.Action, **_: object) -> list[str]:
-    """Missions that cfepy brings along, packages, and files and folders that can be missions."""
+    """Return missions that cfepy ships, packages, and files and folders that can be missions."""
     from cfepy.mission import shipped_missions
 
     if getattr(parsed_args, action.dest, None):  # the first of several words
@@ -121,7 +121,7 @@ def missions(prefix: str, parsed_args: argparse.Namespace, action: argparse.Acti
 
 
 def _second_words(parser: argparse.ArgumentParser, parsed_args: argparse.Namespace, prefix: str) -> list[str]:
-    """The launch files of a package that stands where a mission may."""
+    """Return the launch files of a package that stands where a mission may."""
     said = [getattr(parsed_args, each.dest, None) for each in parser._actions if isinstance(each, MissionAction)]
     names = [name for each in said if each for name in (each if isinstance(each, list) else [each])]
     folders = [folder for name in names[-1:] for folder in _packages().folders(name)] if prefix[:1] != "-" else []
@@ -129,14 +129,14 @@ def _second_words(parser: argparse.ArgumentParser, parsed_args: argparse.Namespa
 
 
 def boards(prefix: str, **_: object) -> list[str]:
-    """Boards by name, and files of one's own."""
+    """Return boards by name, and board files."""
     from cfepy.psp import available_boards
 
     return [*available_boards(), *_paths(prefix, (".yaml",))]
 
 
 def packets(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """Commands for `cfepy cmd`, and telemetry for `cfepy tlm`, of a mission that is named before."""
+    """Return commands for `cfepy cmd`, and telemetry for `cfepy tlm`, of the mission on the command line."""
     module = getattr(parsed_args, "module", "")
     if module not in (COMMANDS_OF, TELEMETRY_OF):
         return []
@@ -145,7 +145,7 @@ def packets(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[s
 
 
 def fields(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """The fields of a command, with the names that their values have."""
+    """Return the fields of a command, with the names of their values."""
     dictionary, name = _dictionary(parsed_args), getattr(parsed_args, "name", None)
     if name not in dictionary.commands:
         return []
@@ -155,7 +155,7 @@ def fields(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[st
 
 
 def _dictionary(parsed_args: argparse.Namespace) -> Dictionary:
-    """That of the mission which is named before, or of all that cfepy brings along."""
+    """Return the dictionary of the mission on the command line, or of all that cfepy ships."""
     from cfepy.ground import dictionary_of
     from cfepy.mission import read_mission
 
@@ -168,14 +168,14 @@ def _dictionary(parsed_args: argparse.Namespace) -> Dictionary:
 
 
 def _packages() -> Packages:
-    """The packages that are seen from here."""
+    """Return the packages that are found from the working directory."""
     from rospy_shim.roslaunch.launch_plan import packages_near
 
     return packages_near(Path.cwd() / "here", os.environ)
 
 
 def _paths(prefix: str, suffixes: tuple[str, ...]) -> list[str]:
-    """Folders and files of some kinds that begin with a prefix."""
+    """Return folders and files of some kinds that begin with a prefix."""
     folder, _, name = prefix.rpartition("/")
     start = f"{folder}/" if "/" in prefix else ""
     try:

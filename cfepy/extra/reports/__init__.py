@@ -1,9 +1,10 @@
 """Pictures of a run: a trace for Perfetto, an HTML page for a browser, values over time.
 
-What belongs here watches a run through `cfepy.monitors.observer` and draws it: `perfetto` writes while the mission
-runs, `collector` sums up (in `bins`) what `page` shows, `curves` draws what `cfepy.ground.series` has recorded. The
-numbers themselves come from `cfepy.pilot.results`; `board_fit` has what a mission needs of a board. What judges a run
-belongs to `cfepy.monitors`. The central file is `cfepy/extra/reports/page.py`.
+A module belongs here if it watches a run through `cfepy.monitors.observer` and draws it: `perfetto` writes while the
+mission runs, `collector` sums up (in `bins`) the data of `page`, `curves` draws the recordings of
+`cfepy.ground.series`. The numbers themselves come from `cfepy.pilot.results`; `board_fit` computes a mission's
+requirements for a board. Modules that judge a run belong to `cfepy.monitors`. The central file is
+`cfepy/extra/reports/page.py`.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ __all__ = [
     "write_perf_log",
 ]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # a type checker sees only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

@@ -10,11 +10,11 @@ EXACT_BITS = 6  # of a time in a histogram: shares of 1 in 64, so that a percent
 
 
 class Bins:
-    """How much of something there was, by time; two bins become one when they are too many.
+    """Amounts by time. If there are too many bins, pairs of bins are merged.
 
     Attributes:
-        width_ns: of a bin.
-        counts: what is in each.
+        width_ns: width of a bin.
+        counts: the amount in each bin.
     """
 
     __slots__ = ("counts", "width_ns")
@@ -24,7 +24,7 @@ class Bins:
         self.counts: list[int] = []
 
     def add(self, at_ns: int, amount: int = 1) -> None:
-        """Something happened at a virtual time."""
+        """Add an amount at a virtual time."""
         index = at_ns // self.width_ns
         while index >= MOST_BINS:
             self.fold()
@@ -35,20 +35,22 @@ class Bins:
         counts[index] += amount
 
     def add_span(self, start_ns: int, end_ns: int) -> None:
-        """Something lasted: every bin gets the ns that lie in it."""
+        """Add a span: every bin gets the ns of the span that lie in it."""
         while start_ns < end_ns:
             until = min(end_ns, (start_ns // self.width_ns + 1) * self.width_ns)
             self.add(start_ns, until - start_ns)
             start_ns = until
 
     def fold(self) -> None:
-        """Bins of twice the width."""
+        """Merge pairs of bins to bins of twice the width."""
         counts = self.counts
         self.width_ns *= 2
         self.counts = [sum(counts[index : index + 2]) for index in range(0, len(counts), 2)]
 
     def runs(self, width_ns: int) -> list[int]:
-        """The counts with bins of a width that is no smaller, as value, number of times, value, number, ..."""
+        """Return the counts, run-length coded as value, number, value, number, ..., with bins at least `width_ns`
+        wide.
+        """
         while self.width_ns < width_ns:
             self.fold()
         found: list[int] = []
@@ -64,7 +66,7 @@ class Histogram:
     """Times in ns, by size.
 
     Attributes:
-        count: how many.
+        count: number of times.
         most_ns: the longest.
     """
 
@@ -76,7 +78,7 @@ class Histogram:
         self.most_ns = 0
 
     def add(self, time_ns: int) -> None:
-        """Take one."""
+        """Add a time."""
         self.count += 1
         self.most_ns = max(self.most_ns, time_ns)
         excess = max(0, time_ns.bit_length() - EXACT_BITS - 1)
@@ -84,7 +86,9 @@ class Histogram:
         self._by_size[size] = self._by_size.get(size, 0) + 1
 
     def percentiles(self, shares: Sequence[float]) -> list[int]:
-        """The times that these shares of all, in rising order, do not exceed, in ns; [] when there is nothing."""
+        """Return the times in ns that these shares of all times, in rising order, do not exceed; [] if there are
+        none.
+        """
         found: list[int] = []
         passed = 0
         for size, count in sorted(self._by_size.items()):
@@ -94,7 +98,7 @@ class Histogram:
         return found
 
     def octaves(self) -> dict[int, int]:
-        """How many there were by the number of bits of the time, for a picture: 0 is 0 ns, 10 is 512 to 1023 ns."""
+        """Return the number of times by their number of bits, for a picture: 0 is 0 ns, 10 is 512 to 1023 ns."""
         found: dict[int, int] = {}
         for size, count in sorted(self._by_size.items()):
             bits = size.bit_length()

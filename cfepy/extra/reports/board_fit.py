@@ -1,7 +1,8 @@
-"""What a mission needs of a board, what does not fit, and the fewest changes that make it fit.
+"""A mission's requirements for a board, its shortages, and the fewest changes that make it fit.
 
-The mission is flown on the board with as much RAM as it asks for, so that all of it shows. Stacks are booked as the
-startup script says; how deep compiled tasks have used theirs is measured, of Python that says nothing about C.
+The mission is flown on the board with as much RAM as it asks for, so that all of its use is visible. Stacks are booked
+with the sizes of the startup script. The stack depth of compiled tasks is measured; the depth of Python tasks would not
+apply to C.
 """
 
 from __future__ import annotations
@@ -23,21 +24,21 @@ from cfepy.reading.input_limits import OBJECT_BYTES
 
 STACK = "stack"
 POOL = "memory pool"
-SMALLEST_STACK = 8192  # of an application whose use is not known; twice what core tasks have on small boards
-CALLS = 2048  # bytes of a stack that functions of cFE and OSAL take on top of what the application does; an estimate
-GRAIN = 1024  # to which sizes are rounded up
-SPARE = 2  # a pool is proposed with so many times what was in use at most
+SMALLEST_STACK = 8192  # of an application with unknown use; twice the stack of core tasks on small boards
+CALLS = 2048  # stack bytes of cFE and OSAL functions on top of the application's; an estimate
+GRAIN = 1024  # sizes are rounded up to multiples of this
+SPARE = 2  # the proposed size of a pool, as a multiple of its peak use
 SMALLEST_POOL = 16384
 
 
 class BoardLedger(Attachment):
-    """Lets a mission have as much RAM as it asks for, and takes down what that is.
+    """Gives a mission as much RAM as it asks for, and records its use.
 
     Attributes:
-        claims: bytes by owner, what for and size of each, when most was in use.
-        peak: bytes that were in use then.
-        sb_pool: bytes of the Software Bus's pool that were in use at most.
-        pools: what was in the pools of cFE at the end.
+        claims: the size of each claim by (owner, purpose), at peak use.
+        peak: bytes in use at that time.
+        sb_pool: peak use of the Software Bus's pool, in bytes.
+        pools: contents of the pools of cFE at the end.
     """
 
     def __init__(self) -> None:
@@ -51,7 +52,7 @@ class BoardLedger(Attachment):
         self._mission = mission
 
     def power_up(self, processor: Processor) -> None:
-        """From now on nothing is refused."""
+        """Remove the RAM limit from now on, and record the use."""
         memory = processor.memory
         claim = memory.claim
         memory.limit = None
@@ -71,9 +72,9 @@ class BoardLedger(Attachment):
 
 
 class PoolRow(NamedTuple):
-    """Bytes of a pool of cFE: who has them, and what for; nobody has what is free.
+    """Bytes of a pool of cFE, with their owner and purpose; free bytes have no owner.
 
-    `pool` is what the pool is called among the bookings, such as "CDS"; a block counts with its descriptor.
+    `pool` is the name of the pool among the bookings, such as "CDS"; a block counts with its descriptor.
     """
 
     pool: str
@@ -83,9 +84,9 @@ class PoolRow(NamedTuple):
 
 
 class BoardChange(NamedTuple):
-    """Something that makes a mission smaller: where it is written, what to write there, bytes that it saves.
+    """A change that makes a mission smaller: its place, the new text, and the bytes that it saves.
 
-    `is_estimate`: nothing was measured that tells whether the smaller size is enough.
+    `is_estimate`: no measurement shows whether the smaller size is enough.
     """
 
     place: str
@@ -95,7 +96,7 @@ class BoardChange(NamedTuple):
 
 
 class StackRow(NamedTuple):
-    """The stacks of an application: tasks, bytes of each, and how deep the deepest was used; None: not measured."""
+    """The stacks of an application: number of tasks, bytes of each, and the deepest use; None: not measured."""
 
     app: str
     tasks: int
@@ -105,19 +106,21 @@ class StackRow(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class BoardFit:
-    """What a mission needs of a board.
+    """A mission's requirements for a board.
 
     Attributes:
         board: the board's name.
-        ram, flash: bytes that it has; 0 without a limit.
-        needed: bytes of RAM that were in use at most.
-        rows: (owner, what for, bytes), largest first.
-        pools: what is in the pools of cFE that are among the rows, at the end of the run.
-        stacks: of the applications of the startup script.
-        sb_pool, sb_pool_used: bytes of the Software Bus's pool, and how many were in use at most.
-        code: bytes of compiled applications in flash, by name; those in Python have none.
-        changes: the fewest that make it fit; none when it fits.
-        results: of the run, with the CPU of each application.
+        ram: bytes of RAM of the board; 0 without a limit.
+        flash: bytes of flash of the board; 0 without a limit.
+        needed: peak use of RAM in bytes.
+        rows: (owner, purpose, bytes), largest first.
+        pools: contents of those pools of cFE that are among the rows, at the end of the run.
+        stacks: stacks of the applications of the startup script.
+        sb_pool: bytes of the Software Bus's pool.
+        sb_pool_used: peak use of that pool in bytes.
+        code: bytes of compiled applications in flash, by name; applications in Python have none.
+        changes: the fewest changes that make it fit; empty if it fits.
+        results: results of the run, with the CPU of each application.
     """
 
     board: str
@@ -135,17 +138,17 @@ class BoardFit:
 
     @property
     def missing(self) -> int:
-        """Bytes of RAM that are missing; 0 when it fits."""
+        """Bytes of RAM that are missing; 0 if it fits."""
         return max(0, self.needed - self.ram) if self.ram else 0
 
     @property
     def in_python(self) -> tuple[str, ...]:
-        """Applications of the startup script that have no C stack here, so that nothing of it could be measured."""
+        """Applications of the startup script without a C stack, so that their depth could not be measured."""
         return tuple(row.app for row in self.stacks if row.used is None and row.app not in self.code)
 
     @property
     def fits_changed(self) -> bool:
-        """Whether it fits with the changes."""
+        """True if it fits with the changes."""
         return sum(change.saves for change in self.changes) >= self.missing
 
     @property
@@ -154,17 +157,20 @@ class BoardFit:
         return sum(app.cpu_share for app in self.results.apps)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data."""
         parts: dict[str, tuple[Any, ...]] = {"pools": self.pools, "stacks": self.stacks, "changes": self.changes}
         named = {name: [each._asdict() for each in part] for name, part in parts.items()}
         return {**asdict(self), **named, "missing": self.missing, "cpu": self.cpu}
 
 
 def fit_of(plan: RunPlan) -> BoardFit:
-    """Fly a mission and find out what it needs of its board.
+    """Fly a mission and compute its requirements for its board.
 
     Args:
         plan: the run.
+
+    Returns:
+        The requirements.
 
     Raises:
         UsageError: it cannot be flown, or there is no such board.
@@ -205,7 +211,7 @@ def _stacks(
 
 
 def _tables(cfe: Cfe) -> Iterator[PoolRow]:
-    """The table buffer pool by the owners of tables."""
+    """Yield the table buffer pool by the owners of tables."""
     pool = cfe.es.pools.find(cfe.tbl.pool_id)
     if pool is None:
         return
@@ -219,7 +225,7 @@ def _tables(cfe: Cfe) -> Iterator[PoolRow]:
 
 
 def _cds(cfe: Cfe) -> Iterator[PoolRow]:
-    """The Critical Data Store by the owners of its blocks."""
+    """Yield the Critical Data Store by the owners of its blocks."""
     store = cfe.es.cds
     if store is None or not store.is_available:
         return
@@ -231,7 +237,7 @@ def _cds(cfe: Cfe) -> Iterator[PoolRow]:
 
 
 def _messages(cfe: Cfe) -> Iterator[PoolRow]:
-    """The pool of the Software Bus, when most of it was in use."""
+    """Yield the pool of the Software Bus at its peak use."""
     found = [("CFE_SB", "subscriptions and messages, at most", cfe.sb.peaks.memory)]
     yield from _shares("CFE_SB memory pool", cfe.sb.config.sb_buf_memory_bytes, found)
 
@@ -258,7 +264,7 @@ def _code(spec: MissionSpec) -> dict[str, int]:
 
 
 def _fewest(fit: BoardFit, spec: MissionSpec) -> list[BoardChange]:
-    """The changes that save most, as many as are needed; the last one saves no more than it has to."""
+    """Return as many of the largest savings as are needed; the last one saves no more than necessary."""
     found: list[BoardChange] = []
     left = fit.missing
     lines = {entry.name: entry.line for entry in spec.entries}
@@ -282,7 +288,9 @@ def _fewest(fit: BoardFit, spec: MissionSpec) -> list[BoardChange]:
 
 
 def _savings(fit: BoardFit) -> Iterator[tuple[int, str, int, int, int]]:
-    """(bytes that can be saved, application or nothing for the pool, how many of them, size now, smallest size)."""
+    """Yield (bytes that can be saved, application or "" for the pool, number of stacks, present size, smallest
+    size).
+    """
     for row in fit.stacks:
         least = SMALLEST_STACK if row.used is None else -(-(row.used + CALLS) // GRAIN) * GRAIN
         if row.size > least and row.tasks:
@@ -293,5 +301,5 @@ def _savings(fit: BoardFit) -> Iterator[tuple[int, str, int, int, int]]:
 
 
 def _power_below(size: int) -> int:
-    """The largest power of two that is not larger: sizes of stacks are such."""
+    """Return the largest power of two that is not larger, for the size of a stack."""
     return 1 << max(0, size.bit_length() - 1)

@@ -1,6 +1,6 @@
-"""What a page about a run shows besides its numbers: what happened when, how long messages took, events, the console.
+"""The data of a page about a run besides its numbers: activity over time, latencies, events, the console.
 
-A long run is summed up while it goes on, so the memory that this takes does not grow with it.
+The data of a long run is summed up while it goes on, so its memory does not grow with the run.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from cfepy.sb import Pipe
 from cfepy.schedules import Move, MoveNumbers
 
 MOST = 2_000
-"""Events and lines that are kept of each; the others are only counted."""
+"""Maximum number of events and of lines that are kept; further ones are only counted."""
 
 SWITCH = "switch"
-MOST_OF_A_KIND = 500  # marks, so that many of one kind leave room for the others
+MOST_OF_A_KIND = 500  # marks of one kind, so that one kind leaves room for the others
 
 
 class ConsoleLine(NamedTuple):
@@ -35,7 +35,7 @@ class ConsoleLine(NamedTuple):
 
 
 class PageMark(NamedTuple):
-    """Something that stands out: a "reset", "note", "switch", or what `mark_of` knows, at a virtual time in ns."""
+    """A remarkable event: a "reset", "note", "switch", or a kind of `mark_of`, at a virtual time in ns."""
 
     at_ns: int
     kind: str
@@ -43,7 +43,7 @@ class PageMark(NamedTuple):
 
 
 class DropPlace(NamedTuple):
-    """Where messages were lost: MsgId, name of the pipe, why."""
+    """A place of message loss: MsgId, name of the pipe, reason."""
 
     msg_id: int
     pipe: str
@@ -52,7 +52,7 @@ class DropPlace(NamedTuple):
 
 @dataclass(slots=True)
 class AppActivity:
-    """An application: how often its tasks got the processor, and the ns that they used it."""
+    """The activity of an application: how often its tasks got the processor, and the ns that they used it."""
 
     runs: Bins = field(default_factory=Bins)
     busy: Bins = field(default_factory=Bins)
@@ -60,7 +60,7 @@ class AppActivity:
 
 @dataclass(slots=True)
 class TopicActivity:
-    """A MsgId: when and by which applications it was sent, and how long each receiver waited for it."""
+    """The activity of a MsgId: when and by which applications it was sent, and how long each receiver waited for it."""
 
     senders: set[str] = field(default_factory=set)
     sent: Bins = field(default_factory=Bins)
@@ -68,19 +68,23 @@ class TopicActivity:
 
 
 class Collector(Observer):
-    """Collects; what the attributes hold is complete when the run is over.
+    """Collects the data; the attributes are complete when the run is over.
 
     Attributes:
-        apps: by name, in order of appearance.
-        topics: by MsgId, likewise.
-        drops: how many messages were lost where.
-        events, lines: the first `MOST` of each; `event_count` and `line_count` count all.
-        marks: the first `MOST_OF_A_KIND` of each kind; `mark_counts` counts all, by kind.
-        first_errors: when an application sent its first ERROR or CRITICAL event.
-        memory: bytes that are booked by (owner, purpose).
-        graph: who sends what to whom; as it was then, and so is `memory`.
-        end_ns: when the time of the run was over.
-        names: of MsgIds.
+        apps: activity by application, in order of appearance.
+        topics: activity by MsgId, in order of appearance.
+        drops: number of lost messages by place.
+        events: the first `MOST` events.
+        event_count: number of all events.
+        lines: the first `MOST` lines.
+        line_count: number of all lines.
+        marks: the first `MOST_OF_A_KIND` of each kind.
+        mark_counts: number of all marks, by kind.
+        first_errors: time of the first ERROR or CRITICAL event of each application.
+        memory: bytes that are booked by (owner, purpose), at the end of the run.
+        graph: senders, messages and receivers, at the end of the run.
+        end_ns: time of the end of the run.
+        names: names of MsgIds.
     """
 
     def __init__(self) -> None:
@@ -111,7 +115,7 @@ class Collector(Observer):
             self._mark("reset", resets[-1].reason, resets[-1].at_ns)
 
     def conclude(self) -> None:
-        """Take down what the end of the tasks would change."""
+        """Record the data that the end of the tasks would change."""
         self.end_ns = self._kernel.now
         self.memory = self.mission.memory.totals()
         self.graph = graph_of(self.mission, {msg_id: topic.senders for msg_id, topic in self.topics.items()})
@@ -167,7 +171,9 @@ class Collector(Observer):
         self._mark(*(mark_of(text) or ("note", text)), at_ns)
 
     def policy(self, inner: Policy) -> Policy:
-        """A policy that decides as another does, and lets each decision that is not fifo's be marked as a switch."""
+        """Wrap a policy: it decides as `inner` does, and each decision that deviates from fifo is marked as a
+        switch.
+        """
         return _SwitchNotes(inner, lambda *switch: self._mark(SWITCH, _switch_text(*switch), switch[0].now))
 
     def _mark(self, kind: str, text: str, at_ns: int) -> None:
@@ -178,14 +184,14 @@ class Collector(Observer):
     # -- for the timeline --------------------------------------------------------------------------------------------
 
     def width_ns(self) -> int:
-        """The width of a bin that suits all of them."""
+        """Return the width of a bin that suits all activities."""
         all_bins = [bins for app in self.apps.values() for bins in (app.runs, app.busy)]
         all_bins += [topic.sent for topic in self.topics.values()]
         return max((bins.width_ns for bins in all_bins), default=1)
 
 
 class _SwitchNotes(AskingPolicy):
-    """Asks another policy, and tells of what is not fifo's answer, with the line that was about to go on."""
+    """Asks another policy, and reports deviations from fifo, with the line that was about to run."""
 
     def __init__(self, inner: Policy, note: Callable[[Moment, Move, str], None]) -> None:
         super().__init__(inner)
@@ -193,7 +199,7 @@ class _SwitchNotes(AskingPolicy):
         self._numbers = MoveNumbers()
 
     def choose(self, decision: Decision) -> int:
-        """A policy is asked in the task that gives the processor away, so its stack is there."""
+        """Make a decision. A policy is called in the task that gives up the processor, so its stack is available."""
         choice = self._inner.choose(decision)
         moves = self._numbers.moves(decision)
         if choice:

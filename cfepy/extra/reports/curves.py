@@ -3,7 +3,7 @@
     curves = curves_of(recorder, "/joint_states.position")  # of a `SeriesSet`
     save(picture_of([curves], title="capture"), Path("capture.png"))
 
-Drawing needs no display. What a page shows in a browser is drawn by its own script, from the same curves.
+Drawing needs no display. The script of a page draws the same curves in a browser.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MOST_POINTS = 6_000
-"""Of a line: more than twice as many as a picture has columns, so none can be seen to be missing."""
+"""Points of a line: more than twice as many as a picture has columns, so the reduction is not visible."""
 
 MOST_CHANGES, FEW_CHANGES = 60, 8  # of a text
 FEW_POINTS = 60
 SIZE = (10.0, 4.5)  # inches
-EXTRA_HEIGHT = 2.2  # inches for each more axes
+EXTRA_HEIGHT = 2.2  # inches for each further axes
 DPI = 144
 MOST_OF_COLORS, MOST_IN_CORNER, MOST_NAMED = 10, 4, 16
-HEADER = "header."  # of a whole message it is not drawn
+HEADER = "header."  # fields of a whole message that are not drawn
 
 
 class Curve(NamedTuple):
-    """A line: what it is of, and where; times in s."""
+    """A line with its label, times in s, and values."""
 
     label: str
     times: NDArray[Any]
@@ -42,7 +42,7 @@ class Curve(NamedTuple):
 
 
 class Change(NamedTuple):
-    """A text that changed, when, in s, and what it became."""
+    """A change of a text: its time in s, and the new text."""
 
     time: float
     text: str
@@ -50,14 +50,14 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Curves:
-    """What a word such as "/joint_states.position" means in a picture.
+    """The curves of a name such as "/joint_states.position".
 
     Attributes:
-        name: of the topic or packet.
-        field: the path of the field; empty for a whole message.
-        unit: of the values; empty when it is not known.
-        lines: one for each number in the field.
-        changes: of the texts in it, by time.
+        name: name of the topic or packet.
+        field: path of the field; empty for a whole message.
+        unit: unit of the values; empty if it is not known.
+        lines: a line for each number in the field.
+        changes: changes of the text in it, by time.
     """
 
     name: str
@@ -68,22 +68,22 @@ class Curves:
 
     @property
     def title(self) -> str:
-        """What they are, with the unit."""
+        """The name of the curves, with the unit."""
         name = f"{self.name}.{self.field}" if self.field else self.name
         return f"{name}, {self.unit}" if self.unit else name
 
     def since(self, from_s: float) -> Curves:
-        """What is left of them from a virtual time on."""
+        """Return the part of the curves from a virtual time on."""
         lines = [(each, each.times >= from_s) for each in self.lines]
         cut = tuple(Curve(each.label, each.times[left], each.values[left]) for each, left in lines)
         return replace(self, lines=cut, changes=tuple(each for each in self.changes if each.time >= from_s))
 
 
 def curves_of(series: SeriesSet, word: str) -> list[Curves]:
-    """What a word means: the curves of a field, or for a pattern those of each of its topics.
+    """Return the curves of a field; for a pattern, the curves of each matching topic.
 
     Raises:
-        UsageError: nothing was sent that it can mean, there is no such field, or nothing in it can be drawn.
+        UsageError: no matching message was sent, there is no such field, or it cannot be drawn.
     """
     return [_curves(found, field) for found, field in series.matching(word)]
 
@@ -107,7 +107,7 @@ def _curves(series: Series, field: str) -> Curves:
 
 
 def _label(series: Series, path: str) -> str:
-    """An item of an array is called by its name where the message has names for them, as sensor_msgs/JointState."""
+    """Return the label of a line. An item of an array gets its name from the message, as in sensor_msgs/JointState."""
     names = getattr(series.messages[0], "name", None)
     array, bracket, rest = path.partition("[")
     number = rest.rstrip("]")
@@ -127,12 +127,14 @@ def _changes(times: NDArray[Any], column: NDArray[Any]) -> list[Change]:
 
 
 def thinned(curve: Curve, most: int) -> Curve:
-    """A curve of at most so many points; of each stretch of time its lowest and its highest are kept, so no peak is
-    lost.
+    """Reduce a curve to a number of points. Each interval keeps its lowest and its highest point, so no peak is lost.
 
     Args:
-        curve: with its times in order.
-        most: points, 4 or more.
+        curve: a curve with its times in order.
+        most: maximum number of points, 4 or more.
+
+    Returns:
+        The reduced curve.
     """
     import numpy
 
@@ -155,12 +157,15 @@ def thinned(curve: Curve, most: int) -> Curve:
 
 
 def picture_of(axes: Sequence[Sequence[Curves]], *, title: str = "", size: tuple[float, float] | None = None) -> Figure:
-    """A `matplotlib.figure.Figure`, one axes below the other, all over the same times.
+    """Draw a `matplotlib.figure.Figure`, one axes below the other, all over the same times.
 
     Args:
-        axes: the curves of each. Changes of texts are marked in all of them.
-        title: above it.
-        size: width and height in inches; None takes what suits.
+        axes: the curves of each axes. Changes of texts are marked in all of them.
+        title: title above it.
+        size: width and height in inches; None chooses a suitable size.
+
+    Returns:
+        The figure.
 
     Raises:
         UsageError: matplotlib is not installed.
@@ -181,13 +186,16 @@ def picture_of(axes: Sequence[Sequence[Curves]], *, title: str = "", size: tuple
 
 
 def picture_of_words(series: SeriesSet, words: Sequence[str], title: str, file: Path | None) -> Figure:
-    """Draw what words mean, as `cfepy plot` does.
+    """Draw the values of names, as `cfepy plot` does.
 
     Args:
         series: the values of a run.
-        words: such as "/joint_states.position".
-        title: above the picture.
-        file: where it is written, too; None for nowhere.
+        words: names such as "/joint_states.position".
+        title: title above the picture.
+        file: an output file, or None.
+
+    Returns:
+        The figure.
 
     Raises:
         UsageError: there is no such message or field, or matplotlib is not installed.
@@ -200,10 +208,13 @@ def picture_of_words(series: SeriesSet, words: Sequence[str], title: str, file: 
 
 
 def figure_of_matplotlib(**settings: Any) -> Figure:
-    """An empty picture; matplotlib is imported for it.
+    """Make an empty picture; matplotlib is imported for it.
 
     Args:
-        settings: of `matplotlib.figure.Figure`.
+        settings: arguments of `matplotlib.figure.Figure`.
+
+    Returns:
+        The figure.
 
     Raises:
         UsageError: matplotlib is not installed.
@@ -216,7 +227,7 @@ def figure_of_matplotlib(**settings: Any) -> Figure:
 
 
 def save(picture: Figure, file: Path) -> None:
-    """Write a picture: a PNG, SVG or PDF file, by its name. The same picture gives the same bytes.
+    """Write a picture as PNG, SVG or PDF, depending on the file name. The same picture gives the same bytes.
 
     Raises:
         OSError: it cannot be written.
@@ -230,7 +241,7 @@ def save(picture: Figure, file: Path) -> None:
 
 
 def _draw(place: Axes, curves: Sequence[Curves]) -> None:
-    """The lines of one axes."""
+    """Draw the lines of one axes."""
     shown = [each for each in curves if each.lines]
     lines = [(each, line) for each in shown for line in each.lines]
     colors = _colors(len(lines))
@@ -251,7 +262,7 @@ def _colors(count: int) -> Any:
 
 
 def _dress(place: Axes, shown: Sequence[Curves], count: int) -> None:
-    """Axes, grid and legend."""
+    """Set up axes, grid and legend."""
     for side in ("top", "right"):
         place.spines[side].set_visible(False)
     place.grid(True, color="0.9", linewidth=0.8)

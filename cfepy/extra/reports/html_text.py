@@ -10,7 +10,7 @@ from cfepy.writing.markup import element, escaped
 
 
 def json_text(value: Any) -> str:
-    """JSON that can stand in a script element: nothing in it can end that."""
+    """Return JSON for a script element, with all characters escaped that could end the element."""
     text = json.dumps(value, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
@@ -22,14 +22,14 @@ class PageSection(str):
     anchor: str
 
     def __new__(cls, heading: str, anchor: str, inside: str) -> PageSection:
-        """Made of HTML."""
+        """Make a section from HTML."""
         part = super().__new__(cls, inside)
         part.heading, part.anchor = heading, anchor
         return part
 
 
 def section(title: str, anchor: str, inside: str, about: str = "") -> PageSection:
-    """A part of the page with a heading; `about` is HTML that says what it shows."""
+    """Make a part of the page with a heading; `about` is HTML that explains its content."""
     lead = element("p", about, class_="about") if about else ""
     head = element("h2", escaped(title), id=f"{anchor}-title")
     return PageSection(
@@ -38,21 +38,24 @@ def section(title: str, anchor: str, inside: str, about: str = "") -> PageSectio
 
 
 class Numbers:
-    """The numbers of a run, each of which is to be on the page under its path, such as "topics.3.sent".
+    """The numbers of a run; each number must appear on the page under its path, such as "topics.3.sent".
 
     Args:
-        results: as `cfepy run --json` writes them.
+        results: the results as `cfepy run --json` writes them.
     """
 
     def __init__(self, results: Mapping[str, Any]) -> None:
         self._left = dict(numbers_in(results))
 
     def show(self, path: str, text: str | None = None) -> str:
-        """A number as a `data` element with its exact value.
+        """Return a number as a `data` element with its exact value.
 
         Args:
-            path: where it is in the results.
-            text: what people see; None shows it as it is.
+            path: its path in the results.
+            text: the visible text; None shows the number itself.
+
+        Returns:
+            HTML.
         """
         value = self._left.pop(path, None)
         if value is None:
@@ -61,12 +64,12 @@ class Numbers:
         return element("data", escaped(shown), value=json.dumps(value), data_path=path)
 
     def rest(self) -> list[tuple[str, str]]:
-        """Path and element of all numbers that were not shown yet."""
+        """Return path and element of all numbers that were not shown yet."""
         return [(path, self.show(path)) for path in list(self._left)]
 
 
 def numbers_in(value: Any, path: str = "") -> Iterator[tuple[str, int | float]]:
-    """Path and value of every number in nested data; truth values are none."""
+    """Yield path and value of every number in nested data, without booleans."""
     if isinstance(value, Mapping):
         for key, item in value.items():
             yield from numbers_in(item, f"{path}.{key}" if path else str(key))
@@ -82,12 +85,12 @@ def _plain(value: int | float) -> str:
 
 
 class TableCell(str):
-    """HTML of a cell of a table; `order` is what the table is sorted by, None for the text."""
+    """HTML of a cell of a table; `order` is the sort key of the cell, None for its text."""
 
     order: int | float | None
 
     def __new__(cls, inside: str, order: int | float | None = None) -> TableCell:
-        """Made of HTML."""
+        """Make a cell from HTML."""
         cell = super().__new__(cls, inside)
         cell.order = order
         return cell
@@ -96,12 +99,12 @@ class TableCell(str):
 def table(
     caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: Sequence[int] = (), **more: Any
 ) -> str:
-    """A table that scrolls by itself where it is too wide.
+    """Return a table that scrolls separately if it is too wide.
 
     Args:
-        caption: text that says what it is.
-        heads: texts of its columns.
-        rows: HTML of its cells, the first one of each row being its name.
+        caption: text that describes it.
+        heads: titles of its columns.
+        rows: HTML of its cells; the first cell of each row is its name.
         numeric: columns whose cells are numbers.
         more: attributes of the table.
     """
@@ -126,12 +129,12 @@ def _cells(row: Sequence[str], marks: Sequence[str | None]) -> Iterator[str]:
 
 
 def meter(share: float, text: str, is_lost: bool = True) -> str:
-    """A bar from 0 to 1 with a text; more than 1 is shown as full.
+    """Return a bar from 0 to 1 with a text; more than 1 is shown as full.
 
     Args:
-        share: how much of it is used.
+        share: the used share.
         text: HTML to the right of the bar.
-        is_lost: whether a full bar is bad, or just full.
+        is_lost: True if a full bar is a problem.
     """
     level = "high" if share >= 0.95 and is_lost else "raised" if share >= 0.75 else None
     width = f"--share:{min(max(share, 0.0), 1.0) * 100:.2f}%"

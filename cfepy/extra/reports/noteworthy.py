@@ -1,6 +1,6 @@
-"""Noteworthy things of a run: events in packets of the bus, and lines about deadlines, faults and invariants.
+"""Noteworthy events of a run: events in packets of the bus, and lines about deadlines, faults and invariants.
 
-An event is read from the packet that carries it; a line comes from the console, or from the trace alone.
+An event is read from the packet that carries it. A line comes from the console, or from the trace alone.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ _PREFIXES = {PREFIX: DEADLINE, "cfepy fault ": FAULT, "invariant ": INVARIANT}
 
 
 def event_in(msg_id: int, packet: bytes | bytearray, at_ns: int) -> DecodedEvent | None:
-    """The event that a packet carries; None when it carries none.
+    """Return the event that a packet carries, or None.
 
     Args:
-        msg_id: of the packet.
-        packet: with its header.
-        at_ns: when it was sent.
+        msg_id: MsgId of the packet.
+        packet: the packet with its header.
+        at_ns: time of sending.
     """
     if msg_id not in EVENT_IDS:
         return None
@@ -31,7 +31,7 @@ def event_in(msg_id: int, packet: bytes | bytearray, at_ns: int) -> DecodedEvent
 
 
 def mark_of(line: str) -> tuple[str, str] | None:
-    """What kind of line it is, and what it says without the time; None for any other."""
+    """Return the kind of a noteworthy line, and its text without the time; None for any other line."""
     for prefix, kind in _PREFIXES.items():
         if line.startswith(prefix):
             text = line.removeprefix(prefix)

@@ -1,8 +1,8 @@
-"""A run as one HTML page that needs nothing else: no library, no request, no server.
+"""A run as one self-contained HTML page: no library, no request, no server.
 
-`page.css` and `page.js` beside this module are put into it. The policy in its head lets nothing run but that script.
-First come the parts that say how the run went (problems, deadlines, invariants, faults, resets, the script), then those
-that list its parts (messages, applications, pipes, memory, events, the console), each a table or two; the last
+`page.css` and `page.js` next to this module are embedded in it. The policy in its head permits only that script. First
+come the parts about the outcome of the run (problems, deadlines, invariants, faults, resets, the script). Then come the
+parts about its components (messages, applications, pipes, memory, events, the console), each a table or two. The last
 part shows every number of the results that has no other place.
 """
 
@@ -27,12 +27,12 @@ from cfepy.pilot import FailureKind, Flown, Results, RunProblem
 from cfepy.units import NS_PER_S, time_text
 from cfepy.writing.markup import element, escaped
 
-NO_ICON = "data:,"  # a browser would ask for one
+NO_ICON = "data:,"  # a browser would request one
 NEVER = ("never", "never judged")
 SHARES = (0.5, 0.95, 0.99)
 BAR_WIDTH, PICTURE_HEIGHT = 5, 24
 STACK = "stack"
-MOST_SWITCHES = 20  # that are listed among the problems
+MOST_SWITCHES = 20  # shown among the problems
 FATES = {
     "sent": "Sent",
     "delivered": "Delivered",
@@ -44,19 +44,19 @@ FATES = {
     "no_subscriber": "no subscriber",
     "held_back": "held back",
 }
-"""What becomes of a topic's messages, by the field of `TopicResult`."""
+"""The fates of a topic's messages, by the field of `TopicResult`."""
 
 
 @dataclass(frozen=True, slots=True)
 class About:
-    """What a page says of its run besides the results.
+    """Information about a run besides the results.
 
     Attributes:
-        command: that does the run again.
+        command: the command that repeats the run.
         schedule: the schedule of the run, as `--schedule` takes it.
-        source: what the page was made from: a journal, or a mission.
-        warnings: what its reader should know.
-        story: of a failure that the schedule shows and fifo does not; None for none.
+        source: the source of the page: a journal, or a mission.
+        warnings: warnings for the reader.
+        story: the story of a failure that the schedule shows and fifo does not, or None.
     """
 
     command: str
@@ -67,13 +67,13 @@ class About:
 
 
 def page_of(flown: Flown, collector: Collector, about: About, recorded: SeriesSet | None = None) -> str:
-    """The whole page.
+    """Return the whole page.
 
     Args:
         flown: the run.
-        collector: looked on at it.
-        about: what else there is to say.
-        recorded: values over time, for fields that a reader asks for; None leaves them out.
+        collector: the collector that watched it.
+        about: further information.
+        recorded: values over time, for fields that a reader selects; None leaves them out.
     """
     values = None if recorded is None else value_data(recorded)
     results = flown.results
@@ -187,7 +187,7 @@ def _timeline() -> str:
 
 
 def _navigation(body: list[str]) -> str:
-    """Links to the parts that are there."""
+    """Return links to the existing parts."""
     links = [
         element("a", escaped(part.heading), href=f"#{part.anchor}") for part in body if isinstance(part, PageSection)
     ]
@@ -195,7 +195,7 @@ def _navigation(body: list[str]) -> str:
 
 
 def timeline_data(collector: Collector) -> dict[str, Any]:
-    """What the script draws: lanes of counts by time, run-length coded, and instants. Times in ns."""
+    """Return the data of the timeline: lanes of counts by time, run-length coded, and instants. Times in ns."""
     width_ns = collector.width_ns()
     lanes: list[dict[str, Any]] = []
     for name, app in collector.apps.items():
@@ -208,7 +208,7 @@ def timeline_data(collector: Collector) -> dict[str, Any]:
 
 
 def _problems(flown: Flown, collector: Collector, story: PageStory | None) -> str:
-    """Whether the run went well, in a word and a list; each problem with its time, which leads to the timeline."""
+    """Show the number of problems and a list of them; the time of each problem links to the timeline."""
     found = list(_found(flown, collector))
     if not found:
         return element("p", "No problems", class_="banner good")
@@ -226,20 +226,20 @@ def _problems(flown: Flown, collector: Collector, story: PageStory | None) -> st
 
 
 def _silent(results: Results) -> str:
-    """What the mission file asks for and the run had nothing of; nothing when there was something of all."""
+    """List the checks of the mission file for which the run had no data; empty if there are none."""
     items = "".join(element("li", escaped(text)) for text in results.never_judged)
     return element("ul", items, class_="silent") if items else ""
 
 
 def _found(flown: Flown, collector: Collector) -> Iterator[RunProblem]:
-    """All problems of a run; a deadlock is there until its end."""
+    """Yield all problems of a run. A deadlock lasts until its end, so it gets the time of the end."""
     for problem in flown.problems:
         is_at_end = any(failure.kind in (FailureKind.DEADLOCK, FailureKind.STUCK) for failure in problem.failures)
         yield problem._replace(at_ns=collector.end_ns) if problem.at_ns is None and is_at_end else problem
 
 
 def _item(problem: RunProblem, kind: str = "") -> str:
-    """A problem, with a link to its place in the timeline."""
+    """Show a problem, with a link to its place in the timeline."""
     if problem.at_ns is None:
         return element("li", escaped(problem.text), class_=kind or None)
     link = instant(problem.at_ns, f"{problem.at_ns / NS_PER_S:.6f} s")
@@ -247,7 +247,7 @@ def _item(problem: RunProblem, kind: str = "") -> str:
 
 
 def _deadlines(results: Results, numbers: Numbers) -> str:
-    """What the mission file asks for; nothing without it."""
+    """Show the deadlines of the mission file; empty without deadlines."""
     rows = []
     for index, each in enumerate(results.deadlines):
         path = f"deadlines.{index}"
@@ -276,7 +276,7 @@ def _deadlines(results: Results, numbers: Numbers) -> str:
 
 
 def _faults(results: Results, numbers: Numbers) -> str:
-    """What was to go wrong, and how often it did; nothing without faults."""
+    """Show the faults of the plan, and how often each happened; empty without faults."""
     rows = []
     for index, fault in enumerate(results.faults):
         path = f"faults.{index}"
@@ -290,7 +290,7 @@ def _faults(results: Results, numbers: Numbers) -> str:
 
 
 def _invariants(results: Results, numbers: Numbers) -> str:
-    """What had to hold of messages; nothing without invariants."""
+    """Show the invariants of messages; empty without invariants."""
     rows = []
     for index, each in enumerate(results.invariants):
         path = f"invariants.{index}"
@@ -314,7 +314,7 @@ def _invariants(results: Results, numbers: Numbers) -> str:
 
 
 def _marks(results: Results, numbers: Numbers, collector: Collector) -> str:
-    """Resets, faults, deadlines that were missed, invariants that did not hold."""
+    """Show resets, faults, missed deadlines and violated invariants."""
     rows: list[tuple[TableCell, str, str]] = [
         (
             TableCell(numbers.show(f"resets.{index}.at_s", f"{reset.at_s:.6f}"), reset.at_s),
@@ -340,7 +340,7 @@ def _marks(results: Results, numbers: Numbers, collector: Collector) -> str:
 
 
 def _script(outcome: Any, numbers: Numbers) -> str:
-    """The steps of the mission's script; nothing without one."""
+    """Show the steps of the mission's script; empty without one."""
     if outcome is None:
         return ""
     rows = []
@@ -361,7 +361,7 @@ def _script(outcome: Any, numbers: Numbers) -> str:
 
 
 def _messages(results: Results, numbers: Numbers) -> str:
-    """Every MsgId: what was sent, delivered and lost."""
+    """Show the numbers of sent, delivered and lost messages of every MsgId."""
     rows = []
     for index, topic in enumerate(results.topics):
         path = f"topics.{index}"
@@ -382,7 +382,7 @@ def _messages(results: Results, numbers: Numbers) -> str:
 
 
 def _latencies(collector: Collector) -> str:
-    """How long messages were under way."""
+    """Show the latencies of messages."""
     rows = []
     for msg_id, topic in sorted(collector.topics.items()):
         latency = topic.latency
@@ -402,7 +402,7 @@ def _latencies(collector: Collector) -> str:
 
 
 def _picture(latency: Histogram) -> str:
-    """Bars, one for each doubling of the time; the first is 0 ns."""
+    """Draw bars, one for each doubling of the time; the first is 0 ns."""
     octaves = latency.octaves()
     largest = max(octaves.values())
     bars = []
@@ -421,7 +421,7 @@ def _picture(latency: Histogram) -> str:
 
 
 def _applications(results: Results, numbers: Numbers) -> str:
-    """State, processor time and failures."""
+    """Show state, processor time and failures of applications."""
     rows = []
     for index, app in enumerate(results.apps):
         path = f"apps.{index}"
@@ -446,7 +446,7 @@ def _applications(results: Results, numbers: Numbers) -> str:
 
 
 def _pipes(results: Results, numbers: Numbers) -> str:
-    """How full they ever were."""
+    """Show the peak use of pipes."""
     rows = []
     for index, pipe in enumerate(results.pipes):
         path = f"pipes.{index}"
@@ -466,7 +466,7 @@ def _pipes(results: Results, numbers: Numbers) -> str:
 
 
 def _graph(collector: Collector) -> str:
-    """Who sends what to whom, drawn."""
+    """Draw senders, messages and receivers."""
     about = (
         "Who sends is on the left, who takes on the right, with pipes; the same application may be on both sides. "
         "<code>cfepy graph</code> shows the same as text."
@@ -476,7 +476,7 @@ def _graph(collector: Collector) -> str:
 
 
 def _drops(collector: Collector) -> str:
-    """Where messages were lost; nothing when none was."""
+    """Show the places of message loss; empty if no message was lost."""
     rows = [
         [escaped(collector.names[drop.msg_id]), escaped(drop.pipe), escaped(drop.why), TableCell(f"{count:,}", count)]
         for drop, count in sorted(collector.drops.items(), key=lambda item: -item[1])
@@ -488,7 +488,7 @@ def _drops(collector: Collector) -> str:
 
 
 def _budget(results: Results, numbers: Numbers, collector: Collector) -> str:
-    """The board's RAM by owner, and how much of it is stacks."""
+    """Show the board's RAM by owner, and the share of stacks."""
     memory = results.memory
     stacks = {owner: size for (owner, kind), size in collector.memory.items() if kind == STACK}
     rows = []
@@ -509,7 +509,7 @@ def _budget(results: Results, numbers: Numbers, collector: Collector) -> str:
 
 
 def _events(results: Results, numbers: Numbers, collector: Collector) -> str:
-    """What applications reported; with a filter."""
+    """Show the events of applications, with a filter."""
     counts = ", ".join(f"{numbers.show(f'events.{name}')} {name}" for name in results.events)
     rows = [
         [
@@ -530,7 +530,7 @@ def _events(results: Results, numbers: Numbers, collector: Collector) -> str:
 
 
 def _console(collector: Collector) -> str:
-    """What was printed; with a filter."""
+    """Show the console, with a filter."""
     rows = [[f"{line.at_ns / NS_PER_S:.6f}", escaped(line.text)] for line in collector.lines]
     inside = _filter("console", "Show lines with")
     inside += table("Console", ("At, s", "Line"), rows, (0,), class_="log console", id="console-table")
@@ -538,7 +538,7 @@ def _console(collector: Collector) -> str:
 
 
 def _kept(shown: int, count: int) -> str:
-    """What is said where not all can be shown."""
+    """Return a note if not all rows are shown."""
     return "" if count <= shown else f"The first {MOST:,} of {count:,} are shown."
 
 
@@ -550,7 +550,7 @@ def _filter(name: str, label: str) -> str:
 
 
 def _others(numbers: Numbers) -> str:
-    """Every number that has no place of its own, so that none is missing."""
+    """Show every number that has no place of its own, so that none is missing."""
     rows = [[escaped(path), shown] for path, shown in numbers.rest()]
     if not rows:
         return ""

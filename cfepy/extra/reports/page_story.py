@@ -1,4 +1,4 @@
-"""The part of a run's page that tells a failure as a story: its cause, and what each task did up to it."""
+"""The part of a run's page that presents a failure as a story: its cause, and the actions of each task before it."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class StoryRow(NamedTuple):
 
     Attributes:
         at_ns: virtual time; None for a row that stands for others.
-        column: of the task that did it; None for a row that stands for others.
-        text: what was done, or how often the rows above came.
-        is_switch: the schedule did it.
+        column: column of the acting task; None for a row that stands for others.
+        text: the action, or the number of repetitions of the rows above.
+        is_switch: True for an action of the schedule.
     """
 
     at_ns: int | None
@@ -35,10 +35,10 @@ class PageStory:
     """A failure as a story.
 
     Attributes:
-        cause: a sentence; empty where it is not known.
-        tasks: heads of the columns.
-        rows: in the order of time.
-        end: what failed, a line.
+        cause: a sentence; empty if it is not known.
+        tasks: titles of the columns.
+        rows: rows in the order of time.
+        end: the failure, one line.
     """
 
     cause: str
@@ -48,7 +48,7 @@ class PageStory:
 
 
 def story_section(story: PageStory) -> str:
-    """The part itself."""
+    """Return the part itself."""
     cause = element("p", f"Cause: {escaped(story.cause)}", class_="banner bad") if story.cause else ""
     heads = ("At, s", *story.tasks)
     rows = [_cells(number, row, len(story.tasks)) for number, row in enumerate(story.rows)]
@@ -60,7 +60,7 @@ def story_section(story: PageStory) -> str:
 
 
 def _cells(number: int, row: StoryRow, columns: int) -> list[str]:
-    """HTML of a row; many have the same time, and are sorted by their number."""
+    """Return HTML of a row. Many rows have the same time, so they are sorted by their number."""
     text = escaped(row.text)
     cells = [""] * columns
     cells[row.column or 0] = element("strong", text, class_="switch") if row.is_switch else text
@@ -69,5 +69,5 @@ def _cells(number: int, row: StoryRow, columns: int) -> list[str]:
 
 
 def instant(at_ns: int, text: str) -> str:
-    """A link to an instant in the timeline of the page."""
+    """Return a link to an instant in the timeline of the page."""
     return element("a", text, href="#timeline", data_at=at_ns, title="Show this instant in the timeline")

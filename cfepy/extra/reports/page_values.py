@@ -1,10 +1,10 @@
-"""Values over time on the page: what its script draws when a reader asks for a field, and where the reader asks.
+"""Values over time on the page: the data that its script draws when a reader selects a field, and the selection.
 
-Fields come in groups that are drawn together: the items of an array, the members of a struct. The points of a series
-are thinned to some hundred pairs, of each stretch of messages the lowest and the highest value; their times are whole
-microseconds, and their values 16-bit steps between the lowest and the highest, in base64. So a field takes some two
-kilobytes, however long the run was. When all fields together would take more than `MOST_BYTES`, they get fewer points,
-and then those of the largest messages are left out.
+Fields are drawn in groups: the items of an array, or the members of a struct. The points of a series are thinned to
+some hundred pairs: of each interval of messages the lowest and the highest value. Their times are whole microseconds,
+and their values 16-bit steps between the lowest and the highest, in base64. So a field takes some two kilobytes,
+regardless of the length of the run. If all fields together would take more than `MOST_BYTES`, they get fewer points,
+and then the fields of the largest messages are left out.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _ITEM = re.compile(r"(\[\d+\])+$")
 
 
 class ValueData(NamedTuple):
-    """What is embedded, as plain data for JSON, and how many of how many fields it has."""
+    """The embedded values, as plain data for JSON, and the number of shown fields and of all fields."""
 
     plain: list[dict[str, Any]]
     shown: int
@@ -41,7 +41,7 @@ class ValueData(NamedTuple):
 
 
 def value_data(recorded: SeriesSet) -> ValueData:
-    """The values of a run.
+    """Make the embedded values of a run.
 
     Args:
         recorded: all topics and packets.
@@ -60,10 +60,10 @@ def value_data(recorded: SeriesSet) -> ValueData:
 
 
 def _curves(recorded: SeriesSet, name: str) -> list[Curves]:
-    """What can be drawn of a topic or packet."""
+    """Return the curves of a topic or packet that can be drawn."""
     try:
         return curves_of(recorded, name)
-    except UsageError:  # nothing can, or its bytes are no such message
+    except UsageError:  # it cannot be drawn, or its bytes are not a message of its type
         return []
 
 
@@ -95,21 +95,21 @@ def _path(label: str) -> str:
 
 
 def _group(label: str) -> str:
-    """What a line is drawn together with: `position` of position[2], `pose.position` of pose.position.x."""
+    """Return the group of a line: `position` for position[2], `pose.position` for pose.position.x."""
     path = _path(label)
     array = _ITEM.sub("", path)
     return array if array != path else path.rpartition(".")[0] or path
 
 
 class TimeBins(NamedTuple):
-    """Stretches of a series that become two points each; none when there are few enough points."""
+    """Intervals of a series that become two points each; None if the series is short enough."""
 
     times: NDArray[Any]
     starts: NDArray[Any] | None
 
     @classmethod
     def of(cls, times: NDArray[Any], pairs: int) -> TimeBins:
-        """At most so many stretches, of as many messages each."""
+        """Make at most `pairs` intervals with equal numbers of messages."""
         import numpy
 
         if len(times) <= 2 * pairs:
@@ -117,7 +117,7 @@ class TimeBins(NamedTuple):
         return cls(times, numpy.linspace(0, len(times), pairs, endpoint=False).astype(int))
 
     def times_us(self) -> list[int]:
-        """When the points are, in us, each as the distance from the one before it."""
+        """Return the times of the points in us, each as the distance from the previous one."""
         import numpy
 
         times = self.times
@@ -128,7 +128,9 @@ class TimeBins(NamedTuple):
         return steps
 
     def thinned(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Values at these times: of each stretch the lowest and the highest, in the order of its first and last."""
+        """Return the lowest and the highest value of each interval, in the direction from its first to its last
+        value.
+        """
         import numpy
 
         if self.starts is None:
@@ -140,10 +142,11 @@ class TimeBins(NamedTuple):
 
 
 def encoded(values: NDArray[Any]) -> dict[str, Any]:
-    """Values as `low`, `step` and `data`: base64 of 16-bit numbers, little-endian, of steps above the lowest value.
+    """Encode values as `low`, `step` and `data`: base64 of 16-bit little-endian numbers of steps above the lowest
+    value.
 
-    Whole numbers in a narrow range are exact. A value that is missing or not finite is `MISSING`; one that never
-    changes has no `data`.
+    Whole numbers in a narrow range are exact. A value that is missing or not finite is `MISSING`; a constant has no
+    `data`.
     """
     import numpy
 
@@ -167,7 +170,7 @@ def _base64(steps: NDArray[Any]) -> str:
 
 
 def values_section(values: ValueData, recorded: SeriesSet) -> str:
-    """What a reader picks fields in; nothing where nothing was sent."""
+    """Return the section in which a reader selects fields; empty if no message was sent."""
     if not values.plain:
         return ""
     picker = element("div", "", id="values-fields", class_="fields", role="group", aria_label="Fields to draw")
@@ -192,7 +195,7 @@ def values_section(values: ValueData, recorded: SeriesSet) -> str:
 
 
 def _thinned(values: ValueData, recorded: SeriesSet) -> Iterator[str]:
-    """What of the values the page has not."""
+    """Say which values were left off the page, and why."""
     if any(len(recorded.series(each["name"])) > len(each["times"]) for each in values.plain):
         yield "Of many messages the lowest and highest values of each stretch of time are drawn."
     if any(each["every"] > 1 for each in values.plain):

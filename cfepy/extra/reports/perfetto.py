@@ -1,8 +1,8 @@
 """A run in the Trace Event Format, which Perfetto (ui.perfetto.dev) and chrome://tracing open.
 
-A process stands for an application and a thread for a task of it; "mission" is a process of its own, with a thread each
-for what happens to the mission as a whole. What happens at one instant is drawn apart (`trace_events`);
-`args.virtual_ns` is the true time.
+A process stands for an application and a thread for a task of it. "mission" is a process of its own, with one thread
+for each kind of event of the whole mission. Events at one instant are drawn apart (`trace_events`); `args.virtual_ns`
+is the true time.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class PerfettoTrace(Observer):
 
     @property
     def error(self) -> OSError | None:
-        """What writing raised, for the caller that closes the file."""
+        """The error of writing, for the caller that closes the file."""
         return self._events.error
 
     def begin(self, mission: Any) -> None:
@@ -57,7 +57,9 @@ class PerfettoTrace(Observer):
             self._events.name_thread(pid, FIRST_OWN_TID + number, name)
 
     def power_up(self, processor: Any) -> None:
-        """A reset is an instant; ES's performance log shows which marked parts of the code run."""
+        """Draw a reset as an instant, and follow ES's performance log, which shows the marked parts of the code that
+        run.
+        """
         self._end_run(self._kernel.now)
         super().power_up(processor)
         resets = self.mission.record.resets
@@ -67,7 +69,7 @@ class PerfettoTrace(Observer):
         log.add = self._marking(log.add)
 
     def close(self) -> None:
-        """End what is open, and the file with what the run was."""
+        """End all open slices, and end the file with a description of the run."""
         self._end_run(self._kernel.now)
         for (ident, marker), pid in list(self._markers.items()):
             self._leave_marker(pid, ident, marker, self._kernel.now)
@@ -91,17 +93,17 @@ class PerfettoTrace(Observer):
             self._events.name_thread(pid, tid, task.name)
         return pid, tid
 
-    # -- what happens ------------------------------------------------------------------------------------------------
+    # -- events --------------------------------------------------------------------------------------------------------
 
     def on_run(self, task: Task, at_ns: int) -> None:
-        """A slice begins."""
+        """Begin a slice."""
         pid, tid = self._open = self._track(task)
         self._write(
             ph="B", pid=pid, tid=tid, ts=us(self._draw(at_ns)), name="running", cat="task", args={"virtual_ns": at_ns}
         )
 
     def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
-        """The slice ends."""
+        """End the slice."""
         self._end_run(at_ns)
 
     def _end_run(self, at_ns: int) -> None:
@@ -111,7 +113,7 @@ class PerfettoTrace(Observer):
             self._write(ph="E", pid=pid, tid=tid, ts=us(self._draw(at_ns)))
 
     def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:
-        """A short slice in that of its sender; an event is an instant as well."""
+        """Draw a short slice inside the sender's slice. Events also get an instant marker."""
         pid, tid = self._track(sent.task)
         name = self._names[sent.msg_id]
         drawn = self._short(pid, tid, f"send {name}", sent.at_ns, sent)
@@ -123,7 +125,7 @@ class PerfettoTrace(Observer):
             self._instant("events", event.type_name, sent.at_ns, app=event.app, id=event.event_id, text=event.text)
 
     def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
-        """A short slice in that of the receiver, and an arrow that leads to it."""
+        """Draw a short slice inside the receiver's slice, and an arrow that leads to it."""
         pid, tid = self._track(task)
         name = "" if sent is None else self._names[sent.msg_id]
         drawn = self._short(pid, tid, f"receive {name or pipe.name}", at_ns, sent, pipe=pipe.name)
@@ -143,7 +145,7 @@ class PerfettoTrace(Observer):
         return drawn
 
     def on_drop(self, msg_id: int, pipe: Pipe, why: str, at_ns: int) -> None:
-        """An instant where the sender is."""
+        """Draw an instant in the sender's track."""
         pid, tid = self._track(self._kernel.current)
         args = {"virtual_ns": at_ns, "pipe": pipe.name, "why": why}
         drawn = us(self._draw(at_ns))
@@ -151,7 +153,7 @@ class PerfettoTrace(Observer):
         self._write(ph="i", s="t", pid=pid, tid=tid, ts=drawn, name=name, cat="drop", args=args)
 
     def on_depth(self, pipe: Pipe, at_ns: int) -> None:
-        """A counter for each pipe, written when it changes."""
+        """Draw a counter for each pipe when it changes."""
         key, waiting = (self._pid(pipe.app_name), f"pipe {pipe.name}"), len(pipe.items)
         if self._depths.get(key) == waiting:
             return
@@ -159,7 +161,7 @@ class PerfettoTrace(Observer):
         self._write(ph="C", pid=key[0], tid=0, ts=us(self._draw(at_ns)), name=key[1], args={"waiting": waiting})
 
     def on_console(self, line: str, at_ns: int) -> None:
-        """An instant; what stands out is one of all tracks."""
+        """Draw an instant; a noteworthy line is drawn across all tracks."""
         mark = mark_of(line)
         if mark is None:
             self._instant("console", line, at_ns)
@@ -167,7 +169,7 @@ class PerfettoTrace(Observer):
             self._instant(*mark, at_ns, scope="g")
 
     def on_note(self, text: str, at_ns: int) -> None:
-        """An instant of all tracks: what a fault, an invariant or a deadline has to say."""
+        """Draw a note of a fault, an invariant or a deadline as an instant across all tracks."""
         self._instant(*(mark_of(text) or ("notes", text)), at_ns, scope="g")
 
     def _instant(self, track: str, name: str, at_ns: int, scope: str = "t", **more: Any) -> None:

@@ -1,9 +1,9 @@
 """A file in the Trace Event Format, which Perfetto (ui.perfetto.dev) and chrome://tracing open, and cFE's performance
 log as such a file.
 
-Much happens at one and the same virtual instant, on a board without processor costs nearly everything. So that its
-order can be seen, each thing is drawn at least `STEP_NS` after the one before it, and the drawing is back at the
-virtual time as soon as that has gone on.
+Many events happen at the same virtual instant, on a board without processor costs nearly all of them. To make their
+order visible, each event is drawn at least `STEP_NS` after the previous one. The drawing returns to the virtual time as
+soon as virtual time has caught up.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ CORE_MARKERS = {
     11: "CFE_TIME tone task",
     27: "CFE_SB pipe overflow",
 }
-"""What cFE's own ids stand for (cfe_perfids.h)."""
+"""Names of cFE's own ids (cfe_perfids.h)."""
 
 
 class TraceEvents:
@@ -40,8 +40,8 @@ class TraceEvents:
         file: a text file, which the caller closes.
 
     Attributes:
-        error: what writing raised, for the caller that closes the file: inside the simulation nothing of the host may
-            be raised.
+        error: the error of writing, for the caller that closes the file. It is kept here because host errors must not
+            be raised inside the simulation.
     """
 
     def __init__(self, file: IO[str]) -> None:
@@ -51,16 +51,16 @@ class TraceEvents:
         self._is_first = True
 
     def begin(self) -> None:
-        """Before the first event."""
+        """Write the start of the file, before the first event."""
         self._put('{"displayTimeUnit":"ns","traceEvents":[\n')
 
     def end(self, about: Mapping[str, Any]) -> None:
-        """After the last event; `about` tells what it is a trace of."""
+        """Write the end of the file, after the last event; `about` describes the trace."""
         other = {**about, "cfepy": __version__, "drawn_apart_ns": STEP_NS}
         self._put(f'\n],"otherData":{json.dumps(other)}}}\n')
 
     def write(self, **fields: Any) -> None:
-        """An event with these fields."""
+        """Write an event with these fields."""
         start = "" if self._is_first else ",\n"
         self._is_first = False
         self._put(start + json.dumps(fields, separators=(",", ":")))
@@ -73,34 +73,35 @@ class TraceEvents:
                 self.error = error
 
     def draw(self, at_ns: int) -> int:
-        """Where something is drawn that happens at a time, in ns."""
+        """Return the drawn time in ns of an event at a virtual time in ns."""
         self._drawn_ns = max(at_ns, self._drawn_ns + STEP_NS)
         return self._drawn_ns
 
     def name_process(self, pid: int, name: str) -> None:
-        """A group of tracks."""
+        """Name a group of tracks."""
         self.write(ph="M", pid=pid, tid=0, name="process_name", args={"name": name})
         self.write(ph="M", pid=pid, tid=0, name="process_sort_index", args={"sort_index": pid})
 
     def name_thread(self, pid: int, tid: int, name: str) -> None:
-        """A track."""
+        """Name a track."""
         self.write(ph="M", pid=pid, tid=tid, name="thread_name", args={"name": name})
 
 
 def us(time_ns: int) -> float:
-    """A time as the format counts it."""
+    """Return a time in the unit of the format."""
     return time_ns / NS_PER_US
 
 
 def write_perf_log(file: IO[str], entries: Iterable[Mapping[str, Any]], about: Mapping[str, Any]) -> None:
     """Write a performance log: a track for each marker, with a slice from each entry to its exit.
 
-    What is still inside at the end has a slice up to there, and an exit without an entry is an instant.
+    A slice without an exit lasts to the end of the log, and an exit without an entry is an instant.
 
     Args:
         file: a text file.
-        entries: in their order, with `Id`, `IsExit` and `TimeUs` (`cfepy.ground.cfe_files.dump_files.read_perf_data`).
-        about: tells what it is a log of.
+        entries: entries in their order, with `Id`, `IsExit` and `TimeUs`
+            (`cfepy.ground.cfe_files.dump_files.read_perf_data`).
+        about: a description of the log.
     """
     out, inside = TraceEvents(file), dict[int, int]()
     out.begin()

@@ -1,8 +1,8 @@
 """ROS 1 on this computer and a paced mission as one graph: `cfepy run --realtime --ros-master`.
 
-What belongs here speaks ROS's protocols on real sockets: XML-RPC of master and nodes, TCPROS of topics and services.
-What the mission's graph is and answers is `rospy_shim.graph` and `rospy_shim.master`; what outside nodes have in it,
-`rospy_shim.graph.outside`. The central file is `cfepy/extra/ros_host/host.py`.
+A module belongs here if it speaks ROS's protocols on real sockets: XML-RPC of master and nodes, TCPROS of topics and
+services. The mission's graph and its answers belong to `rospy_shim.graph` and `rospy_shim.master`; the entries of
+outside nodes in it belong to `rospy_shim.graph.outside`. The central file is `cfepy/extra/ros_host/host.py`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["MASTER_PORT", "JoinedMaster", "RosHost", "RosWorld", "ServedMaster", "telemetry_package"]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # a type checker sees only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

@@ -1,7 +1,7 @@
-"""Errands: what must wait for another program, done in threads of the host while the run goes on.
+"""Background requests that wait for another program, done in threads of the host while the run goes on.
 
-Such are calls of a master or a node that may be slow or gone, and connecting. An errand is a function; what came of it
-is handed over when the host looks, between two pieces of the run. Those of one line are done one after the other.
+Examples are connecting, and calls of a master or a node that may be slow or gone. An errand is a function. Its result
+is delivered when the host asks for it, between two steps of the run. Errands of one line run one after the other.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from cfepy.reading.input_limits import RPC_BYTES
 from cfepy.status import UsageError
 
 PATIENCE_S = 5.0  # wall time for an answer
-MOST_WAITING = 200  # errands of a line; beyond that the oldest is left out
-MOST_LINES = 2000  # in which one waits; a new one is left out
+MOST_WAITING = 200  # errands of a line; beyond that the oldest is dropped
+MOST_LINES = 2000  # lines with waiting errands; a new line is dropped
 MOST_THREADS = 16
-MOST_HEAD = 1 << 16  # bytes of an answer's fields of HTTP
+MOST_HEAD = 1 << 16  # bytes of an answer's HTTP header
 
 Done = Callable[[Any, Exception | None], object]
-"""Takes the result, or what went wrong."""
+"""Receives the result, or the error."""
 
 
 class Errands:
-    """Does errands.
+    """Runs errands.
 
     Args:
-        tell: gets a line about a result that could not be used.
+        tell: receives a message about a result that could not be used.
 
     Attributes:
-        left_out: errands that were given up because too many waited.
+        left_out: number of errands that were dropped because too many waited.
     """
 
     def __init__(self, tell: Callable[[str], object] = lambda line: None) -> None:
@@ -48,23 +48,23 @@ class Errands:
         self._near.setblocking(False)
         self._far.setblocking(False)
         self._lines: dict[str, deque[tuple[Callable[[], Any], Done]]] = {}
-        self._ready: deque[str] = deque()  # lines whose first errand no thread does yet
+        self._ready: deque[str] = deque()  # lines whose first errand no thread has taken yet
         self._threads = 0
         self._results: deque[tuple[Done, Any, Exception | None]] = deque()
         self._guard = threading.Lock()
         self._is_closed = False
 
     def fileno(self) -> int:
-        """What can be read when something is done."""
+        """Return the descriptor that becomes readable when an errand is done."""
         return self._near.fileno()
 
     def run(self, line: str, errand: Callable[[], Any], done: Done) -> None:
-        """Have an errand done.
+        """Run an errand in the background.
 
         Args:
-            line: what it must wait for is done before it.
+            line: name of a line; errands of the same line run in order.
             errand: called in another thread.
-            done: gets the result; the error when it was left out.
+            done: receives the result, or an error if the errand was dropped.
         """
         with self._guard:
             waiting = self._lines.get(line)
@@ -83,7 +83,7 @@ class Errands:
             self._threads += 1
         try:
             threading.Thread(target=self._work, name="errands", daemon=True).start()
-        except RuntimeError:  # this computer has no more threads now; another one of these does it, or the next
+        except RuntimeError:  # no more threads now; a running one takes it, or the next call starts one
             with self._guard:
                 self._threads -= 1
 
@@ -93,7 +93,7 @@ class Errands:
         self.nudge()
 
     def ask(self, uri: str, method: str, arguments: tuple[Any, ...], done: Done) -> None:
-        """Call a method over XML-RPC; what came of it is the value of the answer."""
+        """Call a method over XML-RPC; `done` receives the value of the answer."""
         self.run(uri, lambda: ask(uri, method, *arguments), done)
 
     def _work(self) -> None:
@@ -107,7 +107,7 @@ class Errands:
             try:
                 result: Any = errand()
                 error = None
-            except Exception as problem:  # what goes wrong is told to whom it concerns
+            except Exception as problem:  # the caller receives the error
                 result, error = None, problem
             self._results.append((done, result, error))
             with self._guard:
@@ -118,14 +118,14 @@ class Errands:
             self.nudge()
 
     def nudge(self) -> None:
-        """There is something to do between two pieces of the run: it is not to sleep after the next one."""
+        """Wake the host: it must not sleep after the next step of the run, because a result waits."""
         try:
             self._far.send(b"!")
         except OSError:
-            pass  # there are enough marks already, or nobody looks any more
+            pass  # enough marks wait already, or the host has closed its end
 
     def deliver(self) -> None:
-        """Hand over what was done."""
+        """Deliver the results."""
         try:
             while self._near.recv(4096):
                 pass
@@ -135,11 +135,11 @@ class Errands:
             done, result, error = self._results.popleft()
             try:
                 done(result, error)
-            except Exception as problem:  # another program's answer was not what it should be
+            except Exception as problem:  # the answer of the other program was not as expected
                 self._tell(f"invalid answer of another program: {type(problem).__name__}: {problem}")
 
     def close(self) -> None:
-        """What is under way is left behind."""
+        """Close; running errands are abandoned."""
         with self._guard:
             self._is_closed = True
         self._near.close()
@@ -147,7 +147,7 @@ class Errands:
 
 
 class _BoundedSocket(socket.socket):
-    """A connected socket that reads for a time, and so many bytes, and then fails."""
+    """A connected socket that fails after a time limit or a number of bytes."""
 
     def __init__(self, connected: socket.socket) -> None:
         super().__init__(connected.family, connected.type, connected.proto, fileno=connected.detach())
@@ -156,10 +156,10 @@ class _BoundedSocket(socket.socket):
         self._left = RPC_BYTES + MOST_HEAD
 
     def recv_into(self, *arguments: Any) -> int:
-        """As `socket.recv_into`.
+        """Receive as `socket.recv_into` does.
 
         Raises:
-            OSError: timeout while waiting for the answer, or is too large.
+            OSError: timeout while waiting for the answer, or the answer is too large.
         """
         left_s = self._end_s - time.monotonic()
         if left_s <= 0:
@@ -173,7 +173,7 @@ class _BoundedSocket(socket.socket):
 
 
 class _BoundedConnection(http.client.HTTPConnection):
-    """A connection whose answers come in time, and are not too large."""
+    """A connection whose answers have a time limit and a size limit."""
 
     def connect(self) -> None:
         super().connect()
@@ -181,19 +181,19 @@ class _BoundedConnection(http.client.HTTPConnection):
 
 
 class _Patient(Transport):
-    """XML-RPC over HTTP with an end to waiting, and bounds for what comes."""
+    """XML-RPC over HTTP with a timeout, and limits for the answer."""
 
-    accept_gzip_encoding = False  # what is packed may be of any size
+    accept_gzip_encoding = False  # compressed data may expand to any size
 
     def make_connection(self, host: Any) -> http.client.HTTPConnection:
-        """A connection that gives up after some time; each is for one request."""
+        """Make a connection with a timeout; each is for one request."""
         address, self._extra_headers, _ = self.get_host_info(host)
         connection = _BoundedConnection(address, timeout=PATIENCE_S)
         self._connection = host, connection
         return connection
 
     def parse_response(self, response: Any) -> Any:
-        """The values of an answer."""
+        """Return the values of an answer."""
         if response.getheader("Content-Encoding", "identity").lower() != "identity":
             raise RosError("the answer is compressed, which the request did not allow")
         return read_body(response.read())[0]
@@ -206,7 +206,7 @@ def ask(uri: str, method: str, *arguments: Any) -> Any:
         Its value.
 
     Raises:
-        RosError: the answer says that it failed, or there was none that can be read.
+        RosError: the answer reports a failure, or cannot be read.
         OSError: there was no answer.
     """
     try:
@@ -223,14 +223,14 @@ def ask(uri: str, method: str, *arguments: Any) -> Any:
 
 
 class RosError(Exception):
-    """The other side has answered that something failed."""
+    """The other side has answered that a request failed."""
 
 
 def connect(uri: str) -> socket.socket:
-    """Connect with the program at a URI, whose host and port count.
+    """Connect to the program at a URI; only host and port of the URI are used.
 
     Raises:
-        OSError, ValueError: there is none.
+        OSError, ValueError: there is no such program.
     """
     parts = urlsplit(uri)
     if parts.scheme != "rosrpc":

@@ -1,9 +1,9 @@
 """`RosHost`: joins a paced mission to ROS on this computer.
 
-The mission's nodes get addresses, programs outside get a place in its graph, and messages, requests and answers pass
-between them. All that enters goes through `cfepy.mission.outside` as acts, while the run stands still between two
-pieces; so a journal has it, and a replay needs none of this. What the mission sends goes out at once, into sockets that
-never wait. Who is outside, and what the master knows of it, is the world's to say (`cfepy.extra.ros_host.world`).
+The mission's nodes get addresses, external programs get a place in its graph, and messages, requests and answers pass
+between them. All input enters through `cfepy.mission.outside` as host actions, while the run stands still between two
+steps. So a journal records it, and a replay needs none of this. Output of the mission is sent at once, into sockets
+that never block. The world (`cfepy.extra.ros_host.world`) knows the external nodes and the state of the master.
 """
 
 from __future__ import annotations
@@ -37,27 +37,30 @@ if TYPE_CHECKING:
     from rospy_shim.runtime import RosRuntime
 
 LOOPBACK = "127.0.0.1"
-LOOK_S = 0.02  # wall time between two looks at who has come and gone
-PUT_OFF_S = 0.1  # for which one waits at most while something comes in
+LOOK_S = 0.02  # wall time between two looks at new and lost nodes
+PUT_OFF_S = 0.1  # maximum delay of a look while input arrives
 ACT = "ros"
 TABLE = "ros_peers"
 _time = struct.Struct("<II").pack
 
 
 def address_of(environ: Mapping[str, str]) -> RosAddress:
-    """As ROS_HOSTNAME or ROS_IP say; without them only from this computer (wiki.ros.org/ROS/NetworkSetup)."""
+    """Return the address of the mission's nodes, from ROS_HOSTNAME or ROS_IP (wiki.ros.org/ROS/NetworkSetup).
+
+    Without them the nodes are reachable only from this computer.
+    """
     host = environ.get("ROS_HOSTNAME") or environ.get("ROS_IP") or LOOPBACK
     return RosAddress(host, LOOPBACK if host == "localhost" or host.startswith("127.") else "")
 
 
 class RosHost:
-    """The joint. Use as a context manager around the run.
+    """Joins a mission to ROS. Use as a context manager around the run.
 
     Args:
         mission: the mission, which stands at virtual time 0.
-        make_world: makes what is outside: a master that is served here, or one that is joined.
-        environ: of this process; says where the mission is reached (`address_of`).
-        tell: gets a line about what the user should know.
+        make_world: makes the world: a master that is served here, or a running one that the mission joins.
+        environ: environment of this process; it sets the address of the mission's nodes (`address_of`).
+        tell: receives messages for the user.
 
     Raises:
         UsageError: the master cannot be reached, or its port is taken.
@@ -95,7 +98,7 @@ class RosHost:
         self._offered: dict[str, tuple[str, str]] = {}  # outside services: node and URI, probed or being probed
         self._todo: list[Callable[[], object]] = []
         self.stalled: set[OutsidePublisher] = set()  # whose messages wait for room
-        self._params: list[str] = []  # that have changed
+        self._params: list[str] = []  # changed parameters
         self._look_at_s = 0.0
         self._is_over = False
         self.selector.register(self.errands, EVENT_READ, lambda events: self.errands.deliver())
@@ -113,15 +116,15 @@ class RosHost:
         self.close()
 
     def fileno(self) -> int:
-        """What can be read when something wants to come in."""
+        """Return the descriptor that becomes readable when input arrives."""
         return self.selector.fileno()
 
     def now_s(self) -> float:
-        """Wall time since some instant."""
+        """Return wall time in s since an arbitrary instant."""
         return time.monotonic()
 
     def exchange(self) -> None:
-        """Bring in what arrived, and look who has come and gone."""
+        """Bring in the input that arrived, and look for new and lost nodes."""
         if self._mission.ros is not self.ros or self.ros is None:
             self._begin()
         self.bounds.turn.begin()
@@ -136,14 +139,14 @@ class RosHost:
         for key, events in arrived:
             key.data(events)
         now_s = self.now_s()
-        if now_s >= self._look_at_s + (PUT_OFF_S if arrived else 0.0):  # what has come in goes first
+        if now_s >= self._look_at_s + (PUT_OFF_S if arrived else 0.0):  # input that arrived goes first
             self._look_at_s = now_s + LOOK_S
             self._look(now_s)
         if self.shown.clock_ns:
             self._tell_time()
 
     def soon(self) -> None:
-        """Look at who has come and gone at the next occasion."""
+        """Look for new and lost nodes at the next opportunity."""
         self._look_at_s = 0.0
 
     def close(self) -> None:
@@ -159,13 +162,13 @@ class RosHost:
     # -- the mission -------------------------------------------------------------------------------------------------
 
     def act(self, name: str, *values: Any) -> Any:
-        """Do something to the mission's graph (`OutsideGraph.do`), through the door that a journal has."""
+        """Perform a host action on the mission's graph (`OutsideGraph.do`); a journal records it."""
         if self._is_over:
             return ""
         return self._mission.outside.act(ACT, name, *values)
 
     def ask_inside(self, node: str, body: bytes) -> Answer:
-        """A request of the master's or slave API that changes something; `node` is "" for the master."""
+        """Send a changing request of the master or slave API to the mission; `node` is "" for the master."""
         try:
             answer: Answer = self.act("ask", node, body)
         except CfeError as error:
@@ -173,7 +176,7 @@ class RosHost:
         return self.outer_answer(answer)
 
     def _begin(self) -> None:
-        """The ROS side of the processor is new: what the outside had in the graph of a former one is not in it."""
+        """Begin with a new ROS side of the processor: it has none of the external entries of the former graph."""
         self._mission.outside.act(ACT)
         ros = self._mission.ros
         assert ros is not None
@@ -186,7 +189,7 @@ class RosHost:
             self._register_applications()
 
     def _register_applications(self) -> None:
-        """One node stands for the cFE applications outside; the mission's own graph knows it by name alone."""
+        """Register one node that stands for the cFE applications; the mission's own graph has only its name."""
         node = self._nodes[APPLICATIONS] = MissionNode(self, APPLICATIONS, "")
         node.inner = node.uri
         for topic, kind in self.shown.types.items():
@@ -203,7 +206,7 @@ class RosHost:
             each.clear()
 
     def see(self) -> OwnGraph:
-        """Look at the mission's own part of the graph; new nodes have their addresses afterwards."""
+        """Update the mission's own part of the graph; new nodes have their addresses afterwards."""
         assert self.ros is not None
         graph, registry = self.ros.graph, self.ros.switchboard.master.registry
         nodes = {name: registry.node_uri(name) or "" for name in (*graph.nodes, *graph.compiled)}
@@ -229,19 +232,19 @@ class RosHost:
         return self.seen
 
     def node_uri(self, name: str) -> str:
-        """Where a node of the mission answers outside."""
+        """Return the external URI of a node of the mission."""
         return self._nodes[name].uri
 
     def service_uri(self, name: str) -> str:
-        """Where the services of a node of the mission are called outside."""
+        """Return the external URI of the services of a node of the mission."""
         return self._nodes[name].service_uri
 
     def is_own(self, uri: str) -> bool:
-        """Whether a node of the mission answers at a URI outside."""
+        """Return True if an external URI belongs to a node of the mission."""
         return any(each.uri.rstrip("/") == uri.rstrip("/") for each in self._nodes.values())
 
     def outer(self, value: Any) -> Any:
-        """A value with the URIs of the mission's nodes as they are outside."""
+        """Return a value with the external URIs of the mission's nodes."""
         if isinstance(value, str):
             return self._outer.get(value, value)
         if isinstance(value, (list, tuple)):
@@ -249,15 +252,15 @@ class RosHost:
         return value
 
     def outer_answer(self, answer: Answer) -> Answer:
-        """The same of an answer."""
+        """Return an answer with the external URIs of the mission's nodes."""
         code, text, value = answer
         return code, self.outer(text), self.outer(value)
 
     def name_at(self, uri: str) -> str:
-        """The name of the outside node at a URI; "" of one that is unknown."""
+        """Return the name of the outside node at a URI; "" if it is unknown."""
         return self.world.name_at(uri)
 
-    # -- who comes and goes ------------------------------------------------------------------------------------------
+    # -- new and lost nodes --------------------------------------------------------------------------------------------
 
     def _look(self, now_s: float) -> None:
         self.bounds.places.look(now_s)
@@ -275,7 +278,7 @@ class RosHost:
         self._look_at_services(seen)
 
     def _look_at_services(self, seen: OwnGraph) -> None:
-        """Outside services that are new are asked for their type; calls of services that are gone fail."""
+        """Ask new external services for their type; let calls of lost services fail."""
         offered = self.world.services()
         for service in [each for each, where in self._offered.items() if offered.get(each) != where]:
             del self._offered[service]
@@ -304,10 +307,10 @@ class RosHost:
         fields = {"probe": "1", "md5sum": ANY, "callerid": self.world.caller, "service": service}
         OutsideCall(self, service, uri, fields, b"", over)
 
-    # -- what the mission's nodes are to others ----------------------------------------------------------------------
+    # -- the mission's nodes, as others see them -----------------------------------------------------------------------
 
     def publication(self, topic: str, name: str) -> dict[str, str] | None:
-        """The connection header of a publisher of the mission; None when there is none."""
+        """Return the connection header of a publisher of the mission, or None if there is none."""
         assert self.ros is not None
         graph = self.ros.graph
         if name == APPLICATIONS:
@@ -323,7 +326,7 @@ class RosHost:
         return None
 
     def subscription(self, topic: str) -> dict[str, str] | None:
-        """The connection header of the mission's subscribers of a topic; None when there are none."""
+        """Return the connection header of the mission's subscribers of a topic, or None if there are none."""
         name = self.seen.subscribed.get(topic)
         if name is None or self.ros is None:
             return None
@@ -337,7 +340,7 @@ class RosHost:
         }
 
     def offer(self, service: str, name: str) -> dict[str, str] | None:
-        """The connection header of a service of the mission; None when the node does not offer it."""
+        """Return the connection header of a service of the mission, or None if the node does not offer it."""
         assert self.ros is not None
         entry = self.ros.graph.services.get(service)
         if entry is None or entry.service.node.names.name != name:
@@ -346,20 +349,20 @@ class RosHost:
         return {"callerid": name, "md5sum": kind._md5sum, "service": service, "type": kind._type}
 
     def has_room(self, topic: str, publisher: str, payload: bytes) -> bool:
-        """Whether the mission takes a message of an outside publisher now."""
+        """Return True if the mission can take a message of an outside publisher now."""
         link = None if self._outside is None else self._outside.links.get((topic, publisher))
         return link is None or link.has_room(payload)
 
     # -- subscribers outside -----------------------------------------------------------------------------------------
 
     def add_client(self, topic: str, publisher: str, subscriber: str, client: OutsideClient) -> None:
-        """A subscriber has connected."""
+        """Add a subscriber that has connected."""
         self._clients.setdefault((topic, subscriber), {}).setdefault(publisher, []).append(client)
         if publisher == APPLICATIONS:
             self._ears.setdefault(topic, []).append(client)
 
     def remove_client(self, topic: str, publisher: str, subscriber: str, client: OutsideClient) -> None:
-        """It is gone."""
+        """Remove a subscriber whose connection has ended."""
         by_publisher = self._clients.get((topic, subscriber), {})
         clients = by_publisher.get(publisher, [])
         if client in clients:
@@ -372,7 +375,7 @@ class RosHost:
             self._clients.pop((topic, subscriber), None)
 
     def subscribe(self, topic: str, name: str, kind: str, md5sum: str, publisher: str) -> str:
-        """Put an outside subscriber on the graph; what is wrong with it."""
+        """Add an outside subscriber to the graph. Returns the error, or ""."""
         if publisher == APPLICATIONS:
             if topic in self.shown.packets:
                 self.act("show", topic, self.shown.packets[topic].msg_id)
@@ -381,7 +384,7 @@ class RosHost:
         return wrong
 
     def unsubscribe(self, topic: str, name: str, publisher: str) -> None:
-        """One of its connections is gone."""
+        """Remove one of the connections of an outside subscriber."""
         if publisher == APPLICATIONS:
             if topic in self.shown.packets and not self._ears.get(topic):
                 self.act("show no more", topic)
@@ -395,7 +398,7 @@ class RosHost:
         clients = by_publisher.get(publisher)
         if clients is None:
             if publisher in self.seen.nodes:
-                return  # not connected with that one yet
+                return  # not connected to that publisher yet
             clients = next(iter(by_publisher.values()))
         data = frame(payload)
         for client in clients:
@@ -417,7 +420,7 @@ class RosHost:
             count.size += len(payload)
 
     def _tell_time(self) -> None:
-        """On /clock, which is no part of the run: the mission's nodes have their time without it."""
+        """Publish the time on /clock. It is not part of the run: the mission's nodes have their time without it."""
         ears, every_ns, now_ns = self._ears.get(CLOCK), self.shown.clock_ns, self._mission.kernel.now
         if not ears or now_ns < self._tell_at_ns:
             return
@@ -432,7 +435,7 @@ class RosHost:
     # -- calls -------------------------------------------------------------------------------------------------------
 
     def begin_call(self, service: str, caller: str, request: bytes, client: OutsideClient) -> int:
-        """An outside node calls a service of the mission; the number of the call."""
+        """Call a service of the mission for an outside node. Returns the number of the call."""
         self._last_call = number = self._last_call + 1
         self._calls[number] = (service, client)
         try:
@@ -443,7 +446,7 @@ class RosHost:
         return number
 
     def end_call(self, service: str, number: int, caller: str) -> None:
-        """The caller is gone."""
+        """Drop a call whose caller is gone."""
         if self._calls.pop(number, None) is not None:
             self.act("forget call", service, number, caller)
 
@@ -457,7 +460,7 @@ class RosHost:
         client = found[1]
         try:
             client.answer(good, body)
-        except Exception as error:  # its next request comes in here, and ends this connection alone
+        except Exception as error:  # its next request is handled here; an error ends only this connection
             client.fail(f"{error}")
 
     def request(self, service: str, number: int, header: dict[str, str], body: bytes) -> None:
@@ -484,5 +487,5 @@ class RosHost:
 
 
 def _own(entries: Mapping[str, Mapping[str, str]], nodes: Mapping[str, str]) -> list[tuple[str, str]]:
-    """What nodes of the mission do, of all entries of the registry."""
+    """Return those entries of the registry that belong to nodes of the mission."""
     return [(name, who) for name, held in entries.items() for who, uri in held.items() if nodes.get(who) == uri]

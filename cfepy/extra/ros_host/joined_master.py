@@ -1,8 +1,8 @@
 """A running roscore that the mission joins: its nodes register there, and it learns of the others.
 
-Both sides are compared once a second and mended: what the master does not know of the mission's nodes is registered,
-also after it was killed and started again, and what it knows of others is entered into the mission's graph. What the
-master tells at once (publisherUpdate, paramUpdate) does not wait for that.
+Both sides are compared once a second. Missing nodes of the mission are registered with the master, also after it was
+killed and started again. Nodes that the master knows are entered into the mission's graph. Notifications of the master
+(publisherUpdate, paramUpdate) take effect at once.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from cfepy.extra.ros_host.host import RosHost
     from cfepy.extra.ros_host.world import OwnGraph
 
-LOOK_S = 1.0  # wall time between two questions to the master
+LOOK_S = 1.0  # wall time between two queries of the master
 PUBLISHER, SUBSCRIBER, SERVICE = "Publisher", "Subscriber", "Service"
 ROOT = "/"
 
 
 class RosEntry(NamedTuple):
-    """A registration: what as, of which topic or service, of which node."""
+    """A registration: its kind, the topic or service, and the node."""
 
     kind: str
     name: str
@@ -35,7 +35,7 @@ class RosEntry(NamedTuple):
 
 
 class MasterState(NamedTuple):
-    """What the master has answered: its process, all registrations, types of topics, URIs of nodes and services."""
+    """The state of the master: its process, all registrations, types of topics, URIs of nodes and services."""
 
     pid: int
     entries: list[RosEntry]
@@ -49,7 +49,7 @@ class JoinedMaster:
 
     Args:
         host: knows the mission.
-        uri: of the master.
+        uri: URI of the master.
     """
 
     def __init__(self, host: RosHost, uri: str) -> None:
@@ -57,20 +57,20 @@ class JoinedMaster:
         self.uri = uri
         self.caller = f"{CALLER}_{host.pid}"
         self._own = MissionNode(host, self.caller, "")
-        self._registered: dict[RosEntry, str] = {}  # what the master was told, with the node's URI
-        self._others: dict[RosEntry, str] = {}  # what the mission's graph was told, with the node's URI
+        self._registered: dict[RosEntry, str] = {}  # registrations sent to the master, with the node's URI
+        self._others: dict[RosEntry, str] = {}  # registrations entered into the mission's graph, with the node's URI
         self._nodes: dict[str, str] = {}
         self._services: dict[str, tuple[str, str]] = {}
         self._publishers: dict[str, list[str]] = {}
-        self._told: dict[str, list[str]] = {}  # publishers that the master has told of since it was asked last
+        self._told: dict[str, list[str]] = {}  # publishers that the master has announced since the last query
         self._look_at_s = 0.0
         self._params_there: dict[str, Any] = {}
         self._asks = self._is_lost = False
         self._pid = 0
-        self._from_there: dict[str, Any] = {}  # parameters as the master told them last
+        self._from_there: dict[str, Any] = {}  # parameters as last received from the master
 
     def begin(self) -> None:
-        """The mission's own parameters are set there, as roslaunch does it."""
+        """Connect to the master; the mission's own parameters are set there, as roslaunch does it."""
         try:
             self._pid = ask(self.uri, "getPid", self.caller)
             self._params_there = self._subscribe_params()
@@ -86,14 +86,14 @@ class JoinedMaster:
         self._look_at_s = 0.0
 
     def close(self) -> None:
-        """The mission's nodes leave the master, unless it is gone."""
+        """Unregister the mission's nodes from the master, unless it is gone."""
         try:
             for entry, uri in self._registered.items():
                 ask(self.uri, f"unregister{entry.kind}", entry.node, entry.name, uri)
             if not self._is_lost:
                 ask(self.uri, "unsubscribeParam", self.caller, self._own.uri, ROOT)
         except (OSError, RosError, ValueError):
-            pass  # it is gone, and knows nothing any more
+            pass  # the master is gone, and its registrations with it
         self._own.close()
 
     # -- registrations -----------------------------------------------------------------------------------------------
@@ -141,7 +141,7 @@ class JoinedMaster:
     def _ask(self, method: str, arguments: tuple[Any, ...], done: Callable[..., object] | None = None) -> None:
         self._host.errands.ask(self.uri, method, arguments, done or (lambda result, error: None))
 
-    # -- what the master knows ---------------------------------------------------------------------------------------
+    # -- the state of the master ---------------------------------------------------------------------------------------
 
     def _found(self, found: MasterState | None, error: Exception | None) -> None:
         self._asks = False
@@ -165,9 +165,9 @@ class JoinedMaster:
         self._host.soon()
 
     def _enter(self, found: MasterState) -> None:
-        """Have the mission's graph know what the master knows of others."""
+        """Enter the external registrations of the master into the mission's graph."""
         host = self._host
-        seen = host.see()  # a node that has started meanwhile must not give way to what is left of a former one
+        seen = host.see()  # a node that has started meanwhile must not give way to remains of a former one
         others = {each: found.nodes[each.node] for each in found.entries if each.node in found.nodes}
         for entry in [each for each, uri in self._others.items() if others.get(each) != uri]:
             uri = self._others.pop(entry)
@@ -214,7 +214,7 @@ class JoinedMaster:
     # -- parameters --------------------------------------------------------------------------------------------------
 
     def _subscribe_params(self) -> dict[str, Any]:
-        """All parameters that are set there; changes are told from now on."""
+        """Return all parameters that are set there; the master announces changes from now on."""
         found = ask(self.uri, "subscribeParam", self.caller, self._own.uri, ROOT)
         return found if isinstance(found, dict) else {}
 
@@ -235,7 +235,7 @@ class JoinedMaster:
         self.params_changed([name for name, value in ours.items() if self._from_there.get(name) != value])
 
     def params_changed(self, keys: list[str]) -> None:
-        """Set them there, too."""
+        """Set the changed parameters at the master, too."""
         host = self._host
         assert host.ros is not None
         if self._is_lost:
@@ -264,7 +264,7 @@ class JoinedMaster:
 
 
 def _look_at(uri: str, caller: str, own: set[str], known: dict[str, str]) -> MasterState:
-    """Ask the master what it knows; nodes that are known already are looked up no more as long as they are there.
+    """Query the state of the master; known nodes are not looked up again as long as they are registered.
 
     Raises:
         RosError, OSError: it does not answer, or not as a master does.

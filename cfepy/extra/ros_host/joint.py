@@ -1,4 +1,4 @@
-"""`Joint`: what nodes and peers ask of the host that joins a mission to ROS, and the mission's part of the graph."""
+"""`Joint`: interface of the host that joins a mission to ROS, for nodes and peers; the mission's part of the graph."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from rospy_shim.runtime import RosRuntime
 
 
 class RosAddress(NamedTuple):
-    """Where the mission's nodes are reached: what URIs say, and the interface that listens, "" for all."""
+    """The address of the mission's nodes: the host in URIs, and the interface that listens, "" for all."""
 
     host: str
     interface: str
 
 
 class Joint(Protocol):
-    """The host, as one outside node or publisher sees it.
+    """The interface of the host for outside nodes and publishers.
 
     Attributes:
-        selector: of all sockets.
-        address: where the mission's nodes are reached.
-        bounds: what outside programs may use of this process.
+        selector: selector of all sockets.
+        address: address of the mission's nodes.
+        bounds: limits on the use of this process by external programs.
         counts: messages and connections by outside node.
-        errands: what waits for others, in threads.
-        pid: of this process.
+        errands: background requests to other programs, in threads.
+        pid: id of this process.
         ros: ROS in the mission; None before its first node.
         shown: packets that ROS sees as topics.
-        world: what is outside.
+        world: the external nodes.
         stalled: publishers whose messages wait for room.
     """
 
@@ -49,46 +49,46 @@ class Joint(Protocol):
     stalled: set[Any]
 
     def now_s(self) -> float:
-        """Wall time since some instant."""
+        """Return wall time in s since an arbitrary instant."""
 
     def act(self, name: str, *values: Any) -> Any:
-        """Do something to the mission's graph, through the door that a journal has."""
+        """Perform a host action on the mission's graph; a journal records it."""
 
     def ask_inside(self, node: str, body: bytes) -> Answer:
-        """A request of the master's or slave API that changes something; `node` is "" for the master."""
+        """Send a changing request of the master or slave API to the mission; `node` is "" for the master."""
 
     def outer_answer(self, answer: Answer) -> Answer:
-        """An answer with the URIs that programs outside know."""
+        """Return an answer with the URIs that external programs know."""
 
     def name_at(self, uri: str) -> str:
-        """The name of the outside node at a URI; "" of one that is unknown."""
+        """Return the name of the outside node at a URI; "" if it is unknown."""
 
     def publication(self, topic: str, name: str) -> dict[str, str] | None:
-        """The connection header of a publisher of the mission; None when there is none."""
+        """Return the connection header of a publisher of the mission, or None if there is none."""
 
     def subscription(self, topic: str) -> dict[str, str] | None:
-        """The connection header of the mission's subscribers of a topic; None when there are none."""
+        """Return the connection header of the mission's subscribers of a topic, or None if there are none."""
 
     def offer(self, service: str, name: str) -> dict[str, str] | None:
-        """The connection header of a service of the mission; None when the node does not offer it."""
+        """Return the connection header of a service of the mission, or None if the node does not offer it."""
 
     def has_room(self, topic: str, publisher: str, payload: bytes) -> bool:
-        """Whether the mission takes a message of an outside publisher now."""
+        """Return True if the mission can take a message of an outside publisher now."""
 
     def add_client(self, topic: str, publisher: str, subscriber: str, client: Any) -> None:
-        """A subscriber has connected."""
+        """Add a subscriber that has connected."""
 
     def remove_client(self, topic: str, publisher: str, subscriber: str, client: Any) -> None:
-        """It is gone."""
+        """Remove a subscriber whose connection has ended."""
 
     def subscribe(self, topic: str, name: str, kind: str, md5sum: str, publisher: str) -> str:
-        """Put an outside subscriber on the graph; what is wrong with it."""
+        """Add an outside subscriber to the graph. Returns the error, or ""."""
 
     def unsubscribe(self, topic: str, name: str, publisher: str) -> None:
-        """One of its connections is gone."""
+        """Remove one of the connections of an outside subscriber."""
 
     def begin_call(self, service: str, caller: str, request: bytes, client: Any) -> int:
-        """An outside node calls a service of the mission; the number of the call."""
+        """Call a service of the mission for an outside node. Returns the number of the call."""
 
     def end_call(self, service: str, number: int, caller: str) -> None:
-        """The caller is gone."""
+        """Drop a call whose caller is gone."""

@@ -1,7 +1,7 @@
-"""A catkin package of the message types that telemetry has outside, so that ROS's tools know them by name.
+"""A catkin package of the external message types of telemetry, so that ROS's tools know them by name.
 
-What comes over a connection, or lies in a bag, brings its definition along; rostopic echo and nodes that subscribe
-want the type built (wiki.ros.org/msg, wiki.ros.org/catkin/package.xml, wiki.ros.org/catkin/CMakeLists.txt).
+A message from a connection or a bag brings its definition along. rostopic echo and nodes that subscribe need the type
+to be built (wiki.ros.org/msg, wiki.ros.org/catkin/package.xml, wiki.ros.org/catkin/CMakeLists.txt).
 """
 
 from __future__ import annotations
@@ -14,11 +14,14 @@ from cfepy.writing.markup import escaped
 
 
 def telemetry_package(telemetry: Iterable[Telemetry], mission: str) -> dict[str, str]:
-    """The files of the package, by their paths in its folder.
+    """Make the files of the package.
 
     Args:
         telemetry: the packets; those without fields have no type.
         mission: its name.
+
+    Returns:
+        The texts of the files by their paths in the package's folder.
     """
     messages: dict[str, str] = {}
     for each in telemetry:

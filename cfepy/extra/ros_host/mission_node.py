@@ -1,6 +1,6 @@
-"""`MissionNode`: a node of the mission, as programs outside see it: a slave API and a TCPROS port of its own.
+"""`MissionNode`: a node of the mission, as external programs see it: a slave API and a TCPROS port of its own.
 
-A subscriber that connects says which topic it wants but not of whom, so each node has its own port.
+A connecting subscriber names the topic but not the publisher, so each node has its own port.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ CHANGES = frozenset({"shutdown"})
 
 
 class MissionNode:
-    """The outside of a node.
+    """The external side of a node.
 
     Args:
         host: knows the mission.
-        name: of the node; that of the cFE applications has none in the mission's graph.
-        inner: the URI that it has in the mission.
+        name: name of the node; the node of the cFE applications is not in the mission's graph.
+        inner: its URI in the mission.
 
     Attributes:
-        uri: its slave API, for programs outside.
+        uri: its slave API, for external programs.
     """
 
     def __init__(self, host: Joint, name: str, inner: str) -> None:
@@ -45,7 +45,7 @@ class MissionNode:
         self.service_uri = f"rosrpc://{host.address.host}:{self._listening.port}"
 
     def close(self) -> None:
-        """The node is gone."""
+        """Close the sockets of a node that is gone."""
         self._server.close()
         self._listening.close()
         for client in list(self._clients):
@@ -55,7 +55,7 @@ class MissionNode:
         self._clients.add(OutsideClient(self._host, self, connected))
 
     def forget(self, client: OutsideClient) -> None:
-        """A connection is over."""
+        """Remove a connection that has ended."""
         self._clients.discard(client)
 
     # -- the slave API -----------------------------------------------------------------------------------------------
@@ -77,7 +77,7 @@ class MissionNode:
         return host.outer_answer(call(api, method, arguments))
 
     def _of_applications(self, method: str) -> Answer:
-        """The node that stands for the cFE applications is none of the graph's, nor is the host's own."""
+        """Answer for the node of the cFE applications or of the host itself, which are not in the graph."""
         shown = self._host.shown
         if method == "getPublications" and self.name == APPLICATIONS:
             return 1, "publications", [[topic, each.name] for topic, each in shown.types.items()]
@@ -97,7 +97,7 @@ class MissionNode:
 
 
 class OutsideClient:
-    """A subscriber or caller outside that has connected with a node of the mission.
+    """An external subscriber or caller that has connected to a node of the mission.
 
     Args:
         host: knows the mission.
@@ -122,7 +122,7 @@ class OutsideClient:
         return (self._header or {}).get("callerid", "")
 
     def close(self) -> None:
-        """The mission closes it."""
+        """Close the connection from the mission's side."""
         self._socket.close()
         self._gone()
 
@@ -131,7 +131,7 @@ class OutsideClient:
 
     def _take(self, data: bytes) -> None:
         if self._topic:
-            return  # a subscriber says no more than its header
+            return  # a subscriber sends only its header
         self._frames.add(data)
         for each in self._frames.take():
             if self._header is None:
@@ -159,7 +159,7 @@ class OutsideClient:
             self._host.bounds.places.keep(self)
 
     def _connect(self, header: dict[str, str]) -> str:
-        """What is wrong with a connection; "" when nothing is."""
+        """Set up a connection. Returns the error, or ""."""
         needed = ("topic", "md5sum") if "service" not in header else ("service", "md5sum")
         missing = [each for each in needed if not header.get(each)]
         if len(self.caller) > ROS_NAME:
@@ -225,14 +225,14 @@ class OutsideClient:
         self._number = self._host.begin_call(self._service, self.caller, request, self)
 
     def _hold_back(self) -> None:
-        """Leave requests with a caller that does not wait for its answers."""
+        """Stop reading requests of a caller that does not wait for its answers."""
         if self._requests:
             self._socket.pause()
         else:
             self._socket.resume()
 
     def answer(self, good: bool, body: bytes) -> None:
-        """The mission has answered."""
+        """Send the answer of the mission."""
         self._number = 0
         self._socket.send(bytes([good]) + frame(body))
         if (self._header or {}).get("persistent") in ("1", "true"):

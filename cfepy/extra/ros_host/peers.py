@@ -1,4 +1,4 @@
-"""What the mission connects with outside: a publisher that its nodes subscribe to, a service that they call."""
+"""The mission's connections to external peers: a publisher that its nodes subscribe to, a service that they call."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ ANY = "*"
 
 
 class OutsidePublisher:
-    """An outside publisher of a topic that nodes of the mission hear.
+    """An outside publisher of a topic to which nodes of the mission subscribe.
 
     Args:
         host: knows the mission.
         topic: the topic.
-        uri: of the publisher's slave API.
+        uri: URI of the publisher's slave API.
     """
 
     def __init__(self, host: Joint, topic: str, uri: str) -> None:
@@ -36,7 +36,7 @@ class OutsidePublisher:
         self._pause_s = FIRST_PAUSE_S
         self._again_at = 0.0
         self._is_busy = False
-        self._coming: deque[bytes] = deque()  # for want of room
+        self._coming: deque[bytes] = deque()  # messages that wait for room
         self._full_since_s: float | None = None
 
     def look(self, now_s: float) -> None:
@@ -57,7 +57,7 @@ class OutsidePublisher:
             self._host.errands.run(line, errand, lambda made, error: self._connected(fields, made, error))
 
     def close(self) -> None:
-        """It is not wanted any more."""
+        """Disconnect from a publisher that is no longer needed."""
         self.is_wanted = False
         self._leave()
 
@@ -111,7 +111,7 @@ class OutsidePublisher:
         self._count.connections += 1
 
     def enter(self) -> None:
-        """Let messages in that have come, as long as the mission has room; the others wait, and their sender does."""
+        """Enter waiting messages while the mission has room; otherwise they wait, and reading from the sender stops."""
         host, coming = self._host, self._coming
         while coming:
             if not host.has_room(self.topic, self._name, coming[0]):
@@ -172,10 +172,10 @@ class OutsideCall:
     Args:
         host: knows the mission.
         service: its name.
-        uri: where it is called, rosrpc://HOST:PORT.
-        header: of the connection; with `probe` nothing is called.
+        uri: its URI, rosrpc://HOST:PORT.
+        header: connection header; with `probe` the service is not called.
         body: the serialised request.
-        over: gets the header of the service, whether it went well, and the answer or what went wrong.
+        over: receives the header of the service, True for success, and the answer or the error.
     """
 
     def __init__(

@@ -24,7 +24,9 @@ class RosMaster(FlightAddOn):
     """The ROS master that a command line asks for, joined or served.
 
     Args:
-        arguments, name, tell: as of `FlightAddOn`.
+        arguments: as for `FlightAddOn`.
+        name: as for `FlightAddOn`.
+        tell: as for `FlightAddOn`.
     """
 
     OPTIONS: ClassVar = {"ros_master": OPTION}
@@ -69,7 +71,7 @@ class RosMaster(FlightAddOn):
 
 
 def master_of(text: str) -> str:
-    """The URI of a ROS master, or `serve` with or without a port, for argparse."""
+    """Parse the URI of a ROS master, or `serve` with or without a port, for argparse."""
     word, mark, port = text.partition(":")
     serves = word == SERVE and (not mark or (port.isdecimal() and int(port) <= HIGHEST_PORT))
     if serves or (word == "http" and text.count(":") > 1 and text.rstrip("/").rpartition(":")[2].isdecimal()):

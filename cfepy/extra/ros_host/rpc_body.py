@@ -1,7 +1,7 @@
-"""What stands in the body of an XML-RPC request or answer, within bounds (xmlrpc.com/spec).
+"""Parser of the body of an XML-RPC request or answer, with limits (xmlrpc.com/spec).
 
-Python's own reader takes any number of values, as deep as they go, and entities that stand for others. Here the reader
-stops at the first value too many.
+Python's own parser accepts any number of values, any depth, and entities that expand to others. This parser stops at
+the first value that exceeds a limit.
 """
 
 from __future__ import annotations
@@ -19,15 +19,18 @@ _VALUE = "value"
 
 
 class RpcError(UsageError):
-    """A body that is not XML-RPC, or too much of it."""
+    """A body that is not XML-RPC, or exceeds a limit."""
 
 
 def read_body(body: bytes) -> tuple[tuple[Any, ...], str | None]:
-    """The values in a body, and the method if it is a request.
+    """Parse a body.
+
+    Returns:
+        The values, and the method if it is a request.
 
     Raises:
         RpcError: it is not XML-RPC, or exceeds a limit.
-        xmlrpc.client.Fault: it is the answer that something failed.
+        xmlrpc.client.Fault: it is the answer to a failed request.
     """
     if len(body) > RPC_BYTES:
         raise RpcError(f"XML-RPC of {len(body):,} bytes; the limit is {RPC_BYTES:,}")
@@ -46,7 +49,7 @@ def read_body(body: bytes) -> tuple[tuple[Any, ...], str | None]:
 
 
 class _Reader:
-    """Hands elements on to Python's `Unmarshaller`, and counts them."""
+    """Passes elements on to Python's `Unmarshaller`, and counts them."""
 
     def __init__(self, target: Any) -> None:
         self._target = target
@@ -63,7 +66,7 @@ class _Reader:
         try:
             self._parser.Parse(body, True)
         finally:
-            del self._parser  # the two hold each other, and with that the body
+            del self._parser  # the two objects refer to each other, and would keep the body alive
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         self._depth += 1

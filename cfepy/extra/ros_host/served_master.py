@@ -1,7 +1,7 @@
-"""A ROS master that the mission serves: programs outside register with it, and are told of its nodes.
+"""A ROS master that the mission serves: external programs register with it, and it tells them about its nodes.
 
-What it answers is what the mission's own master answers (`rospy_shim.master`), with addresses that can be reached from
-outside. A request that changes something is an act on the mission.
+It gives the answers of the mission's own master (`rospy_shim.master`), with addresses that can be reached from outside.
+A request that changes a registration or a parameter is a host action on the mission.
 """
 
 from __future__ import annotations
@@ -51,13 +51,13 @@ class ServedMaster:
             raise UsageError(text, field="--ros-master") from None
         self.uri = f"http://{host.address.host}:{self._server.port}/"
         self._told: dict[str, list[str]] = {}  # publishers of topics, as outside subscribers know them
-        self._entered: dict[tuple[str, ...], bytes] = {}  # registrations that stand, for after a reset
+        self._entered: dict[tuple[str, ...], bytes] = {}  # current registrations, to repeat after a reset
 
     def begin(self) -> None:
         self._host.tell(f"ROS master at {self.uri}: export ROS_MASTER_URI={self.uri}")
 
     def enter(self) -> None:
-        """What outside nodes have registered holds on."""
+        """Repeat the registrations of outside nodes."""
         for body in self._entered.values():
             self._host.ask_inside("", body)
 
@@ -91,7 +91,7 @@ class ServedMaster:
         return host.outer_answer(call(host.ros.switchboard.master, method, arguments))
 
     def _excess(self, method: str, arguments: Sequence[Any]) -> str:
-        """What is too long or too much in a request that changes something; "" when nothing is."""
+        """Check the size limits of a changing request. Returns the error, or ""."""
         names = arguments[:2] if method in PARAMS else arguments
         if any(isinstance(each, str) and len(each) > ROS_NAME for each in names):
             return f"a name has more than {ROS_NAME:,} characters"
@@ -113,7 +113,7 @@ class ServedMaster:
     # -- the mission and outside nodes -------------------------------------------------------------------------------
 
     def look(self, seen: OwnGraph, now_s: float) -> None:
-        """Tell outside subscribers of the publishers, if there are others now."""
+        """Notify outside subscribers of changed publishers."""
         registry = self._registry
         publishers, told = registry.publishers(), {}
         for topic, held in registry.subscribers().items():
@@ -126,7 +126,7 @@ class ServedMaster:
         self._told = told
 
     def params_changed(self, keys: list[str]) -> None:
-        """Tell those that have subscribed."""
+        """Notify the subscribers of the parameters."""
         host = self._host
         assert host.ros is not None
         for subscribed, held in self._registry.param_subscribers.items():
@@ -143,7 +143,7 @@ class ServedMaster:
         self._host.errands.ask(uri, method, (MASTER, *arguments), lambda result, error: None)
 
     def heard(self, node: str, method: str, key: Any, value: Any) -> None:
-        """See `RosWorld.heard`: nobody but this master tells them such things, and they know."""
+        """Do nothing: only this master sends such notifications, and its state is current."""
 
     def publishers_of(self, topic: str) -> list[str]:
         nodes = self._host.seen.nodes

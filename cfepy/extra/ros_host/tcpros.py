@@ -1,7 +1,7 @@
 """TCPROS on the wire: connection headers and frames (wiki.ros.org/ROS/TCPROS, wiki.ros.org/ROS/Connection%20Header).
 
-A frame is its length, 4 bytes, the least first, and so many bytes. A connection header is a frame of fields; a field is
-its length, and NAME=VALUE. A service answers with a byte, 1 for success, in front of the frame.
+A frame is its length as 4 bytes, little-endian, and then so many bytes. A connection header is a frame of fields; a
+field is its length, and NAME=VALUE. A service answers with a byte, 1 for success, in front of the frame.
 """
 
 from __future__ import annotations
@@ -18,27 +18,30 @@ _length = struct.Struct("<I")
 
 
 class WireError(UsageError):
-    """Bytes that are no TCPROS."""
+    """Bytes that are not TCPROS."""
 
 
 def frame(data: bytes) -> bytes:
-    """Bytes behind their length."""
+    """Return bytes preceded by their length."""
     return _length.pack(len(data)) + data
 
 
 def pack_header(fields: Mapping[str, str]) -> bytes:
-    """A connection header, as a frame."""
+    """Return a connection header as a frame."""
     return frame(b"".join(frame(f"{name}={value}".encode()) for name, value in fields.items()))
 
 
 def parse_header(data: bytes) -> dict[str, str]:
-    """The fields of a connection header.
+    """Parse a connection header.
 
     Args:
-        data: what is in its frame.
+        data: the contents of its frame.
+
+    Returns:
+        The fields.
 
     Raises:
-        WireError: it is none.
+        WireError: it is not a connection header.
     """
     fields, at = {}, 0
     while at < len(data):
@@ -55,11 +58,11 @@ def parse_header(data: bytes) -> dict[str, str]:
 
 
 class TcprosFrames:
-    """Cuts what comes over a connection into frames.
+    """Splits the data of a connection into frames.
 
     Attributes:
-        longest: bytes of a frame; more is taken for damage.
-        has_status: a byte stands in front of each frame, which is kept as its first.
+        longest: maximum bytes of a frame; a longer one is treated as damage.
+        has_status: a byte precedes each frame; it becomes the first byte of the frame.
     """
 
     def __init__(self) -> None:
@@ -68,19 +71,19 @@ class TcprosFrames:
         self._data = bytearray()
 
     def __len__(self) -> int:
-        """Bytes of a frame that is not complete."""
+        """Return the bytes of incomplete frames."""
         return len(self._data)
 
     def clear(self) -> None:
-        """Forget what came."""
+        """Discard the data."""
         self._data.clear()
 
     def add(self, data: bytes) -> None:
-        """Take what came."""
+        """Add received data."""
         self._data += data
 
     def take(self) -> Iterator[bytes]:
-        """The frames that are complete; the settings may be changed between two.
+        """Yield the frames that are complete; the attributes may be changed between two frames.
 
         Raises:
             WireError: a frame is too long.

@@ -1,16 +1,17 @@
-"""`RosWorld`: what is outside of the mission, as its master knows it: one served here, or one that is joined."""
+"""`RosWorld`: the external nodes, as known to the mission's master, which is served here or joined."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple, Protocol
 
-CALLER = "/cfepy"  # the name under which the host itself asks others
+CALLER = "/cfepy"  # the node name of the host itself
 
 
 class OwnGraph(NamedTuple):
-    """The mission's own part of the graph: nodes with their URIs there; [name, node] of what they do; types of topics.
+    """The mission's own part of the graph: nodes with their internal URIs, (name, node) of publishers, subscribers and
+    services, and types of topics.
 
-    `subscribed` has the topics that any of them hears, with the first that does.
+    `subscribed` has the topics with a subscriber in the mission, and the first of its subscribers.
     """
 
     nodes: dict[str, str]
@@ -22,46 +23,46 @@ class OwnGraph(NamedTuple):
 
 
 class RosWorld(Protocol):
-    """What `RosHost` asks.
+    """The interface of the external nodes for `RosHost`.
 
     Attributes:
-        uri: of the master.
-        caller: name under which the host itself asks.
+        uri: URI of the master.
+        caller: node name of the host itself.
     """
 
     uri: str
     caller: str
 
     def begin(self) -> None:
-        """The mission stands at virtual time 0; nothing may enter yet.
+        """Begin, while the mission stands at virtual time 0; input may not enter yet.
 
         Raises:
             UsageError: there is no master to join.
         """
 
     def enter(self) -> None:
-        """The mission's graph is new and empty: the run has begun, or the processor was reset."""
+        """Fill the mission's graph, which is new and empty: the run has begun, or the processor was reset."""
 
     def look(self, seen: OwnGraph, now_s: float) -> None:
-        """See to it that master and mission know of each other's nodes; now and then."""
+        """Let master and mission learn of each other's nodes; called at intervals."""
 
     def params_changed(self, keys: list[str]) -> None:
-        """Parameters of the mission were set or deleted."""
+        """Publish parameters of the mission that were set or deleted."""
 
     def heard(self, node: str, method: str, key: Any, value: Any) -> None:
-        """The master tells a node of the mission something: `publisherUpdate` or `paramUpdate`."""
+        """Take a notification of the master for a node of the mission: `publisherUpdate` or `paramUpdate`."""
 
     def publishers_of(self, topic: str) -> list[str]:
-        """URIs of the outside publishers of a topic."""
+        """Return the URIs of the outside publishers of a topic."""
 
     def services(self) -> dict[str, tuple[str, str]]:
-        """Outside services: the node, and where it is called."""
+        """Return the outside services: the node and the URI of each."""
 
     def uri_of(self, name: str) -> str:
-        """Where an outside node answers; "" of one that is unknown."""
+        """Return the URI of an outside node; "" if it is unknown."""
 
     def name_at(self, uri: str) -> str:
-        """The other way round."""
+        """Return the name of the outside node at a URI; "" if it is unknown."""
 
     def close(self) -> None:
-        """The run is over."""
+        """Close at the end of the run."""

@@ -1,8 +1,8 @@
-"""An XML-RPC server over HTTP that answers between two pieces of a run (xmlrpc.com/spec, RFC 9112).
+"""An XML-RPC server over HTTP that answers between two steps of a run (xmlrpc.com/spec, RFC 9112).
 
-It reads as much of HTTP as the clients of ROS in Python and C++ send: POST with a Content-Length, and
-connections that stay. Pages in browsers are not clients of ROS: a request that comes from one is refused before it is
-read. So is one that is too large.
+It supports the part of HTTP that the clients of ROS in Python and C++ use: POST with a Content-Length, and persistent
+connections. A page in a browser is not a client of ROS, so its request is refused before the body is read. So is a
+request that is too large.
 """
 
 from __future__ import annotations
@@ -21,26 +21,28 @@ from cfepy.reading.input_limits import RPC_ANSWER_BYTES, RPC_BYTES, RPC_CALLS
 LONGEST_HEAD = 1 << 14  # bytes
 MULTICALL = "system.multicall"
 BROWSER_FIELDS = ("origin", "sec-fetch-site")
-"""What browsers add to the requests of pages, and no page can leave out (RFC 6454, W3C Fetch Metadata)."""
+"""Fields that browsers add to the requests of pages, and that a page cannot leave out (RFC 6454, W3C Fetch
+Metadata).
+"""
 ONE_ONLY = ("host", "content-length", "content-type", "transfer-encoding")
 VERSIONS = ("HTTP/1.0", "HTTP/1.1")
 MEDIA_TYPE = "text/xml"
 
 Answering = Callable[[str, Sequence[Any], bytes], Any]
-"""Takes method, arguments and the whole request, and gives the value to answer."""
+"""Takes method, arguments and the whole request, and returns the value of the answer."""
 
 
 class ServerBounds(NamedTuple):
-    """What the servers of one host share.
+    """Limits and state that the servers of one host share.
 
     Attributes:
-        names: by which clients call them.
-        places: for connections.
-        room: for requests that are not whole.
-        turn: the time for requests between two pieces of a run.
+        names: names of this computer that clients use.
+        places: limits the number of connections.
+        room: limits the size of incomplete requests.
+        turn: limits the time for requests between two steps of a run.
         late: clients whose requests wait for the next turn.
         nudge: called when requests wait for the next turn.
-        now_s: gives wall time since some instant.
+        now_s: returns wall time in s since an arbitrary instant.
     """
 
     names: OwnNames
@@ -56,14 +58,14 @@ class XmlRpcServer:
     """Answers requests at a port.
 
     Args:
-        selector: of the host.
-        address: of the interface; "" for all.
-        answering: answers; an exception is a fault.
+        selector: selector of the host.
+        address: address of the interface; "" for all.
+        answering: computes the answer; an exception becomes a fault.
         bounds: shared with other servers.
         port: 0 takes any free one.
 
     Attributes:
-        port: where it listens.
+        port: the port that it listens at.
 
     Raises:
         OSError: the port is taken.
@@ -94,11 +96,11 @@ class XmlRpcServer:
                 raise RpcError("not a request: the method is missing")
             value = self._calls(arguments) if method == MULTICALL else self._answering(method, arguments, body)
             return dumps((value,), methodresponse=True).encode(errors="replace")
-        except Exception as error:  # as Python's own server: a fault is the client's to look at
+        except Exception as error:  # as in Python's own server, the client receives the fault
             return dumps(_fault(error), methodresponse=True).encode(errors="replace")
 
     def _calls(self, arguments: Sequence[Any]) -> list[Any]:
-        """Several requests that come at once, as rospy takes back what it has registered."""
+        """Answer several requests in one, as rospy sends them to unregister."""
         if len(arguments) != 1 or not isinstance(arguments[0], list):
             raise RpcError(f"{MULTICALL} requires a list of calls")
         if len(arguments[0]) > RPC_CALLS:
@@ -120,7 +122,7 @@ class XmlRpcServer:
             return {"faultCode": fault.faultCode, "faultString": fault.faultString}
 
     def close(self) -> None:
-        """No more requests."""
+        """Stop taking requests."""
         self._listening.close()
         for each in list(self._connections):
             each.close()
@@ -131,7 +133,7 @@ def _fault(error: Exception) -> Fault:
 
 
 def _size_of(value: Any) -> int:
-    """About how many bytes a value takes in an answer."""
+    """Estimate the bytes of a value in an answer."""
     if isinstance(value, str | bytes):
         return 16 + len(value)
     if isinstance(value, dict):
@@ -139,13 +141,13 @@ def _size_of(value: Any) -> int:
     return 16 + sum(map(_size_of, value)) if isinstance(value, list | tuple) else 16
 
 
-class _Refused(Exception):  # what the client is told, and not what went wrong here
-    """A request that is not read: the HTTP status, and why."""
+class _Refused(Exception):  # reported to the client; not an error of the server
+    """A request that is not read: the HTTP status, and the reason."""
 
     def __init__(self, status: str, why: str, unread: int = 0) -> None:
         super().__init__(why)
         self.status = status
-        self.unread = unread  # bytes that the client sends before it reads that
+        self.unread = unread  # bytes that the client sends before it reads the answer
 
 
 class _Head(NamedTuple):
@@ -157,13 +159,13 @@ class _Head(NamedTuple):
 
     @property
     def stays(self) -> bool:
-        """Whether the connection is for other requests, too."""
+        """True if the connection stays open for further requests."""
         default = "keep-alive" if self.version == "HTTP/1.1" else "close"
         return self.fields.get("connection", default).lower() != "close"
 
 
 class _Connection:
-    """A client."""
+    """The connection of a client."""
 
     def __init__(
         self,
@@ -184,7 +186,7 @@ class _Connection:
         self._socket = PeerSocket(selector, connected, self._take, lambda why: self._gone())
 
     def close(self) -> None:
-        """End it."""
+        """Close it."""
         self._socket.close()
         self._gone()
 
@@ -192,7 +194,7 @@ class _Connection:
         self.close()
 
     def go_on(self) -> None:
-        """Another turn has begun."""
+        """Go on when another turn has begun."""
         self._is_late = False
         if self._socket.is_open:
             self._socket.resume()
@@ -212,14 +214,14 @@ class _Connection:
             self._work()
 
     def _skip(self) -> None:
-        """Drop the body of a request that was refused: a client reads the answer when it has sent all of it."""
+        """Discard the body of a refused request: a client reads the answer after it has sent all of it."""
         self._unread -= len(self._data)
         self._data.clear()
         if self._unread <= 0:
             self._finish()
 
     def _work(self) -> None:
-        """Answer requests that are complete, as long as this turn is not over."""
+        """Answer requests that are complete, until this turn is over."""
         while not self._is_late and self._socket.is_open and self._is_whole():
             if self._bounds.turn.is_over:
                 self._is_late = True
@@ -232,7 +234,7 @@ class _Connection:
             self._bounds.room.hold(self, len(self._data))
 
     def _is_whole(self) -> bool:
-        """Whether a whole request has come; one that is to be refused is as soon as its head is there."""
+        """Return True if a whole request has arrived. A request is refused as soon as its head has arrived."""
         try:
             self._head = self._head or self._parsed()
         except _Refused as refused:
@@ -243,7 +245,7 @@ class _Connection:
         return self._head is not None and len(self._data) >= self._head.length
 
     def _parsed(self) -> _Head | None:
-        """The head of a request, when it is complete; it is taken from the data.
+        """Return the head of a request and remove it from the data, or None if it is incomplete.
 
         Raises:
             _Refused: the body will not be read.
@@ -280,15 +282,18 @@ class _Connection:
 
 
 def _head_of(data: bytes, names: OwnNames, here: str) -> _Head:
-    """The head of a request that a client of ROS may have sent.
+    """Parse the head of a request, and check that a client of ROS may have sent it.
 
     Args:
-        data: up to the empty line.
-        names: of this computer.
-        here: its address, to which the client has connected.
+        data: the data up to the empty line.
+        names: names of this computer.
+        here: the address of this computer that the client has connected to.
+
+    Returns:
+        The head.
 
     Raises:
-        _Refused: no such client has sent it, or its body is too large.
+        _Refused: such a client does not send it, or its body is too large.
     """
     first, *lines = data.decode("latin-1").split("\r\n")
     method, _, rest = first.partition(" ")
@@ -316,7 +321,7 @@ def _head_of(data: bytes, names: OwnNames, here: str) -> _Head:
 
 
 def _check_sender(fields: dict[str, str], names: OwnNames, here: str, version: str) -> None:
-    """Refuse what a page in a browser sends.
+    """Refuse requests of a page in a browser.
 
     Raises:
         _Refused: it is such a request.

@@ -1,8 +1,8 @@
-"""Programs that look at a run while it goes on, and take part in it: viewers and their servers.
+"""Programs that watch a running mission, and take part in it: viewers and their servers.
 
-What belongs here listens on a real socket, shows what the mission's graph has, and lets what comes in enter through the
-door that a journal has. ROS's own protocols between nodes are `cfepy.extra.ros_host`; pictures of a run that is over,
-`cfepy.extra.reports`. The central file is `cfepy/extra/viewers/websocket_listener.py`.
+A module belongs here if it listens on a real socket, shows the mission's graph, and enters input as outside events that
+a journal records. ROS's own protocols between nodes belong to `cfepy.extra.ros_host`; pictures of a finished run belong
+to `cfepy.extra.reports`. The central file is `cfepy/extra/viewers/websocket_listener.py`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Admission", "FoxgloveViewer", "ListenPlace", "RosbridgeServer", "admission_to", "listen_place_of"]
 
-if not TYPE_CHECKING:  # a type checker sees the names above, and no others
+if not TYPE_CHECKING:  # a type checker sees only the names above
     __getattr__, __dir__ = face(
         __name__,
         {

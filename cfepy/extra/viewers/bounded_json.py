@@ -1,4 +1,4 @@
-"""JSON of clients, within bounds: a text of some megabytes can stand for gigabytes of lists, and is refused unread."""
+"""JSON of clients, with limits: a text of some megabytes can expand to gigabytes of lists, and is refused unparsed."""
 
 from __future__ import annotations
 
@@ -9,10 +9,13 @@ from cfepy.reading.input_limits import JSON_BRACKETS, JSON_VALUES
 
 
 def loads(text: str | bytes) -> Any:
-    """The value that a text stands for.
+    """Parse a text.
+
+    Returns:
+        Its value.
 
     Raises:
-        ValueError: it is not JSON, or has too many values, or too many inside each other.
+        ValueError: it is not JSON, or has too many or too deeply nested values.
     """
     found = text if isinstance(text, bytes) else text.encode(errors="replace")
     if found.count(b"[") + found.count(b"{") > JSON_BRACKETS:

@@ -1,8 +1,9 @@
-"""Where a server for viewers listens, and whom it lets in.
+"""Address and admission of a server for viewers.
 
 Without a host it listens on the loopback interface. There any program of this computer may connect, as with the
-mission's other ports, but a page in a browser only if it comes from this computer, too: every page that somebody looks
-at can open connections to 127.0.0.1 (RFC 6455, 10.2). A server that other computers reach wants a token of everybody.
+mission's other ports. A page in a browser may connect only if it comes from this computer, too, because any page can
+open connections to 127.0.0.1 (RFC 6455, 10.2). A server that other computers can reach requires a token from every
+client.
 """
 
 from __future__ import annotations
@@ -29,14 +30,14 @@ _USUAL_PORTS = {"http://": ":80", "https://": ":443"}
 
 
 class ListenPlace(NamedTuple):
-    """Where a server listens: host and port; port 0 takes any that is free."""
+    """The address of a server: host and port; port 0 takes any free one."""
 
     host: str
     port: int
 
     @property
     def is_loopback(self) -> bool:
-        """Whether only programs of this computer reach it."""
+        """True if only programs of this computer can reach it."""
         return is_this_computer(self.host)
 
     def __str__(self) -> str:
@@ -44,13 +45,16 @@ class ListenPlace(NamedTuple):
 
 
 def listen_place_of(text: str) -> ListenPlace:
-    """Where an option says that a server is to listen.
+    """Parse the address of an option.
 
     Args:
-        text: [HOST:]PORT; a host with colons of its own stands in brackets. An empty host is all interfaces.
+        text: [HOST:]PORT; a host that contains colons stands in brackets. An empty host means all interfaces.
+
+    Returns:
+        The address.
 
     Raises:
-        ValueError: it is none.
+        ValueError: it is invalid.
     """
     host, mark, port = text.rpartition(":")
     if host.startswith("[") and host.endswith("]"):
@@ -65,13 +69,16 @@ def listen_place_of(text: str) -> ListenPlace:
 
 
 def origin_of(text: str) -> str:
-    """An origin as browsers say it: in lower case, without a slash at the end and without the usual port.
+    """Normalize an origin as browsers do: in lower case, without a slash at the end and without the default port.
 
     Args:
         text: such as https://example.org:8443; "null" or "file://" for pages that are files; "*" for every page.
 
+    Returns:
+        The origin.
+
     Raises:
-        ValueError: it is none, so that no page could ever have it.
+        ValueError: it is invalid, so that no page could ever have it.
     """
     plain = text.lower()
     if plain in _ORIGINS_WITHOUT_HOST:
@@ -90,14 +97,14 @@ def origin_of(text: str) -> str:
 
 
 class Admission:
-    """Whom a server lets in.
+    """Decides which clients a server admits.
 
     Args:
-        token: what everybody has to know; "" when nobody has to.
-        origins: of pages in browsers that are welcome besides those of this computer; see `origin_of`.
+        token: the token that every client must show; "" for none.
+        origins: origins of pages in browsers that may connect in addition to those of this computer; see `origin_of`.
 
     Raises:
-        ValueError: an origin is none.
+        ValueError: an origin is invalid.
     """
 
     def __init__(self, token: str = "", origins: Sequence[str] = ()) -> None:
@@ -105,15 +112,15 @@ class Admission:
         self._origins = frozenset(map(origin_of, origins))
 
     def knows(self, token: str) -> bool:
-        """Whether somebody's token is the right one; how long the comparison takes says nothing about it."""
+        """Return True if a token is correct; the duration of the comparison reveals nothing about it."""
         return bool(self.token) and hmac.compare_digest(self.token.encode(), token.encode(errors="replace"))
 
     def welcomes(self, origin: str | None) -> bool:
-        """Whether a page of an origin may connect without showing the token first.
+        """Return True if a page of an origin may connect without showing the token first.
 
         Args:
-            origin: what the browser says (RFC 6454); None of a program that is no browser. "null" is a file, but also
-                a frame in anybody's page.
+            origin: the origin that the browser sends (RFC 6454); None for a program that is not a browser. "null" is a
+                file, but also a frame in any page.
         """
         if origin is None or ANY_ORIGIN in self._origins or origin.lower() in self._origins:
             return True
@@ -130,19 +137,22 @@ def admission_to(
     environ: Mapping[str, str] = os.environ,
     tell: Callable[[str], object] = lambda line: None,
 ) -> Admission:
-    """Whom a server lets in that listens at a place.
+    """Make the admission to a server.
 
-    A server that other computers reach and for which nobody has set a token gets one, which is told.
+    A server that other computers can reach gets a random token if none is set; `tell` receives it.
 
     Args:
-        place: where it listens.
-        token: of the command line; without it that of the environment holds.
+        place: the address that it listens at.
+        token: the token on the command line; None takes it from the environment.
         origins: see `Admission`.
-        environ: of this process.
-        tell: gets the line that says the token that was made.
+        environ: environment of this process.
+        tell: receives a message with the random token.
+
+    Returns:
+        The admission.
 
     Raises:
-        UsageError: the token is too short, or cannot be written in a URL; an origin is none.
+        UsageError: the token is too short, or cannot be written in a URL, or an origin is invalid.
     """
     given = environ.get(TOKEN_VARIABLE, "") if token is None else token
     if given and (len(given) < SHORTEST_TOKEN or not _TOKEN.fullmatch(given)):

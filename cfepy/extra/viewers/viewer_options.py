@@ -1,4 +1,4 @@
-"""`--foxglove`, `--rosbridge`: servers for programs that look at a run, from before it until after its end."""
+"""`--foxglove`, `--rosbridge`: servers for programs that watch a run, from before it until after its end."""
 
 from __future__ import annotations
 
@@ -21,11 +21,12 @@ class Viewers(FlightAddOn):
     """The servers that a command line asks for; use as a context manager around the run.
 
     Args:
-        arguments, name: as of `FlightAddOn`.
-        tell: gets the lines that say where they listen, and the token that was made.
+        arguments: as for `FlightAddOn`.
+        name: as for `FlightAddOn`.
+        tell: receives messages with the addresses of the servers, and with a random token.
 
     Raises:
-        UsageError: a port is taken, a library is not installed, or a token is none.
+        UsageError: a port is taken, a library is not installed, or a token is invalid.
     """
 
     OPTIONS: ClassVar = {"foxglove": FOXGLOVE, "rosbridge": ROSBRIDGE, "viewer_token": TOKEN, "viewer_origin": ORIGIN}
@@ -109,7 +110,7 @@ class Viewers(FlightAddOn):
         self._tell(f"rosbridge clients connect to ws://{server.place}")
 
     def _who_and_where(self, text: str, option: str) -> tuple[ListenPlace, Admission]:
-        """Where a server listens, and whom it lets in."""
+        """Return the address and the admission of a server."""
         from cfepy.extra.viewers import admission_to, listen_place_of
 
         try:

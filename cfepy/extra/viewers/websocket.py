@@ -1,7 +1,7 @@
-"""A WebSocket connection with a client, on a socket that nobody waits for (RFC 6455).
+"""A WebSocket connection with a client, on a non-blocking socket (RFC 6455).
 
-The protocol itself is that of the package websockets, without its servers: bytes go in, frames come out, and what
-comes in does so between two pieces of a run.
+The protocol itself comes from the package websockets, without its servers: bytes go in, frames come out. Input is taken
+between two steps of a run.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from websockets.frames import Frame
     from websockets.http11 import Request, Response
 
-LONGEST_MESSAGE = 1 << 25  # bytes; more ends a connection
+LONGEST_MESSAGE = 1 << 25  # bytes; a longer one ends a connection
 MOST_PARTS = 10_000  # frames of a message
 BAD_TEXT, TOO_BIG, TRY_LATER = 1007, 1009, 1013  # RFC 6455, 7.4.1, and IANA's registry of it
 OPEN = "OPEN"
 
 
 def protocols() -> Any:
-    """The module `websockets.server`; ImportError without the package websockets."""
+    """Return the module `websockets.server`; raises ImportError without the package websockets."""
     from websockets import server
 
     return server
@@ -35,18 +35,18 @@ class WebSocket:
     """A connection.
 
     Args:
-        selector: of the server.
+        selector: selector of the server.
         connected: the socket.
-        refusal: says why a request is refused, with the HTTP status; None takes it.
+        refusal: returns the HTTP status and the reason for a refused request, or None to accept it.
         began: called once, when messages may be sent.
-        take: gets each message, a text or bytes.
-        gone: called once, when the connection is over; takes why.
-        subprotocols: one of which the request has to name, the best first; none if it need not.
-        was_read: called after bytes have come, and what they say was done.
+        take: receives each message, a text or bytes.
+        gone: called once with the reason, when the connection is over.
+        subprotocols: the request must name one of them, the best first; empty if it need not.
+        was_read: called after received bytes have been processed.
 
     Attributes:
-        is_open: whether messages may be sent.
-        has_pinged: whether a ping waits for its pong.
+        is_open: True if messages may be sent.
+        has_pinged: True if a ping waits for its pong.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class WebSocket:
         self._take = take
         self._gone = gone
         self._parts: list[bytes] = []  # of a message that comes in more than one frame
-        self._unfinished = 0  # bytes of a frame that has not ended, or a few more
+        self._unfinished = 0  # bytes of an incomplete frame, or a few more
         self._is_text = True
         self.is_open = self.has_pinged = False
         self._was_read = was_read
@@ -75,11 +75,11 @@ class WebSocket:
 
     @property
     def unfinished(self) -> int:
-        """About how many bytes of a message have come that is not whole."""
+        """Estimated bytes of an incomplete message."""
         return self._unfinished + sum(map(len, self._parts))
 
     def ping(self) -> None:
-        """Ask the client for a sign of life (RFC 6455, 5.5.2)."""
+        """Send a ping (RFC 6455, 5.5.2)."""
         if self.is_open and self._protocol.state.name == OPEN:
             self.has_pinged = True
             self._protocol.send_ping(b"")
@@ -90,12 +90,12 @@ class WebSocket:
 
     @property
     def dropped(self) -> int:
-        """Messages that the client was too slow for."""
+        """Messages dropped because the client was too slow."""
         return self._socket.dropped
 
     @property
     def is_slow(self) -> bool:
-        """Whether messages wait for the client to read."""
+        """True if messages wait for the client to read."""
         return self._socket.is_full
 
     @property
@@ -114,19 +114,19 @@ class WebSocket:
         self._flush()
 
     def flush(self) -> None:
-        """Try again to send what waits."""
+        """Try again to send waiting messages."""
         self._socket.flush()
 
     def pause(self) -> None:
-        """Leave what comes with the client, for now."""
+        """Stop reading from the client, for now."""
         self._socket.pause()
 
     def resume(self) -> None:
-        """Take it again."""
+        """Read from the client again."""
         self._socket.resume()
 
     def close(self, code: int, why: str) -> None:
-        """End the connection, and say why (RFC 6455, 7.4); the client may still read what was sent."""
+        """End the connection with a code and a reason (RFC 6455, 7.4); the client may still read earlier messages."""
         if self.is_open and self._protocol.state.name == OPEN:
             self._protocol.send_close(code, why)
             self._flush()
@@ -139,13 +139,13 @@ class WebSocket:
 
     @property
     def has_ended(self) -> bool:
-        """Whether the socket is closed, too."""
+        """True if the socket is closed, too."""
         return not self._socket.is_open
 
     def _end(self, why: str) -> None:
         self.is_open = False
         self._parts.clear()
-        self._protocol.reader.discard()  # what has come of a message that is not whole
+        self._protocol.reader.discard()  # the received part of an incomplete message
         self._socket.finish()
         if not self._is_over:
             self._is_over = True

@@ -1,7 +1,7 @@
-"""`WebSocketListener`: takes clients that speak a protocol over WebSocket (RFC 6455) while a mission runs.
+"""`WebSocketListener`: serves clients of a protocol over WebSocket (RFC 6455) while a mission runs.
 
-What comes in is taken between two pieces of the run, and nobody waits for a socket: a client that is slow loses
-messages, one that sends nonsense is told so or loses its connection, and the mission goes on.
+Input is taken between two steps of the run, and no socket blocks it. A slow client loses messages. A client that sends
+invalid data gets an error or loses its connection, and the mission goes on.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
     from websockets.http11 import Request
 
 TABLE = "viewer_peers"  # of the report
-CONNECTIONS = "(connections)"  # its row of all that is no message
+CONNECTIONS = "(connections)"  # its row for everything except messages
 MOST_CLIENTS = 64
-MOST_MESSAGES = 256  # of a client between two pieces of the run; the others wait
-HANDSHAKE_S = 10.0  # wall time that a client has for asking for the connection
-IDLE_S = 30.0  # of silence after which a client that takes part in nothing gives way to another
-SILENCE_S = 20.0  # after which a client is asked for a sign of life, and then has for it, when places are few
-FAREWELL_S = 2.0  # and for reading what was sent to it last
+MOST_MESSAGES = 256  # of a client between two steps of the run; the others wait
+HANDSHAKE_S = 10.0  # wall time in which a client must send its request
+IDLE_S = 30.0  # of silence after which a client without subscriptions, publications or calls gives way to another
+SILENCE_S = 20.0  # of silence after which a client gets a ping, and then for its answer, when places are few
+FAREWELL_S = 2.0  # and for reading the last messages to it
 LAST_S, LOOK_S = 1.0, 0.05  # wall time that the end of a run waits for all of them together; between two looks
 GOING_AWAY, INTERNAL = 1001, 1011  # RFC 6455, 7.4.1
 LONGEST_REASON = 40  # characters; in UTF-8 there is room for 123 bytes
@@ -42,35 +42,35 @@ Refusal = tuple[HTTPStatus, str]
 
 
 class ConnectedClient(Protocol):
-    """What the owner of a listener has for each connection."""
+    """The listener's owner provides such an object for each connection."""
 
     @property
     def is_ready(self) -> bool:
-        """Whether it takes a message now; if not, the client has to wait."""
+        """True if it takes a message now; if not, the client has to wait."""
 
     @property
     def unfinished(self) -> int:
-        """Bytes that it keeps of messages that are not whole."""
+        """The bytes that it keeps of incomplete messages."""
 
     @property
     def takes_part(self) -> bool:
-        """Whether it hears, publishes or offers something, or waits for an answer."""
+        """True if it subscribes, publishes or offers something, or waits for an answer."""
 
     def begin(self, connection: WebSocket) -> None:
-        """The connection is there, for both sides."""
+        """Begin: the connection is ready for both sides."""
 
     def take(self, message: str | bytes) -> None:
-        """A message of the client's."""
+        """Take a message of the client."""
 
     @property
     def has_more(self) -> bool:
-        """Whether it has messages for the client that wait for room on the way out."""
+        """True if it has messages for the client that wait for room."""
 
     def go_on(self, now_s: float) -> None:
-        """Another piece of the run is over, or there is room again."""
+        """Go on after a step of the run, or when there is room again."""
 
     def gone(self, why: str) -> None:
-        """The connection is over; of those that began alone."""
+        """Clean up at the end of the connection; called only after `begin`."""
 
 
 C = TypeVar("C", bound=ConnectedClient)
@@ -78,13 +78,13 @@ T = TypeVar("T")
 
 
 class _Connection(Generic[C]):
-    """A connection with what came over it and has not been taken."""
+    """A connection with its received messages that wait."""
 
     def __init__(self, client: C, peer: str) -> None:
         self.client = client
         self.peer = peer
-        self.since_s = time.monotonic()  # that it was accepted, or that it ends
-        self.heard_s = self.since_s  # that something came from it
+        self.since_s = time.monotonic()  # since it was accepted, or since it ends
+        self.heard_s = self.since_s  # when it was last heard from
         self.pinged_s = self.since_s
         self.has_asked = self.has_begun = False
         self.coming: deque[str | bytes] = deque()
@@ -92,19 +92,19 @@ class _Connection(Generic[C]):
 
 
 class WebSocketListener(Generic[C]):
-    """Listens, lets clients in, and brings in what they send.
+    """Listens, admits clients, and takes their messages.
 
     Args:
-        place: where.
-        option: of the command line that asks for it.
-        extra: of cfepy, that installs what it needs.
-        make: makes what its owner has for a connection; takes the address of the other side.
-        refusal: says why a client's request is refused, with the HTTP status; None lets it in.
-        refused: is told of a connection that came to nothing: the address, and why.
-        subprotocols: one of which a client has to ask for, the best first; none if it need not.
+        place: the address.
+        option: the command line option that asks for it, for errors.
+        extra: the extra of cfepy that installs its dependencies.
+        make: makes the owner's object for a connection from the address of the other side.
+        refusal: returns the HTTP status and the reason for a refused request, or None to admit the client.
+        refused: called with the address and the reason for a connection that failed.
+        subprotocols: the client must ask for one of them, the best first; empty if it need not.
 
     Attributes:
-        place: where it listens, with the port that it has.
+        place: the address that it listens at, with the actual port.
 
     Raises:
         UsageError: the port is taken, or the package websockets is missing.
@@ -153,15 +153,15 @@ class WebSocketListener(Generic[C]):
 
     @property
     def clients(self) -> list[C]:
-        """Those that are connected now."""
+        """The clients that are connected now."""
         return [each.client for each in self._connections.values() if each.has_begun]
 
     def fileno(self) -> int:
-        """What can be read when something wants to come in."""
+        """Return the descriptor that becomes readable when input arrives."""
         return self._selector.fileno()
 
     def exchange(self) -> None:
-        """Bring in what clients have sent, and go on with what they did not take."""
+        """Take the messages of clients, and go on with waiting ones."""
         now_s = self._go_on()
         self._turn.begin()
         connections = list(self._connections.items())
@@ -181,7 +181,7 @@ class WebSocketListener(Generic[C]):
             made.abort()
 
     def _look_for_life(self, now_s: float) -> None:
-        """When places are few, end connections from which no sign of life comes."""
+        """If places are few, end connections that do not answer a ping."""
         if len(self._connections) <= MOST_CLIENTS // 2:
             return
         for made, connection in list(self._connections.items()):
@@ -203,12 +203,12 @@ class WebSocketListener(Generic[C]):
             key.data(events)
 
     def finish(self) -> None:
-        """Nothing comes in any more: take leave of all clients."""
+        """Stop all input: close the connections of all clients."""
         for made in list(self._connections):
             made.close(GOING_AWAY, OVER)
 
     def close(self) -> None:
-        """Let the last messages out, for a second at most, and end all connections; may be called more than once."""
+        """Send the last messages, for a second at most, and end all connections. You may call it more than once."""
         if self._is_over:
             return
         self._is_over = True
@@ -253,7 +253,7 @@ class WebSocketListener(Generic[C]):
         self._connections[made] = connection
 
     def _has_place(self) -> bool:
-        """Whether there is a place for another client, if need be that of one which is of no use."""
+        """Return True if there is a place for another client. If necessary, close a connection that is not in use."""
         if len(self._connections) < MOST_CLIENTS:
             return True
         now_s = time.monotonic()
@@ -291,7 +291,7 @@ class WebSocketListener(Generic[C]):
             self._work(made, connection)
 
     def _work(self, made: WebSocket, connection: _Connection[C]) -> None:
-        """Hand on what came, as long as the client is ready for it and it is not too much for once."""
+        """Pass on received messages, as long as the client is ready and its limit for this turn is not reached."""
         client, coming = connection.client, connection.coming
         while coming and connection.left and client.is_ready and made.is_open and not self._turn.is_over:
             connection.left -= 1
@@ -304,7 +304,7 @@ class WebSocketListener(Generic[C]):
     def _guarded(self, made: WebSocket, step: Callable[[T], object], argument: T) -> None:
         try:
             step(argument)
-        except Exception as error:  # whatever a stranger's messages lead to ends this connection alone
+        except Exception as error:  # an error in the handling of a client's messages only ends its connection
             made.close(INTERNAL, f"{type(error).__name__}: {error}"[:LONGEST_REASON])
 
     def _gone(self, made: WebSocket, why: str) -> None:
@@ -319,10 +319,10 @@ class WebSocketListener(Generic[C]):
         else:
             self._refused(connection.peer, why if connection.has_asked else NO_REQUEST)
 
-    # -- the run is not to sleep ---------------------------------------------------------------------------------------
+    # -- waking the run ------------------------------------------------------------------------------------------------
 
     def _nudge(self) -> None:
-        """The run is not to sleep after its next piece: there is something to do."""
+        """Wake the run: it must not sleep after its next step, because messages wait."""
         try:
             self._far.send(b"!")
         except BlockingIOError:
@@ -332,14 +332,14 @@ class WebSocketListener(Generic[C]):
         try:
             self._near.recv(4096)
         except BlockingIOError:
-            pass  # nobody has nudged
+            pass  # there was no nudge
 
 
 def token_of(request: Request) -> str:
-    """The token that a request shows: ?token=TOKEN, or Authorization: Bearer TOKEN (RFC 6750)."""
+    """Return the token of a request: ?token=TOKEN, or Authorization: Bearer TOKEN (RFC 6750)."""
     try:
         given = parse_qs(urlsplit(request.path).query).get("token", [])
-    except ValueError:  # a path that is none
+    except ValueError:  # an invalid path
         given = []
     if given:
         return given[0]

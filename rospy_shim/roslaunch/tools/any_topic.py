@@ -1,4 +1,4 @@
-"""Messages of whatever type from one topic to another: what relay, throttle and drop of topic_tools stand on."""
+"""Messages of any type from one topic to another: the common part of topic_tools' relay, throttle and drop."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ QUEUE_SIZE = 10
 
 
 class Output:
-    """The topic that messages go to; it is advertised when the first one tells the type.
+    """The output topic; it is advertised when the first message shows the type.
 
     Args:
-        name: of the topic.
+        name: name of the topic.
     """
 
     def __init__(self, name: str) -> None:

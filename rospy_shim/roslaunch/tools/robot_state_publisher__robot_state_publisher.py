@@ -29,7 +29,7 @@ class Joint:
         tag: its <joint>.
 
     Raises:
-        ValueError: an attribute is no number, or not three of them.
+        ValueError: an attribute does not consist of three numbers.
     """
 
     def __init__(self, tag: ElementTree.Element) -> None:
@@ -44,7 +44,7 @@ class Joint:
         self.offset = 0.0 if mimic is None else float(mimic.get("offset", 0))
 
     def transform(self, position: float, stamp: Any) -> TransformStamped:
-        """From the parent's to the child's frame, for a position in rad or m."""
+        """Return the transform from the parent's to the child's frame, for a position in rad or m."""
         place, turn = self.place, self.turn
         if self.kind in TURNING:
             turn = transformations.quaternion_multiply(turn, transformations.quaternion_about_axis(position, self.axis))
@@ -75,10 +75,10 @@ def _numbers(tag: ElementTree.Element | None, name: str, default: str) -> Any:
 
 
 def joints_of(text: str) -> list[Joint]:
-    """The joints of a URDF.
+    """Return the joints of a URDF.
 
     Raises:
-        ValueError: it is none, or something in a joint is wrong.
+        ValueError: it is not a URDF, or a joint has an error.
     """
     try:
         tags = ElementTree.fromstring(text).findall("joint")
@@ -97,7 +97,7 @@ class RobotStatePublisher:
     """Sends the transforms of one robot.
 
     Args:
-        joints: all of its.
+        joints: all of its joints.
     """
 
     def __init__(self, joints: list[Joint]) -> None:
@@ -122,7 +122,7 @@ class RobotStatePublisher:
         return [joint.transform(0.0, rospy.Time.now()) for joint in self._fixed]
 
     def take(self, state: JointState) -> None:
-        """Positions came: send what they mean, unless the same joints were sent a moment ago."""
+        """Send the transforms for new positions, unless the same joints were sent a moment ago."""
         stamp = state.header.stamp
         positions = dict(zip(state.name, state.position, strict=False))
         last = min((self._sent.get(name, rospy.Time(0)) for name in positions), default=rospy.Time(0))
@@ -134,14 +134,14 @@ class RobotStatePublisher:
         self._sent.update((name, stamp) for name in positions)
 
     def _followers(self, positions: dict[str, float]) -> Iterator[tuple[str, float]]:
-        """Joints that follow others, and are not in the message themselves."""
+        """Yield joints that follow others, and are not in the message themselves."""
         for joint in self._moving.values():
             if joint.leader in positions and joint.name not in positions:
                 yield joint.name, positions[joint.leader] * joint.factor + joint.offset
 
 
 def main() -> int:
-    """Work until the end."""
+    """Run until the end."""
     rospy.init_node("robot_state_publisher")
     key = rospy.search_param("robot_description")
     try:

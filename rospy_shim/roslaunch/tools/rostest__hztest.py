@@ -1,8 +1,8 @@
 # ruff: noqa: PT009  # a test node of ROS is a unittest
 """rostest/hztest: a test that messages come at a rate (wiki.ros.org/rostest/Nodes).
 
-Private parameters: topic; hz and hzerror, the rate in Hz and how far off it may be; test_duration in s; wait_time, how
-long the first message may take, in s (20); check_intervals, whether each two messages must keep the rate.
+Private parameters: topic; hz and hzerror, the rate in Hz and its tolerance; test_duration in s; wait_time, the longest
+wait for the first message, in s (20); check_intervals, whether each interval must keep the rate.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ class HzTest(unittest.TestCase):
         self.times: list[float] = []
 
     def needed(self, name: str) -> Any:
-        """A private parameter that must be there."""
+        """Return a required private parameter."""
         if not rospy.has_param(f"~{name}"):
             self.fail(f"hztest requires the parameter {rospy.resolve_name('~' + name)}")
         return rospy.get_param(f"~{name}")
 
     def test_hz(self) -> None:
-        """Messages come at the rate, or none at all where it is 0."""
+        """Check that messages come at the rate, or none at all if it is 0."""
         topic, hz, duration = self.needed("topic"), float(self.needed("hz")), float(self.needed("test_duration"))
         error = float(self.needed("hzerror")) if hz else 0.0
         self.assertTrue(hz >= 0 and error >= 0 and duration > 0 and topic, "bad parameters")
@@ -57,7 +57,7 @@ class HzTest(unittest.TestCase):
             rospy.sleep(LOOK_S)
 
     def check_rate(self, least: float, most: float) -> None:
-        """The average rate in Hz is between two."""
+        """Check that the average rate in Hz is between two limits."""
         taken = self.times[-1] - self.times[0]
         self.assertGreater(taken, 0, "only one message came")
         rate = (len(self.times) - 1) / taken
@@ -65,7 +65,7 @@ class HzTest(unittest.TestCase):
         self.assertLessEqual(rate, most, f"average rate ({rate:.3f}Hz) is above the maximum ({most:.3f}Hz)")
 
     def check_intervals(self, least: float, most: float) -> None:
-        """All intervals keep the rate; a lowest rate of 0 or less allows any length."""
+        """Check that all intervals keep the rate; a minimum rate of 0 or less permits any length."""
         for before, after in zip(self.times, self.times[1:], strict=False):
             interval = after - before
             self.assertGreaterEqual(interval, 1 / most, f"interval {interval:f} s is too short")

@@ -1,7 +1,7 @@
 # ruff: noqa: PT009  # a test node of ROS is a unittest
-"""rostest/paramtest: a test that a parameter is there (wiki.ros.org/rostest/Nodes).
+"""rostest/paramtest: a test that a parameter exists (wiki.ros.org/rostest/Nodes).
 
-Private parameters: param_name_target; param_value_expected, where its value counts too; wait_time in s (20).
+Private parameters: param_name_target; param_value_expected, if its value counts too; wait_time in s (20).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class ParamTest(unittest.TestCase):
     """One parameter."""
 
     def test_param(self) -> None:
-        """It is there in time, and has the value that it should have."""
+        """Check that it exists in time, and has the expected value."""
         rospy.init_node("paramtest")
         name, expected = rospy.get_param("~param_name_target"), rospy.get_param("~param_value_expected", None)
         end = rospy.get_time() + float(rospy.get_param("~wait_time", 20))

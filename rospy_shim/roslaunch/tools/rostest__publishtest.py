@@ -19,7 +19,7 @@ class PublishTest(unittest.TestCase):
     """Topics with and without messages."""
 
     def test_publish(self) -> None:
-        """Within its time each topic has a message, or none where that is what is wanted."""
+        """Check that each topic has a message within its time, or none if that is expected."""
         rospy.init_node("publishtest")
         topics = rospy.get_param("~topics", [])
         self.assertTrue(topics, "no topic in the parameter ~topics")

@@ -20,7 +20,7 @@ USAGE = """usage: static_transform_publisher x y z qx qy qz qw frame_id child_fr
 
 
 def from_numbers(words: list[str]) -> TransformStamped:
-    """The transform on a command line of eight or nine words.
+    """Return the transform of a command line of eight or nine words.
 
     Raises:
         ValueError: a word that should be a number.
@@ -34,10 +34,10 @@ def from_numbers(words: list[str]) -> TransformStamped:
 
 
 def from_param(name: str) -> TransformStamped:
-    """The transform in a parameter: header/frame_id, child_frame_id, transform/translation and /rotation.
+    """Return the transform in a parameter: header/frame_id, child_frame_id, transform/translation and /rotation.
 
     Raises:
-        KeyError: something of it is missing.
+        KeyError: a part of it is missing.
     """
     tree: dict[str, Any] = rospy.get_param(name)
     inner = tree["transform"]
@@ -46,7 +46,7 @@ def from_param(name: str) -> TransformStamped:
 
 
 def transform(frame: str, child: str, values: list[float]) -> TransformStamped:
-    """A message from a translation and a quaternion, in m and without a unit."""
+    """Make a message from a translation in m and a quaternion."""
     stamped = TransformStamped()
     stamped.header.stamp = rospy.Time.now()
     stamped.header.frame_id, stamped.child_frame_id = frame, child
@@ -56,7 +56,7 @@ def transform(frame: str, child: str, values: list[float]) -> TransformStamped:
 
 
 def main() -> int:
-    """Publish it, and stay."""
+    """Publish it, and run until the end."""
     rospy.init_node("static_transform_publisher", anonymous=True)
     words = rospy.myargv()[1:]
     if len(words) not in (1, 8, 9):

@@ -1,4 +1,4 @@
-"""topic_tools/drop: X of every Y messages are left out (wiki.ros.org/topic_tools/drop)."""
+"""topic_tools/drop: drop X of every Y messages (wiki.ros.org/topic_tools/drop)."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ class Drop:
     """Sends on the last Y - X messages of every Y.
 
     Args:
-        output: where to.
-        x, y: how many of how many are left out.
+        output: the output topic.
+        x: number of messages to drop in each group.
+        y: number of messages in a group.
     """
 
     def __init__(self, output: Output, x: int, y: int) -> None:
@@ -23,14 +24,14 @@ class Drop:
         self._count = 0
 
     def take(self, message: rospy.AnyMsg) -> None:
-        """A message came."""
+        """Take a message."""
         if self._count >= self._x:
             self._output.send(message)
         self._count = (self._count + 1) % self._y
 
 
 def main() -> int:
-    """Work until the end."""
+    """Run until the end."""
     rospy.init_node("drop", anonymous=True)
     words = rospy.myargv()[1:]
     if not 3 <= len(words) <= 4 or not words[1].isdecimal() or not words[2].isdecimal() or words[2] == "0":

@@ -1,4 +1,4 @@
-"""topic_tools/relay: all messages of one topic on another, whatever their type (wiki.ros.org/topic_tools/relay)."""
+"""topic_tools/relay: send all messages of one topic on another, of any type (wiki.ros.org/topic_tools/relay)."""
 
 from __future__ import annotations
 

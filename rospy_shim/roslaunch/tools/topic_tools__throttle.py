@@ -1,4 +1,4 @@
-"""topic_tools/throttle: no more than so many messages or bytes a second (wiki.ros.org/topic_tools/throttle)."""
+"""topic_tools/throttle: limit the messages or bytes a second (wiki.ros.org/topic_tools/throttle)."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ USAGE = """usage: throttle messages IN_TOPIC MSGS_PER_SEC [OUT_TOPIC]
 
 
 class MessageThrottle:
-    """Sends on what comes later than a period after the last one that was sent.
+    """Sends on messages that come later than a period after the last one that was sent.
 
     Args:
-        output: where to.
+        output: the output topic.
         rate: messages a second.
     """
 
@@ -27,7 +27,7 @@ class MessageThrottle:
         self._last = rospy.Time(0)
 
     def take(self, message: rospy.AnyMsg) -> None:
-        """A message came."""
+        """Take a message."""
         now = rospy.Time.now()
         self._last = min(self._last, now)  # the clock was set back
         if now - self._last > self._period:
@@ -36,10 +36,10 @@ class MessageThrottle:
 
 
 class ByteThrottle:
-    """Sends on what comes while fewer bytes than allowed were sent in the window.
+    """Sends on messages while fewer bytes than permitted were sent in the window.
 
     Args:
-        output: where to.
+        output: the output topic.
         rate: bytes that may have been sent.
         window: in s.
     """
@@ -51,7 +51,7 @@ class ByteThrottle:
         self._sent: deque[tuple[float, int]] = deque()  # time in s, bytes
 
     def take(self, message: rospy.AnyMsg) -> None:
-        """A message came."""
+        """Take a message."""
         now = rospy.get_time()
         while self._sent and self._sent[0][0] < now - self._window:
             self._sent.popleft()
@@ -61,10 +61,10 @@ class ByteThrottle:
 
 
 def throttle(words: list[str]) -> Callable[[rospy.AnyMsg], None]:
-    """What the command line asks for.
+    """Return the throttle that the command line asks for.
 
     Raises:
-        ValueError: it asks for nothing that there is.
+        ValueError: the command line is invalid.
     """
     kind, topic, *numbers = words
     count = {"messages": 1, "bytes": 2}.get(kind, 0)
@@ -78,7 +78,7 @@ def throttle(words: list[str]) -> Callable[[rospy.AnyMsg], None]:
 
 
 def main() -> int:
-    """Work until the end."""
+    """Run until the end."""
     rospy.init_node("throttle", anonymous=True)
     words = rospy.myargv()[1:]
     try:

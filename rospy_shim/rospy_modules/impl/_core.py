@@ -1,4 +1,4 @@
-"""What rospy.core has beside a node's life and log: addresses, the environment, rospy's own loggers."""
+"""The parts of rospy.core beside a node's life and log: addresses, the environment, rospy's own loggers."""
 
 from __future__ import annotations
 
@@ -22,27 +22,27 @@ _logger = logging.getLogger("rospy.internal")
 
 
 def rospydebug(msg: Any, *args: Any, **kwargs: Any) -> None:
-    """Log for those who look into rospy itself: logger rospy.internal."""
+    """Log for developers of rospy itself, to the logger rospy.internal."""
     _logger.debug(msg, *args, **kwargs)
 
 
 def rospyinfo(msg: Any, *args: Any, **kwargs: Any) -> None:
-    """As `rospydebug`."""
+    """Log as `rospydebug` does, as information."""
     _logger.info(msg, *args, **kwargs)
 
 
 def rospywarn(msg: Any, *args: Any, **kwargs: Any) -> None:
-    """As `rospydebug`."""
+    """Log as `rospydebug` does, as a warning."""
     _logger.warning(msg, *args, **kwargs)
 
 
 def rospyerr(msg: Any, *args: Any, **kwargs: Any) -> None:
-    """As `rospydebug`."""
+    """Log as `rospydebug` does, as an error."""
     _logger.error(msg, *args, **kwargs)
 
 
 def deprecated(func: Callable[..., Any]) -> Callable[..., Any]:
-    """A decorator: the function warns when it is called."""
+    """Decorate a function so that it warns when it is called."""
 
     @functools.wraps(func)
     def wrapper(*args: Any, **kwargs: Any) -> Any:
@@ -54,14 +54,14 @@ def deprecated(func: Callable[..., Any]) -> Callable[..., Any]:
 
 @deprecated
 def get_ros_root(required: bool = False, env: Mapping[str, str] | None = None) -> str | None:
-    """What ROS_ROOT says.
+    """Return the value of ROS_ROOT.
 
     Args:
-        required: whether there must be one.
+        required: True if the variable must be set.
         env: the environment; None is os.environ.
 
     Raises:
-        ROSException: there is none.
+        ROSException: it is required and not set.
     """
     root = (os.environ if env is None else env).get("ROS_ROOT")
     if required and not root:
@@ -70,10 +70,10 @@ def get_ros_root(required: bool = False, env: Mapping[str, str] | None = None) -
 
 
 def parse_rosrpc_uri(uri: str) -> tuple[str, int]:
-    """Host and port of a service's URI.
+    """Return the host and port in a service's URI.
 
     Raises:
-        ParameterInvalid: it is none.
+        ParameterInvalid: it is not such a URI.
     """
     if not uri.startswith(ROSRPC):
         raise ParameterInvalid(f"Invalid protocol for ROS service URL: {uri}")
@@ -84,11 +84,11 @@ def parse_rosrpc_uri(uri: str) -> tuple[str, int]:
 
 
 def xmlrpcapi(uri: str | None, cache: bool = True) -> Any:
-    """A proxy for the XML-RPC server at a URI; None if the URI is none.
+    """Return a proxy for the XML-RPC server at a URI; None if the URI is None or invalid.
 
     Args:
-        uri: of the server.
-        cache: give the same proxy the next time.
+        uri: the server's URI.
+        cache: True returns the same proxy in later calls.
     """
     if uri is None or not all(urlparse(uri)[:2]):
         return None

@@ -1,4 +1,4 @@
-"""rospy.impl.init: defaults of a node's start, and what writes its log to the console."""
+"""rospy.impl.init: defaults for the start of a node, and the handler that writes its log to the console."""
 
 from __future__ import annotations
 

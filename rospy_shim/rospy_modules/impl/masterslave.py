@@ -1,4 +1,4 @@
-"""rospy.impl.masterslave: how methods of the master and slave APIs check their arguments."""
+"""rospy.impl.masterslave: the checks of arguments in methods of the master and slave APIs."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ __all__ = [
     "md5",
 ]
 
-STATUS, MSG, VAL = 0, 1, 2  # places in an answer
+STATUS, MSG, VAL = 0, 1, 2  # indices in an answer
 LOG_API = True
 
 _logger = logging.getLogger("rospy.impl.masterslave")
@@ -41,7 +41,7 @@ Answer = tuple[int, str, Any]
 
 
 def is_publishers_list(paramName: str) -> Callable[[Any, str], Any]:
-    """A validator for lists of URIs."""
+    """Make a validator for lists of URIs."""
 
     def validator(value: Any, caller_id: str) -> Any:
         if type(value) is not list:
@@ -57,11 +57,11 @@ def is_publishers_list(paramName: str) -> Callable[[Any, str], Any]:
 
 
 def apivalidate(error_return_value: Any, validators: Sequence[Any] = ()) -> Callable[[Any], Callable[..., Answer]]:
-    """Declare a method of an API: its arguments are checked, and errors become answers.
+    """Make a decorator for a method of an API: its arguments are checked, and errors become answers.
 
     Args:
-        error_return_value: the value in the answer that reports an error.
-        validators: one for each argument behind the caller's name; None checks nothing.
+        error_return_value: the value in an answer that reports an error.
+        validators: one for each argument after the caller's name; None checks nothing.
     """
 
     def declare(method: Any) -> Callable[..., Answer]:

@@ -1,4 +1,4 @@
-"""rospy.impl.paramserver: values of parameters that a program keeps itself."""
+"""rospy.impl.paramserver: a cache for the values of parameters."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["GLOBALNS", "SEP", "ParamServerCache", "get_param_server_cache"]
 
 
 class ParamServerCache:
-    """Values by resolved name of the parameter."""
+    """Values by the parameter's resolved name."""
 
     def __init__(self) -> None:
         self.lock = threading.Lock()
@@ -20,14 +20,14 @@ class ParamServerCache:
         self.notifier: Callable[[str, Any], object] | None = None
 
     def set_notifier(self, notifier: Callable[[str, Any], object]) -> None:
-        """Have a function called with each parameter that is updated."""
+        """Set the function that is called with each updated parameter."""
         self.notifier = notifier
 
     def update(self, key: str, value: Any) -> None:
         """Change a value.
 
         Raises:
-            KeyError: the parameter is not kept here.
+            KeyError: the parameter is not in the cache.
         """
         with self.lock:
             if key not in self.d:
@@ -37,21 +37,21 @@ class ParamServerCache:
             self.notifier(key, value)
 
     def set(self, key: str, value: Any) -> None:
-        """Keep a value."""
+        """Add or change a value."""
         with self.lock:
             self.d[key] = value
 
     def get(self, key: str) -> Any:
-        """A value.
+        """Return a value.
 
         Raises:
-            KeyError: the parameter is not kept here.
+            KeyError: the parameter is not in the cache.
         """
         with self.lock:
             return self.d[key]
 
     def delete(self, key: str) -> None:
-        """Forget a value, and those below it."""
+        """Remove a value and the values below it."""
         with self.lock:
             for each in [each for each in self.d if each == key or each.startswith(key.rstrip(SEP) + SEP)]:
                 del self.d[each]
@@ -61,5 +61,5 @@ _cache = ParamServerCache()
 
 
 def get_param_server_cache() -> ParamServerCache:
-    """The node's."""
+    """Return the node's cache."""
     return _cache

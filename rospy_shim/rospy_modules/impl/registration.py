@@ -1,4 +1,4 @@
-"""rospy.impl.registration: who is told of topics and services that come and go, and the node's managers of them."""
+"""rospy.impl.registration: listeners for topics and services that come and go, and the node's managers of them."""
 
 from __future__ import annotations
 
@@ -30,38 +30,38 @@ class Registration:
 
 
 class RegistrationListener:
-    """Base of those that want to know what the node registers."""
+    """Base class of listeners to the node's registrations."""
 
     def reg_added(self, resolved_name: str, data_type_or_uri: str, reg_type: str) -> None:
-        """A topic's side (with its type) or a service (with its URI) is there."""
+        """Handle a new publisher or subscriber (with the topic's type) or a new service (with its URI)."""
 
     def reg_removed(self, resolved_name: str, data_type_or_uri: str, reg_type: str) -> None:
-        """It is gone."""
+        """Handle one that was removed."""
 
 
 class RegistrationListeners:
-    """Tells all listeners; one that fails does not keep the others from being told."""
+    """Calls all listeners; an exception in one does not affect the others."""
 
     def __init__(self) -> None:
         self.listeners: list[Any] = []
         self.lock = threading.Lock()
 
     def add_listener(self, l: Any) -> None:  # noqa: E741  # rospy's name
-        """Tell this one too."""
+        """Add a listener."""
         with self.lock:
             self.listeners.append(l)
 
     def clear(self) -> None:
-        """Tell nobody any more."""
+        """Remove all listeners."""
         with self.lock:
             self.listeners.clear()
 
     def notify_added(self, resolved_name: str, data_type: str, reg_type: str) -> None:
-        """Something was registered."""
+        """Notify the listeners of a registration."""
         self._notify("reg_added", resolved_name, data_type, reg_type)
 
     def notify_removed(self, resolved_name: str, data_type_or_uri: str, reg_type: str) -> None:
-        """Something is registered no longer."""
+        """Notify the listeners of a registration that was removed."""
         self._notify("reg_removed", resolved_name, data_type_or_uri, reg_type)
 
     def _notify(self, method: str, *what: str) -> None:
@@ -77,27 +77,27 @@ _managers: dict[str, Any] = {"topics": topic_manager}
 
 
 def get_registration_listeners() -> RegistrationListeners:
-    """Those of the node."""
+    """Return the node's listeners."""
     return _listeners
 
 
 def get_topic_manager() -> Any:
-    """The manager of the node's topics."""
+    """Return the manager of the node's topics."""
     return _managers["topics"]
 
 
 def set_topic_manager(tm: Any) -> None:
-    """Have another manager shown."""
+    """Set the manager that `get_topic_manager` returns."""
     _managers["topics"] = tm
 
 
 def get_service_manager() -> Any:
-    """The manager of the node's services."""
+    """Return the manager of the node's services."""
     if "services" not in _managers:
         import rospy.service  # noqa: F401  # which sets it
     return _managers["services"]
 
 
 def set_service_manager(sm: Any) -> None:
-    """Have another manager shown."""
+    """Set the manager that `get_service_manager` returns."""
     _managers["services"] = sm

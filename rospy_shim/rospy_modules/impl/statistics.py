@@ -1,7 +1,7 @@
-"""rospy.impl.statistics: what subscribers measure when the parameter /enable_statistics is true (wiki.ros.org/Topics).
+"""rospy.impl.statistics: subscribers measure if the parameter /enable_statistics is true (wiki.ros.org/Topics).
 
-Each connection has a window of messages; once a second, or as often as the numbers of messages suggest, its figures go
-out on /statistics as rosgraph_msgs/TopicStatistics.
+Each connection has a window of messages. Once a second, or more or less often depending on the number of messages, its
+figures are published on /statistics as rosgraph_msgs/TopicStatistics.
 """
 
 from __future__ import annotations
@@ -32,23 +32,23 @@ class SubscriberStatisticsLogger:
 
     @classmethod
     def is_enabled(cls) -> bool:
-        """Whether subscribers measure."""
+        """Return True if subscribers measure."""
         return bool(rospy.get_param("/enable_statistics", False))
 
     def read_parameters(self) -> None:
-        """Read the sizes of windows: numbers of messages, and s."""
+        """Read the limits of windows: numbers of messages, and lengths in s."""
         self.min_elements = rospy.get_param("/statistics_window_min_elements", 10)
         self.max_elements = rospy.get_param("/statistics_window_max_elements", 100)
         self.min_window = rospy.get_param("/statistics_window_min_size", 4)
         self.max_window = rospy.get_param("/statistics_window_max_size", 64)
 
     def callback(self, msg: Any, publisher: str, stat_bytes: int) -> None:
-        """A message came.
+        """Count a message that arrived.
 
         Args:
             msg: the message.
             publisher: name of the node that sent it.
-            stat_bytes: bytes that came from that node so far.
+            stat_bytes: number of bytes received from that node so far.
         """
         if self.subscriber_name in _NOT_MEASURED:
             return
@@ -59,7 +59,7 @@ class SubscriberStatisticsLogger:
         logger.callback(self, msg, stat_bytes)
 
     def shutdown(self) -> None:
-        """Measure no longer."""
+        """Stop measuring."""
         for logger in self.connections.values():
             logger.shutdown()
         self.connections.clear()
@@ -69,7 +69,7 @@ class ConnectionStatisticsLogger:
     """Measures one connection.
 
     Args:
-        topic: its name.
+        topic: the topic's name.
         subscriber: name of the receiving node.
         publisher: name of the sending node.
     """
@@ -93,7 +93,7 @@ class ConnectionStatisticsLogger:
         self._bytes_before = self._bytes
 
     def callback(self, subscriber_statistics_logger: SubscriberStatisticsLogger, msg: Any, stat_bytes: int) -> None:
-        """A message came; see `SubscriberStatisticsLogger.callback`."""
+        """Count a message that arrived; see `SubscriberStatisticsLogger.callback`."""
         now = rospy.Time.now()
         self._arrivals.append(now.to_sec())
         self._bytes = stat_bytes
@@ -120,7 +120,7 @@ class ConnectionStatisticsLogger:
         self._begin_window(now)
 
     def _adjust(self, limits: SubscriberStatisticsLogger, number: int) -> None:
-        """A window with too many messages gets shorter, one with too few longer."""
+        """Shorten the windows if this one had too many messages, and lengthen them if it had too few."""
         length = 1 / self.pub_frequency
         if number > limits.max_elements and length / 2 >= limits.min_window:
             self.pub_frequency *= 2
@@ -128,12 +128,12 @@ class ConnectionStatisticsLogger:
             self.pub_frequency /= 2
 
     def shutdown(self) -> None:
-        """Measure no longer."""
+        """Stop measuring."""
         self.pub.unregister()
 
 
 def _figures(values: list[float]) -> tuple[Any, Any, Any]:
-    """Mean, standard deviation and maximum of some times in s, as Durations."""
+    """Return the mean, the standard deviation and the maximum of times in s, as Durations."""
     if not values:
         return rospy.Duration(0), rospy.Duration(0), rospy.Duration(0)
     mean = sum(values) / len(values)

@@ -1,4 +1,4 @@
-"""rospy.impl.tcpros: what is left of ROS's transport where messages go over the Software Bus."""
+"""rospy.impl.tcpros: the constant of ROS's transport; messages go over the Software Bus."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""rospy.impl.tcpros_pubsub: the constants of ROS's transport of messages, which go over the Software Bus."""
+"""rospy.impl.tcpros_pubsub: the constants of ROS's transport for messages, which go over the Software Bus."""
 
 from __future__ import annotations
 

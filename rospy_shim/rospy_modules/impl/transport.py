@@ -1,4 +1,4 @@
-"""rospy.impl.transport: the classes that connections and protocols derive from; the bus itself has no connections."""
+"""rospy.impl.transport: the base classes of connections and protocols; the bus itself has no connections."""
 
 from __future__ import annotations
 
@@ -34,42 +34,42 @@ class Transport:
         self.id = next(_numbers)
 
     def fileno(self) -> int:
-        """A file number for select.
+        """Return a file number for select.
 
         Raises:
-            NotImplementedError: a derived class has not said it.
+            NotImplementedError: a derived class does not define it.
         """
         raise NotImplementedError
 
     def close(self) -> None:
-        """End it, and call the clean-up function."""
+        """Close it, and call the cleanup function."""
         self.done = True
         if self.cleanup_cb is not None:
             self.cleanup_cb(self)
 
     def set_cleanup_callback(self, cleanup_callback: Callable[[Transport], object]) -> None:
-        """Have a function called when it is closed."""
+        """Set the function that is called when the connection is closed."""
         self.cleanup_cb = cleanup_callback
 
     def write_data(self, data: bytes) -> None:
         """Send bytes.
 
         Raises:
-            NotImplementedError: a derived class has not said how.
+            NotImplementedError: a derived class does not define it.
         """
         raise NotImplementedError("must implement")
 
     def get_transport_info(self) -> str:
-        """What it is, for reports.
+        """Return a description for reports.
 
         Raises:
-            NotImplementedError: a derived class has not said it.
+            NotImplementedError: a derived class does not define it.
         """
         raise NotImplementedError
 
 
 class DeadTransport(Transport):
-    """What is known of a connection that has ended.
+    """The record of a connection that is closed.
 
     Args:
         transport: the connection.
@@ -85,31 +85,31 @@ class DeadTransport(Transport):
 
 
 class ProtocolHandler:
-    """Makes the connections of a protocol; this one knows none."""
+    """Makes the connections of a protocol; this class supports none."""
 
     def shutdown(self) -> None:
-        """Nothing to end."""
+        """Do nothing: there is nothing to close."""
 
     def create_transport(self, topic: str, pub_uri: str, protocol_params: list[Any]) -> tuple[int, str, int]:
         """Connect to a publisher.
 
         Raises:
-            NotImplementedError: a derived class has not said how.
+            NotImplementedError: a derived class does not define it.
         """
         raise NotImplementedError(f"cannot connect to {pub_uri} for topic {topic}")
 
     def supports(self, protocol: str) -> bool:
-        """Whether it knows a protocol."""
+        """Return True if a protocol is supported."""
         return False
 
     def get_supported(self) -> list[list[str]]:
-        """The protocols that it knows."""
+        """Return the supported protocols."""
         return []
 
     def init_publisher(self, topic: str, protocol: list[str]) -> tuple[int, str, list[Any]]:
-        """Get ready for a subscriber.
+        """Prepare for a subscriber.
 
         Raises:
-            NotImplementedError: a derived class has not said how.
+            NotImplementedError: a derived class does not define it.
         """
         raise NotImplementedError(f"cannot publish {topic} with {protocol}")

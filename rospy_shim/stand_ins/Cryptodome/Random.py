@@ -1,4 +1,4 @@
-"""Random bytes, from the node's own source of them."""
+"""Random bytes, from the node's own source of random numbers."""
 
 from __future__ import annotations
 
@@ -6,5 +6,5 @@ import os
 
 
 def get_random_bytes(n: int) -> bytes:
-    """So many bytes."""
+    """Return `n` random bytes."""
     return os.urandom(n)

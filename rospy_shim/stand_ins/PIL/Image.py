@@ -19,7 +19,7 @@ class Image:
     Args:
         mode: "L", "LA", "RGB" or "RGBA".
         size: width and height in pixels.
-        data: rows from the top, with the channels of a pixel beside each other.
+        data: rows from the top, with the channels of a pixel next to each other.
     """
 
     def __init__(self, mode: str, size: tuple[int, int], data: bytes) -> None:
@@ -31,14 +31,14 @@ class Image:
             raise ValueError("not enough image data" if len(data) < self._row * size[1] else "too much image data")
 
     def tobytes(self) -> bytes:
-        """Its pixels."""
+        """Return its pixels."""
         return self._data
 
     def save(self, fp: str | BinaryIO, format: str = "PNG", **params: Any) -> None:
         """Write it as a PNG file.
 
         Raises:
-            ImportError: another format needs Pillow itself.
+            ImportError: another format requires Pillow itself.
         """
         if format.upper() != "PNG":
             raise ImportError(f"pictures in the format {format} need Pillow: {_HINT}")
@@ -55,7 +55,7 @@ class Image:
 
 
 def frombytes(mode: str, size: tuple[int, int], data: bytes) -> Image:
-    """A picture from its pixels; see `Image`.
+    """Make a picture from its pixels; see `Image`.
 
     Raises:
         ValueError: there are more or fewer bytes than the picture has.
@@ -64,7 +64,7 @@ def frombytes(mode: str, size: tuple[int, int], data: bytes) -> Image:
 
 
 def new(mode: str, size: tuple[int, int], color: int | tuple[int, ...] = 0) -> Image:
-    """A picture of one colour."""
+    """Make a picture of one colour."""
     pixel = bytes(color) if isinstance(color, tuple) else bytes([color] * _channels(mode))
     return Image(mode, size, pixel * (size[0] * size[1]))
 
@@ -73,7 +73,7 @@ def open(fp: str | BinaryIO) -> Image:
     """Read a PNG file.
 
     Raises:
-        ImportError: it is something else, or a kind of PNG that needs Pillow itself.
+        ImportError: it is another format, or a kind of PNG that requires Pillow itself.
     """
     data = Path(fp).read_bytes() if isinstance(fp, str) else fp.read()
     if not data.startswith(_SIGNATURE):
@@ -106,7 +106,7 @@ def _chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
 
 
 def _unfiltered(lines: bytes, width: int, step: int) -> bytes:
-    """Pixels of lines that each begin with the number of what was done to pack them better."""
+    """Undo the filters of lines that each begin with the number of their filter. Returns the pixels."""
     above, found = bytearray(width), bytearray()
     for at in range(0, len(lines), width + 1):
         kind, line = lines[at], bytearray(lines[at + 1 : at + 1 + width])

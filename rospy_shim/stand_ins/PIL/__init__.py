@@ -1,1 +1,1 @@
-"""A stand-in for Pillow, which rosbridge packs messages into PNG pictures with; see `PIL.Image`."""
+"""A stand-in for Pillow, with which rosbridge packs messages into PNG pictures; see `PIL.Image`."""

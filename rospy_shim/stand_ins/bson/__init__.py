@@ -1,6 +1,6 @@
-"""A stand-in for the BSON format of pymongo, which rosbridge sends messages in (bsonspec.org, version 1.1).
+"""A stand-in for the BSON format of pymongo, in which rosbridge sends messages (bsonspec.org, version 1.1).
 
-It knows what JSON knows, bytes, and integers of 32 and 64 bits.
+It supports JSON's types, bytes, and integers of 32 and 64 bits.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ __all__ = ["BSON", "Binary", "binary", "decode", "encode", "errors"]
 
 
 def encode(document: Mapping[str, Any]) -> bytes:
-    """The bytes of a document.
+    """Encode a document.
 
     Raises:
-        InvalidDocument: something in it has no form in BSON.
+        InvalidDocument: a value in it has no form in BSON.
     """
     return document_of(document)
 
 
 def decode(data: bytes) -> dict[str, Any]:
-    """The document that bytes are.
+    """Decode a document.
 
     Raises:
-        InvalidBSON: they are none.
+        InvalidBSON: the bytes are not a document.
     """
     return read_document(bytes(data))
 
@@ -39,9 +39,9 @@ class BSON(bytes):
 
     @classmethod
     def encode(cls, document: Mapping[str, Any]) -> BSON:
-        """See `encode`."""
+        """Encode a document; see `encode`."""
         return cls(document_of(document))
 
     def decode(self) -> dict[str, Any]:  # type: ignore[override]  # as pymongo has it
-        """See `decode`."""
+        """Decode the document; see `decode`."""
         return read_document(self)

@@ -16,7 +16,7 @@ class Binary(bytes):
     subtype: int
 
     def __new__(cls, data: bytes, subtype: int = BINARY_SUBTYPE) -> Binary:
-        """See the class."""
+        """Make the bytes; see the class."""
         self = super().__new__(cls, data)
         self.subtype = subtype
         return self

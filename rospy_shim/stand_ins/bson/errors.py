@@ -1,14 +1,14 @@
-"""bson.errors: what goes wrong with documents."""
+"""bson.errors: errors of documents."""
 
 from __future__ import annotations
 
 
 class BSONError(Exception):
-    """Any of these."""
+    """Base of these errors."""
 
 
 class InvalidBSON(BSONError):
-    """Bytes are no document."""
+    """Bytes are not a document."""
 
 
 class InvalidDocument(BSONError):

@@ -1,4 +1,4 @@
-"""Bytes to documents."""
+"""Decoding of documents."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ _FIXED = {0x01: "<d", 0x08: "<?", 0x10: "<i", 0x12: "<q"}
 
 
 def read_document(data: bytes) -> dict[str, Any]:
-    """The document that bytes are.
+    """Decode a document.
 
     Raises:
-        InvalidBSON: they are none.
+        InvalidBSON: the bytes are not a document.
     """
     try:
         document, end = _document(data, 0)
@@ -27,7 +27,7 @@ def read_document(data: bytes) -> dict[str, Any]:
 
 
 def _document(data: bytes, at: int) -> tuple[dict[str, Any], int]:
-    """The document that begins at a place, and where it ends."""
+    """Return the document that begins at an offset, and the offset of its end."""
     end = at + struct.unpack_from("<i", data, at)[0]
     at += 4
     found: dict[str, Any] = {}
@@ -40,7 +40,7 @@ def _document(data: bytes, at: int) -> tuple[dict[str, Any], int]:
 
 
 def _value(kind: int, data: bytes, at: int) -> tuple[Any, int]:
-    """A value of a type that begins at a place, and where it ends."""
+    """Return the value of a type that begins at an offset, and the offset of its end."""
     if kind == 0x0A:
         return None, at
     if kind in _FIXED:

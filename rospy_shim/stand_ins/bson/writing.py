@@ -1,4 +1,4 @@
-"""Documents to bytes."""
+"""Encoding of documents."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ _INT32, _INT64 = range(-(1 << 31), 1 << 31), range(-(1 << 63), 1 << 63)
 
 
 def document_of(document: Mapping[str, Any]) -> bytes:
-    """The bytes of a document.
+    """Encode a document.
 
     Raises:
-        InvalidDocument: something in it has no form in BSON.
+        InvalidDocument: a value in it has no form in BSON.
     """
     body = b"".join(_element(name, value) for name, value in document.items())
     return struct.pack("<i", len(body) + 5) + body + b"\0"
@@ -29,7 +29,7 @@ def _element(name: object, value: Any) -> bytes:
 
 
 def _content(value: Any) -> tuple[int, bytes]:
-    """The number of a value's type, and its bytes."""
+    """Return the number of a value's type, and its bytes."""
     if value is None:
         return 0x0A, b""
     if isinstance(value, bool):

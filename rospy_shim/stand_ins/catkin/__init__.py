@@ -1,1 +1,1 @@
-"""A stand-in for the Python half of catkin, which original sources of ROS's tools ask where files are installed."""
+"""A stand-in for the Python half of catkin; original sources of ROS's tools use it to find installed files."""

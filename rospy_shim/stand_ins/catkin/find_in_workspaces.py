@@ -1,4 +1,4 @@
-"""Where packages have their files. Nothing is built or installed here, so a package's own folder has them all."""
+"""The folders of packages' files. Nothing is built or installed here, so a package's own folder has them all."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ def find_in_workspaces(
     workspace_to_source_spaces: Any = None,
     source_path_to_packages: Callable[..., Any] | None = None,
 ) -> list[str]:
-    """The places of a package's files, those that exist.
+    """Return the existing places of a package's files.
 
     Args:
         search_dirs: kinds of folders, such as "share" and "libexec"; a package's own folder stands for each.
         project: the package; None finds nothing.
-        path: below the package's folder.
-        considered_paths: gets every place that was looked at.
+        path: path below the package's folder.
+        considered_paths: receives every place that was searched.
         first_match_only: return one place at most.
     """
     if project is None:

@@ -14,10 +14,10 @@ _RENAMED = {"assertRegexpMatches": "assertRegex", "assertItemsEqual": "assertCou
 
 
 def __getattr__(name: str) -> Any:
-    """An assertion: `assert_raises_regex` is unittest's assertRaisesRegex.
+    """Return an assertion: `assert_raises_regex` is unittest's assertRaisesRegex.
 
     Raises:
-        AttributeError: there is none of that name.
+        AttributeError: there is no such assertion.
     """
     camel = re.sub("_([a-z])", lambda match: match[1].upper(), name)
     camel = _RENAMED.get(camel, camel)
@@ -39,19 +39,19 @@ def eq_(a: object, b: object, msg: str | None = None) -> None:
 
 
 def istest(func: _Test) -> _Test:
-    """Mark something as a test whatever its name."""
+    """Mark a function as a test regardless of its name."""
     func.__test__ = True  # type: ignore[attr-defined]
     return func
 
 
 def nottest(func: _Test) -> _Test:
-    """Mark something as no test whatever its name."""
+    """Mark a function as not a test regardless of its name."""
     func.__test__ = False  # type: ignore[attr-defined]
     return func
 
 
 def raises(*exceptions: type[BaseException]) -> Callable[[_Test], _Test]:
-    """A test that passes when it raises one of these."""
+    """Decorate a test so that it passes if it raises one of these."""
 
     def decorate(func: _Test) -> _Test:
         @functools.wraps(func)
@@ -69,7 +69,7 @@ def raises(*exceptions: type[BaseException]) -> Callable[[_Test], _Test]:
 
 
 def with_setup(setup: _Test | None = None, teardown: _Test | None = None) -> Callable[[_Test], _Test]:
-    """A test function with something to do before and after it."""
+    """Decorate a test function with steps before and after it."""
 
     def decorate(func: _Test) -> _Test:
         @functools.wraps(func)

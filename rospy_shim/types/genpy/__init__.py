@@ -1,7 +1,7 @@
 """The part of ROS 1's genpy that nodes see: times, the message base class and its errors.
 
-What belongs here is what a node imports as `genpy` (`rospy_shim.types.msgs.make_module("genpy")`). The message classes
-themselves are generated in `rospy_shim.types.msgs`. The central file is `rospy_shim/types/genpy/message.py`.
+Code belongs here if a node imports it as `genpy` (`rospy_shim.types.msgs.make_module("genpy")`). The generation of
+message classes belongs to `rospy_shim.types.msgs`. The central file is `rospy_shim/types/genpy/message.py`.
 """
 
 from __future__ import annotations

@@ -1,5 +1,7 @@
 """`fill_message_args` and `get_printable_message_args` of genpy.message: YAML-like values into a message, and its field
-names for a usage line. Command-line tools and some nodes use them.
+names for a usage line.
+
+Command-line tools and some nodes use them.
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ class ArgumentFiller:
         """Make a filler.
 
         Args:
-            class_of: message class by full name, or None when there is none such; for arrays of messages.
+            class_of: returns the message class by full name, or None if there is no such class; for arrays of messages.
         """
         self._class_of = class_of
 
@@ -98,7 +100,7 @@ class ArgumentFiller:
 
 
 def _time_of(old: TVal, nanoseconds: int) -> TVal:
-    """A time given as one number; genpy goes through a float and loses the last digits, and so do we."""
+    """Return a time given as one number; genpy converts it to a float and loses the last digits, and so does this."""
     found: TVal = type(old).from_sec(nanoseconds / 1e9)
     return found
 
@@ -110,7 +112,7 @@ def _check_count(msg: Any, values: list[Any]) -> None:
 
 
 def get_printable_message_args(msg: Any, buff: Any = None, prefix: str = "") -> str:
-    """Dotted names of all fields, nested ones included, with spaces between.
+    """Return dotted names of all fields, nested ones included, with spaces between.
 
     Args:
         msg: the message.

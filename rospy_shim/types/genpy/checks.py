@@ -1,7 +1,7 @@
-"""Why a field cannot be serialized: `check_type`, as genpy.message runs it after packing has failed.
+"""The check of a field that cannot be serialized: `check_type`, as genpy.message runs it after packing has failed.
 
-The rules are genpy's, gaps included: a fixed array's length is not looked at, and a str is accepted as uint8[]. Never
-on the hot path.
+The rules are genpy's, gaps included: a fixed array's length is not checked, and a str is accepted as uint8[]. Never on
+the hot path.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def check_type(field_name: str, field_type: str, field_val: Any) -> None:
 
 
 def _is_float(value: Any) -> bool:
-    # genpy has a list of numpy's kinds, which is known by name here, without numpy being loaded for it.
+    # genpy has a list of numpy's types; here they are known by name, so that numpy need not be loaded.
     kind = type(value)
     return kind in (int, float) or (kind.__module__ == "numpy" and kind.__name__ in _NUMPY_FLOATS)
 

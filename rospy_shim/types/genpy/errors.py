@@ -1,4 +1,4 @@
-"""The three message errors of genpy.message, and how text that is not UTF-8 is handled."""
+"""The three message errors of genpy.message, and the handling of text that is not UTF-8."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import codecs
 
 
 class MessageException(Exception):  # genpy's name
-    """Anything wrong with a message."""
+    """Base of message errors."""
 
     __module__ = "genpy.message"
 
@@ -24,7 +24,7 @@ class DeserializationError(MessageException):
 
 
 class RosMsgUnicodeErrors:  # genpy's name
-    """The codec error handler "rosmsg": it puts U+FFFD where text is not UTF-8. Generated sources decode with it."""
+    """The codec error handler "rosmsg": it replaces invalid UTF-8 by U+FFFD. Generated sources decode with it."""
 
     __module__ = "genpy.message"
 

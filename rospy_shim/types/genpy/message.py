@@ -1,6 +1,6 @@
-"""`Message`, the base of every generated message class, as genpy.message has it.
+"""`Message`, the base of every generated message class, as in genpy.message.
 
-What generated code adds is in `rospy_shim.types.msgs`; here is what all classes share: filling in arguments,
+The generated code is in `rospy_shim.types.msgs`. This module has the common part of all classes: filling in arguments,
 comparison, text, copying and the check that follows a failed serialization.
 """
 
@@ -25,12 +25,12 @@ class Message:
     _md5sum: ClassVar[str]
     _slot_types: ClassVar[list[str]]
     _full_text: ClassVar[str]
-    _has_header: ClassVar[bool]  # of classes that are made here; those of genpy's sources have it too
+    _has_header: ClassVar[bool]  # of classes that are made here; classes of genpy's sources have it too
     _connection_header: dict[str, str]
 
     # A class made by the generator names itself here, so that it can be pickled where no "std_msgs" is importable.
     _restore_as: ClassVar[tuple[type[Message], Callable[[str], Message]] | None] = None
-    # How many messages are in the arrays of one; None for a type that has no such arrays.
+    # Counts the messages in the arrays of one; None for a type without such arrays.
     _count_items: ClassVar[Callable[[Message], int] | None] = None
 
     def __init__(self, *args: Any, **kwds: Any) -> None:
@@ -38,7 +38,7 @@ class Message:
 
         Raises:
             TypeError: both kinds are given, or not exactly one positional argument per field.
-            AttributeError: a name that is no field.
+            AttributeError: a name that is not a field.
         """
         slots: Any = self.__slots__
         if args:
@@ -56,14 +56,14 @@ class Message:
             setattr(self, name, kwds.get(name))
 
     def _get_types(self) -> list[str]:
-        """ROS types of the fields, in the order of `__slots__`."""
+        """Return the ROS types of the fields, in the order of `__slots__`."""
         raise NotImplementedError(f"{type(self).__name__} has no field types; use a generated message class")
 
     def _check_types(self, exc: BaseException | None = None) -> None:
         """Find the field that cannot be serialized.
 
         Raises:
-            SerializationError: a field does not fit; or all fit, and `exc` says what went wrong.
+            SerializationError: a field does not fit; or all fit, and `exc` has the reason.
         """
         for name, kind in zip(self.__slots__, self._get_types(), strict=False):
             check_type(name, kind, getattr(self, name))
@@ -76,7 +76,7 @@ class Message:
     def deserialize(self, str_: bytes) -> Any:
         """Read the message from bytes; overridden by generated classes."""
 
-    # Sources that genpy generated have no more than these two; classes of cfepy's have better ones of their own.
+    # Sources that genpy generated have only these two; cfepy's classes have faster ones of their own.
 
     def _pack(self) -> bytes:
         buff = BytesIO()

@@ -1,8 +1,8 @@
-"""Seconds and nanoseconds as ROS 1 has them: `TVal`, `Time` and `Duration` under the names of genpy.rostime.
+"""Seconds and nanoseconds of ROS 1: `TVal`, `Time` and `Duration` under the names of genpy.rostime.
 
-Arithmetic, comparison and rounding are those of genpy 0.6 (pinned by recorded behaviour in the tests), also where they
-surprise: the difference of two Times is a plain genpy Duration while everything else keeps the class of the operand, a
-Time is never negative, and `Time(1) > Duration(1)` is a TypeError.
+Arithmetic, comparison and rounding are those of genpy 0.6 (pinned by recorded behaviour in the tests), also in
+surprising cases: the difference of two Times is a plain genpy Duration while all other results keep the class of the
+operand, a Time is never negative, and `Time(1) > Duration(1)` is a TypeError.
 """
 
 from __future__ import annotations
@@ -43,15 +43,15 @@ class TVal:
 
     @classmethod
     def from_sec(cls: type[_Self], float_secs: float) -> _Self:
-        """A value from seconds; the fraction is cut, not rounded, to whole nanoseconds."""
+        """Make a value from seconds; the fraction is cut, not rounded, to whole nanoseconds."""
         return cls(*_split(float_secs))
 
     def is_zero(self) -> bool:
-        """Whether both parts are zero."""
+        """Return True if both parts are zero."""
         return self.secs == 0 and self.nsecs == 0
 
     def set(self, secs: int, nsecs: int) -> None:
-        """Set both parts as they are, without carrying."""
+        """Set both parts unchanged, without carrying."""
         self.secs = secs
         self.nsecs = nsecs
 
@@ -61,11 +61,11 @@ class TVal:
         self.secs += carry
 
     def to_sec(self) -> float:
-        """The value in seconds."""
+        """Return the value in seconds."""
         return float(self.secs) + float(self.nsecs) / 1e9
 
     def to_nsec(self) -> int:
-        """The value in nanoseconds."""
+        """Return the value in nanoseconds."""
         return self.secs * _NS + self.nsecs
 
     def __getstate__(self) -> list[int]:
@@ -140,14 +140,14 @@ class Time(TVal):
         """Make an instant.
 
         Raises:
-            TypeError: it would lie before the epoch.
+            TypeError: it would be before the epoch.
         """
         super().__init__(secs, nsecs)
         if self.secs < 0:
             raise TypeError("time values must be positive")
 
     def to_time(self) -> float:
-        """The same as `to_sec`, in the unit of time.time()."""
+        """Return the same as `to_sec`, in the unit of time.time()."""
         return self.to_sec()
 
     __hash__ = TVal.__hash__

@@ -1,4 +1,4 @@
-"""Messages as text: `strify_message`, what `str(msg)`, `print(msg)` and `rostopic echo` show.
+"""Messages as text: `strify_message`, which makes the text of `str(msg)`, `print(msg)` and `rostopic echo`.
 
 The layout is genpy's: YAML-like, nested messages indented by two spaces, strings in double quotes, nanoseconds padded
 to nine places. PyYAML is loaded only for strings that need escapes and for lists of strings.
@@ -23,15 +23,15 @@ def strify_message(
     field_filter: _Filter | None = None,
     fixed_numeric_width: int | None = None,
 ) -> str:
-    """Text of a message or of a field's value.
+    """Return the text of a message or of a field's value.
 
     Args:
         val: the message or value.
         indent: put before each line of a message.
         time_offset: Times are printed relative to this one.
         current_time: not used, as in genpy.
-        field_filter: gives the names of the fields of a message to print; they come in the message's order.
-        fixed_numeric_width: integers are printed in so many columns, floats with so many digits, cut to them.
+        field_filter: returns the names of the fields of a message to print; they are printed in the message's order.
+        fixed_numeric_width: width of integers in columns, and digits of floats, cut to the width.
     """
     return _Writer(time_offset, field_filter, fixed_numeric_width).text(val, indent)
 
@@ -97,7 +97,7 @@ class _Writer:
 
 
 def bytes_as_list(val: Any) -> Any:
-    """The numbers of a field of bytes, which may be held as bytes, or as a text with a character for each."""
+    """Return the numbers of a field of bytes, which may be held as bytes, or as a text with a character for each."""
     if isinstance(val, str):
         return [ord(each) for each in val]
     return list(val) if isinstance(val, bytes) else val
@@ -122,7 +122,7 @@ def _quoted(val: str) -> str:
 
 
 def _string_list(val: Any, indent: str) -> str:
-    """Strings as YAML.
+    """Return strings as YAML.
 
     Raises:
         AssertionError: they are in a tuple, for which YAML has another notation: genpy cannot print a message with one.

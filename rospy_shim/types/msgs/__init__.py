@@ -4,10 +4,9 @@
     >>> message_class("std_msgs/String")(data="hello")
     data: "hello"
 
-Inside a node the same classes are found the usual way (`from std_msgs.msg import String`), through `make_module`.
-
-What a message type is and how it is encoded belongs here; times and the base class of messages are in
-`rospy_shim.types.genpy`, what rospy adds to a message in `rospy_shim.client.message`. The central file is
+Inside a node the same classes are found the usual way (`from std_msgs.msg import String`), through `make_module`. Code
+belongs here if it defines or encodes message types; times and the base class of messages belong to
+`rospy_shim.types.genpy`, rospy's additions to messages to `rospy_shim.client.message`. The central file is
 `rospy_shim/types/msgs/classes.py`.
 """
 
@@ -45,7 +44,7 @@ __all__ = [
 
 
 def message_class(full_name: str) -> MessageClass:
-    """Class of a shipped message type, e.g. "std_msgs/String"; generated when first asked for.
+    """Return the class of a shipped message type, e.g. "std_msgs/String"; it is generated at first use.
 
     Raises:
         UsageError: there is no such type.
@@ -54,7 +53,7 @@ def message_class(full_name: str) -> MessageClass:
 
 
 def service_class(full_name: str) -> ServiceClass:
-    """Class of a shipped service type, e.g. "std_srvs/SetBool".
+    """Return the class of a shipped service type, e.g. "std_srvs/SetBool".
 
     Raises:
         UsageError: there is no such type.
@@ -63,7 +62,7 @@ def service_class(full_name: str) -> ServiceClass:
 
 
 def load_package(name: str) -> ModuleType:
-    """The message classes of a shipped package as attributes of a module, e.g. `load_package("std_msgs").String`.
+    """Return a module with the message classes of a shipped package, e.g. `load_package("std_msgs").String`.
 
     Raises:
         ModuleNotFoundError: there is no such package.

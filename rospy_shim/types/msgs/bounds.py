@@ -1,9 +1,9 @@
-"""What keeps a count in a packet from making more than the packet's bytes pay for.
+"""The limits that keep a count in a packet from making more objects than its bytes justify.
 
-An array of messages is read one after the other. Most fail where the bytes end, so their count needs no second look.
-Two kinds do not: messages that are octets of fixed arrays alone, which genpy takes as they come, down to none, and
-messages that take no bytes at all. Of the former there may be as many as the bytes that are left can fill, of the
-latter a number in each message, the same as in the headers for C++ (roscfe/wire.h).
+An array of messages is read one after the other. Most types fail where the bytes end, so their count needs no check.
+Two kinds do not: messages that consist of octets of fixed arrays alone, which genpy accepts even if they are cut short,
+and messages that take no bytes at all. The former are limited to the number that the remaining bytes can fill. The
+latter are limited to a fixed number in each message, the same as in the headers for C++ (roscfe/wire.h).
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from rospy_shim.types.msgs.reference import OCTETS, Lookup
 from rospy_shim.types.msgs.spec import Spec
 
 MOST_EMPTY = 65_536
-"""Items that take no bytes, in all arrays of a message together."""
+"""Maximum number of items without bytes, in all arrays of a message together."""
 
 
 def unguarded_size(spec: Spec, lookup: Lookup) -> int | None:
-    """Bytes of a message whose decoding does not fail where the bytes end; None where it does.
+    """Return the bytes of a message whose decoding does not fail where the bytes end; None if it does fail.
 
     Args:
         spec: its type.
@@ -41,10 +41,10 @@ def unguarded_size(spec: Spec, lookup: Lookup) -> int | None:
 
 
 def too_short(size: int) -> struct.error:
-    """The error for bytes that end before `size` more of them."""
+    """Make the error for bytes that end before `size` more of them."""
     return struct.error(f"unpack requires a buffer of {size} bytes")
 
 
 def too_many_empty() -> struct.error:
-    """The error for more than `MOST_EMPTY` items that take no bytes."""
+    """Make the error for more than `MOST_EMPTY` items that take no bytes."""
     return struct.error(f"more than {MOST_EMPTY:,} items that take no bytes")

@@ -1,7 +1,7 @@
-"""What is wrong with the .msg, .srv and .action files of a package, all of it before a program asks for a type.
+"""Checks of the .msg, .srv and .action files of a package, all at once before a program asks for a type.
 
-A node learns of a mistake when it first imports the type. genmsg, which ROS builds packages with, is the measure: what
-it refuses and cfepy takes is a warning.
+A node meets an error only when it first imports the type. The reference is genmsg, which ROS builds packages with: a
+definition that it refuses and cfepy accepts gives a warning.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ _KINDS = ("msg", "srv", "action")
 
 
 class DefinitionFault(NamedTuple):
-    """Something wrong with a definition; `is_warning`: cfepy can work with it, and ROS cannot or means it otherwise."""
+    """An error in a definition; `is_warning`: cfepy can work with it, but ROS cannot or interprets it differently."""
 
     error: UsageError
     is_warning: bool = False
 
 
 def check_definitions(packages: Packages, names: Iterable[str]) -> Iterator[DefinitionFault]:
-    """What is wrong with the definitions of some packages, by file.
+    """Yield the errors in the definitions of some packages, by file.
 
     Args:
-        packages: where they are, and those that they need.
-        names: of the packages to check.
+        packages: the packages to find them in, with those that they need.
+        names: names of the packages to check.
     """
     library = Library([OnDisk(packages, Mistakes(keep=True))], base=shipped())
     for name in names:
@@ -63,7 +63,7 @@ class _Check:
         self._library = library
 
     def faults(self) -> Iterator[DefinitionFault]:
-        """What is wrong with it."""
+        """Yield its errors."""
         if not _LEGAL.fullmatch(self._path.stem):
             text = f"invalid type name {self._path.stem!r}; expected a letter, then letters, digits and '_'"
             yield DefinitionFault(self._error(text))
@@ -84,7 +84,7 @@ class _Check:
             yield from self._part(name, part)
 
     def _parts(self, definition: Definition) -> dict[str, Definition]:
-        """The messages that a file has, by name.
+        """Return the messages in the file, by name.
 
         Raises:
             UsageError: it is an action without its three parts.
@@ -108,7 +108,7 @@ class _Check:
         yield from (DefinitionFault(error, is_warning=True) for error in self._odd(spec, part))
 
     def _unknown(self, kind: str, line: int) -> UsageError | None:
-        """The error about a field whose type there is not."""
+        """Return the error about a field of an unknown type."""
         if kind in BUILTINS or self._library.has(kind):
             return None
         package, _, bare = kind.partition("/")
@@ -119,7 +119,7 @@ class _Check:
         return self._error(f"unknown message type {kind}; {hint}", line)
 
     def _odd(self, spec: Spec, part: Definition) -> Iterator[UsageError]:
-        """What ROS takes otherwise."""
+        """Yield the parts that ROS interprets differently."""
         for number, line in enumerate(part.text.split("\n"), part.first_line):
             if _TABBED.match(line.partition("#")[0].rstrip()):
                 yield self._error("has a tab after the type, which ROS's genmsg refuses; write a blank", number)

@@ -1,8 +1,9 @@
-"""Message and service classes: what genpy writes into a package's Python files, made in memory from a `Spec`.
+"""Message and service classes: the classes that genpy writes into a package's Python files, made in memory from a
+`Spec`.
 
-A message class carries genpy's public face (`_type`, `_md5sum`, `__slots__`, `serialize`, ...) and two functions of our
-own that the publisher and the subscriber use: `_pack(msg) -> bytes` and `_unpack(data, at=0) -> msg`. Functions that
-are seldom called are compiled at their first call. A service class holds a request and a response class.
+A message class has genpy's public interface (`_type`, `_md5sum`, `__slots__`, `serialize`, ...) and two functions of
+cfepy's own that the publisher and the subscriber use: `_pack(msg) -> bytes` and `_unpack(data, at=0) -> msg`. Functions
+that are seldom called are compiled at their first call. A service class holds a request and a response class.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from rospy_shim.types.msgs.namespace import CodeLines, Namespace
 from rospy_shim.types.msgs.spec import PRIMITIVES, Field, Spec, hash_text
 
 MessageClass = type[Message]
-"""A generated class; what its messages have for fields is known at run time only."""
+"""A generated class; the fields of its messages are known at run time only."""
 
 
 class ServiceClass(Protocol):
@@ -40,7 +41,7 @@ def build_service(
     Args:
         full_name: "package/Name".
         module: value of `__module__`, e.g. "std_srvs.srv._SetBool".
-        md5_texts: of request and response; hashed together they are the service's md5sum.
+        md5_texts: texts of request and response; hashed together they are the service's md5sum.
         request: class of the request.
         response: class of the response.
     """
@@ -55,19 +56,19 @@ def build_service(
 
 
 class TypeTable(Protocol):
-    """Where a class finds what it is made of."""
+    """The source of the parts of a class."""
 
     def spec(self, full_name: str) -> Spec:
-        """The definition of a type."""
+        """Return the definition of a type."""
 
     def md5sum(self, full_name: str) -> str:
-        """Its md5sum."""
+        """Return its md5sum."""
 
     def full_text(self, full_name: str) -> str:
-        """Its definition with those of all types in it."""
+        """Return its definition with the definitions of all types in it."""
 
     def message_class(self, full_name: str) -> MessageClass:
-        """Its class."""
+        """Return its class."""
 
 
 def build_class(spec: Spec, table: TypeTable, restore: Callable[[str], Message] | None, module: str) -> MessageClass:
@@ -113,13 +114,16 @@ def _written(write: Callable[..., None], message: Message, numpy: Any = None) ->
 
 
 def _writers(write: Callable[..., None]) -> dict[str, Callable[..., None]]:
-    """`serialize` and `serialize_numpy`: the fast code, and where that fails `write`, which leaves what it can."""
+    """Return `serialize` and `serialize_numpy`: the fast code, and if that fails `write`, which leaves as much as it
+    can.
+    """
 
     def serialize(self: Message, buff: Any) -> None:
         """Write the message to a file-like object.
 
         Raises:
-            SerializationError: a field holds what its type cannot carry; the fields before it are written, as in genpy.
+            SerializationError: a field holds a value that its type cannot carry; the preceding fields are written, as
+                in genpy.
         """
         try:
             octets = self._pack()
@@ -131,7 +135,8 @@ def _writers(write: Callable[..., None]) -> dict[str, Callable[..., None]]:
         """Write a message whose number arrays are numpy arrays; `numpy` is the module.
 
         Raises:
-            SerializationError: a field holds what its type cannot carry; the fields before it are written, as in genpy.
+            SerializationError: a field holds a value that its type cannot carry; the preceding fields are written, as
+                in genpy.
         """
         try:
             octets = self._pack_numpy(numpy)
@@ -161,7 +166,7 @@ def _add_readers(cls: MessageClass, spec: Spec, table: TypeTable, names: Namespa
 
 
 def _counter(spec: Spec, table: TypeTable, names: Namespace) -> Callable[[Message], int] | None:
-    """What counts the messages in a message's arrays: those of itself, and of the single messages in it."""
+    """Make the function that counts the messages in the arrays of a message and of single messages in it."""
     lengths = " + ".join(f"len(self.{path})" for path in _arrays(spec, table))
     if not lengths:
         return None
@@ -191,7 +196,7 @@ def _constructor(spec: Spec, table: TypeTable, names: Namespace) -> Callable[...
     names.globals["_Message_init"] = Message.__init__
     out = CodeLines(depth=1)
     out.add("if args or kwds:")
-    # One positional argument per field is by far the commonest call.
+    # One positional argument per field is by far the most common call.
     if spec.fields:
         targets = "".join(f"self.{field.attribute}, " for field in spec.fields)
         out.add(f"    if len(args) == {len(spec.fields)} and not kwds:")
@@ -212,7 +217,7 @@ def _constructor(spec: Spec, table: TypeTable, names: Namespace) -> Callable[...
 
 
 def _default(field: Field, table: TypeTable, names: Namespace) -> str:
-    """Expression for a field's default value."""
+    """Return the expression for a field's default value."""
     if field.is_array and field.base in ("uint8", "char"):
         return repr(bytes(field.length or 0))
     if field.is_array and field.length is None:

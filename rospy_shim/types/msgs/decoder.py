@@ -25,7 +25,7 @@ _AGAIN = ("_read_again(cls(), data[start:])", "_read_again(self, str)", "_read_a
 
 
 class Form(Enum):
-    """Which function to write."""
+    """The function to write."""
 
     UNPACK = 0
     DESERIALIZE = 1
@@ -35,15 +35,15 @@ class Form(Enum):
 def unpack_source(
     spec: Spec, lookup: Callable[[str], Spec], class_of: Callable[[str], type], names: Namespace, form: Form
 ) -> list[str]:
-    """Source of a function that decodes messages of one type.
+    """Return the source of a function that decodes messages of one type.
 
     Args:
         spec: the type.
         lookup: specs of nested types.
         class_of: classes of nested types.
-        names: receives what the source refers to; `_read_again`, which does what genpy does with data that the fast
-            code cannot read, must be added by the caller.
-        form: which function.
+        names: receives the names in the source. The caller must add `_read_again`, which handles data that the fast
+            code cannot read as genpy does.
+        form: the function to write.
     """
     out = CodeLines(depth=2)
     decoder = _Decoder(out, lookup, class_of, names, form)
@@ -76,7 +76,7 @@ class _Decoder:
         self.later: list[str] = []
         self.ahead = 0
         self.has_empty_items = False
-        # Local variables that hold objects which were there before.
+        # Local variables that hold objects which existed before.
         self.kept = set() if form is Form.UNPACK else {"self"}
 
     def fixed(self, code: str, *targets: str) -> None:
@@ -94,7 +94,7 @@ class _Decoder:
         self.code, self.targets, self.later = "", [], []
 
     def here(self) -> str:
-        """Expression for the offset of the next byte."""
+        """Return the expression for the offset of the next byte."""
         return f"at + {self.ahead}" if self.ahead else "at"
 
     def arrive(self) -> None:
@@ -105,7 +105,7 @@ class _Decoder:
             self.ahead = 0
 
     def count(self) -> str:
-        """Read a count; the local variable that holds it."""
+        """Read a count. Returns the local variable that holds it."""
         count = self.out.local("n")
         self.fixed("I", count)
         self.arrive()
@@ -142,7 +142,7 @@ class _Decoder:
         self.later += [f"if {beyond}:", f"    {time}.canon()"]
 
     def instance(self, kind: str, target: str) -> str:
-        """The object that is to be filled: new, or in place."""
+        """Return the variable of the object that is to be filled: new, or in place."""
         name = self.out.local()
         if target.partition(".")[0] in self.kept:
             self.kept.add(name)
@@ -206,7 +206,7 @@ class _Decoder:
         self.out.add(f"at = {end}")
 
     def items(self, field: Field, target: str) -> None:
-        """An array of times, durations or messages."""
+        """Decode an array of times, durations or messages."""
         count = self.count() if field.length is None else str(field.length)
         self.arrive()
         if field.base in _TIMES:
@@ -227,7 +227,7 @@ class _Decoder:
         self.out.depth -= 1
 
     def bound(self, count: str, size: int | None) -> None:
-        """Hand a count that cannot be true to the slow code, which refuses it (`bounds`)."""
+        """Pass a count that cannot be true to the slow code, which refuses it (`bounds`)."""
         if size is None:
             return
         if size:

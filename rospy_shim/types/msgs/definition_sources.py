@@ -1,9 +1,9 @@
-"""Where message and service definitions come from: packages shipped with cfepy, folders on disk, or texts at hand.
+"""Sources of message and service definitions: packages shipped with cfepy, folders on disk, or given texts.
 
-Shipped packages are text files beside this one, `<package>.msgs`, `<package>.srvs` and `<package>.actions`, with one `#
-package/Name` section per type, whose title says when the type's own file has no line feed at its end. A service
-has two parts; an action is a goal, a result and a feedback, and an envelope for each, the seven messages that
-actionlib_msgs' genaction makes of it.
+Shipped packages are text files next to this one, `<package>.msgs`, `<package>.srvs` and `<package>.actions`, with one
+`# package/Name` section per type, whose title notes if the type's own file has no line feed at its end. A service has
+two parts. An action is a goal, a result and a feedback, and an envelope for each, which make the seven messages of
+actionlib_msgs' genaction.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Definition(NamedTuple):
 
 
 def split_parts(definition: Definition) -> list[Definition]:
-    """The parts of an action, which lines that begin with three dashes separate."""
+    """Return the parts of an action, which lines that begin with three dashes separate."""
     parts, start = [], 0
     lines = definition.text.split("\n")
     for at, line in enumerate([*lines, _DASHES]):
@@ -53,7 +53,9 @@ def split_parts(definition: Definition) -> list[Definition]:
 
 
 def split_service(definition: Definition) -> tuple[Definition, Definition]:
-    """Request and response of a service. Only the first line of dashes parts them; more of them are as if empty."""
+    """Return request and response of a service. Only the first line of dashes separates them; further ones are
+    ignored.
+    """
     request, *rest = split_parts(definition)
     text = "\n\n".join(part.text for part in rest)
     first_line = rest[0].first_line if rest else definition.first_line
@@ -61,14 +63,14 @@ def split_service(definition: Definition) -> tuple[Definition, Definition]:
 
 
 def messages_of(actions: Mapping[str, Definition], mistakes: Mistakes | None = None) -> dict[str, Definition]:
-    """The messages of all actions of a package.
+    """Return the messages of all actions of a package.
 
     Args:
         actions: definitions by the action's bare name.
-        mistakes: takes an action that has not exactly three parts; None raises the first.
+        mistakes: receives an action that does not have exactly three parts; None raises the first error.
 
     Raises:
-        UsageError: the first mistake.
+        UsageError: the first error.
     """
     found: dict[str, Definition] = {}
     for name, action in actions.items():
@@ -101,13 +103,13 @@ Definitions = Mapping[str, Definition]
 
 
 class Source(Protocol):
-    """Something that has definitions."""
+    """A source of definitions."""
 
     def packages(self) -> Iterable[str]:
-        """Names of the packages it has."""
+        """Return the names of its packages."""
 
     def package(self, name: str, kind: Kind) -> Definitions | None:
-        """Messages or services of a package; None when it has none there."""
+        """Return messages or services of a package; None if it has none."""
 
 
 class Shipped:
@@ -117,11 +119,11 @@ class Shipped:
         self._folder = folder
 
     def packages(self) -> list[str]:
-        """Names of the packages, sorted."""
+        """Return the names of the packages, sorted."""
         return sorted({path.stem for path in self._folder.iterdir() if path.suffix in _SUFFIXES})
 
     def package(self, name: str, kind: Kind) -> Definitions | None:
-        """Messages or services of a package."""
+        """Return messages or services of a package."""
         found = self._read(name, kind)
         if kind == "msg":
             found |= messages_of(self._read(name, "action"))
@@ -136,8 +138,8 @@ class OnDisk:
     """Packages on disk: `msg/*.msg`, `srv/*.srv` and `action/*.action` in their folders.
 
     Args:
-        packages: where they are.
-        mistakes: takes actions that are wrong; None raises the first.
+        packages: the packages.
+        mistakes: receives actions that are wrong; None raises the first error.
     """
 
     def __init__(self, packages: Packages, mistakes: Mistakes | None = None) -> None:
@@ -145,28 +147,28 @@ class OnDisk:
         self._mistakes = mistakes
 
     def packages(self) -> list[str]:
-        """Names of the packages that have definitions, sorted."""
+        """Return the names of the packages that have definitions, sorted."""
         names = self._packages.names()
         return [name for name in names if any(map(has_definitions, self._packages.folders(name)))]
 
     def package(self, name: str, kind: Kind) -> Definitions | None:
-        """Messages or services of a package, from its first folder that has some."""
+        """Return messages or services of a package, from its first folder that has some."""
         found = (_in_folder(folder, kind, self._mistakes) for folder in self._packages.folders(name))
         return next(filter(None, found), None)
 
 
 class Texts:
-    """Message definitions at hand, by full name; e.g. those of a connection header or a bag."""
+    """Given message definitions, by full name; e.g. from a connection header or a bag."""
 
     def __init__(self, definitions: Definitions) -> None:
         self._definitions = dict(definitions)
 
     def packages(self) -> list[str]:
-        """Names of the packages, sorted."""
+        """Return the names of the packages, sorted."""
         return sorted({name.partition("/")[0] for name in self._definitions})
 
     def package(self, name: str, kind: Kind) -> Definitions | None:
-        """Messages of a package."""
+        """Return messages of a package."""
         of_package = (key for key in self._definitions if kind == "msg" and key.startswith(name + "/"))
         return {key.partition("/")[2]: self._definitions[key] for key in of_package} or None
 
@@ -181,7 +183,7 @@ def _files(folder: Path, kind: str) -> dict[str, Definition]:
 
 
 def _read(path: Path) -> Definition:
-    # Only comments can hold anything but ASCII, and an old file's are in some other encoding.
+    # Only comments can contain characters other than ASCII, and in old files they have various encodings.
     return Definition(text_limited(path, DEFINITION_BYTES, "replace"), str(path))
 
 

@@ -3,7 +3,7 @@
 Neighbouring fixed-size fields, across nested messages, go through one precompiled struct, together with one string or
 array of variable length, for which there is a struct per length. At most one array of numbers enters a struct, so that
 a fixed array of the wrong length is always noticed. The wire format is ROS 1's serialization: little-endian, packed, a
-uint32 count before whatever varies in length.
+uint32 count before each item of variable length.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ _OCTETS = ("uint8", "char")
 
 
 def pack_source(spec: Spec, lookup: Callable[[str], Spec], names: Namespace, *, with_numpy: bool = False) -> list[str]:
-    """Source of the function that encodes messages of one type.
+    """Return the source of the function that encodes messages of one type.
 
     Args:
         spec: the type.
         lookup: specs of nested types.
-        names: receives what the source refers to; `_write_again`, which does what genpy does with a message that the
-            fast code cannot write, must be added by the caller.
+        names: receives the names in the source. The caller must add `_write_again`, which handles a message that the
+            fast code cannot write as genpy does.
         with_numpy: write `_pack_numpy(self, numpy)`, where number arrays are numpy's.
     """
     out = CodeLines(depth=2)
@@ -79,12 +79,12 @@ class _Encoder:
         self.has_star = self.has_star or value.startswith("*")
 
     def part(self, part: str) -> None:
-        """Add a ready piece of bytes, or "*pieces"."""
+        """Add bytes, or "*pieces"."""
         self.flush()
         self.parts.append(part)
 
     def result(self) -> str:
-        """Expression for the whole."""
+        """Return the expression for the whole."""
         self.flush()
         if not self.parts:
             return 'b""'
@@ -159,7 +159,7 @@ class _Encoder:
             self.has_star = True
 
     def messages(self, field: Field, values: str) -> None:
-        """An array of times, durations or messages."""
+        """Encode an array of times, durations or messages."""
         if field.length is None:
             self.fixed("I", f"len({values})")
         else:

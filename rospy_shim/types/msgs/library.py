@@ -1,7 +1,7 @@
-"""A `Library` turns definitions into specs, fingerprints and classes, each made once, when it is first asked for.
+"""A `Library` turns definitions into specs, fingerprints and classes, each made once, at first use.
 
-It looks through its sources in order. The library of the shipped packages is `shipped()`; that of a node stands on it
-and adds the packages that the node brings along.
+It searches its sources in order. The library of the shipped packages is `shipped()`. A node's library extends it by the
+packages that the node brings along.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from rospy_shim.types.msgs.spec import BUILTINS, PRIMITIVES, Spec, full_text, md
 
 _PARTS = ("Request", "Response")
 _KINDS: tuple[Kind, ...] = ("msg", "srv")
-_OBJECT = 20  # how many values a message or a text in an array counts as
+_OBJECT = 20  # weight of a message or a text in an array, in values
 
 
 class _Size(NamedTuple):
-    """How much a type is: types inside each other, fields without those in arrays, values in arrays of fixed length."""
+    """The size of a type: nesting depth, fields without those in arrays, values in arrays of fixed length."""
 
     depth: int
     fields: int
@@ -39,7 +39,7 @@ class _Size(NamedTuple):
 
 
 class Library:
-    """Message types by full name, e.g. "std_msgs/String"; everything is made once, when first asked for."""
+    """Message types by full name, e.g. "std_msgs/String"; everything is made once, at first use."""
 
     def __init__(
         self,
@@ -52,11 +52,11 @@ class Library:
         """Make a library.
 
         Args:
-            sources: where definitions are looked for, in order.
+            sources: sources of definitions, in order.
             restore: see `classes.build_class`.
             module: value of the classes' `__module__`; None for ROS's "package.msg._Name".
-            base: library of all packages that the sources lack. Its definitions are used as they are, except for
-                types in which one from the sources is nested; classes are made anew, for a program may change them.
+            base: library of all packages that the sources lack. Its definitions are used unchanged, except for types in
+                which one from the sources is nested; classes are made anew, because a program may change them.
         """
         self._sources, self._restore, self._module = tuple(sources), restore, module
         self._base = base
@@ -71,25 +71,25 @@ class Library:
         self._sizes: dict[str, _Size] = {}
 
     def packages(self) -> list[str]:
-        """Names of all packages, sorted."""
+        """Return the names of all packages, sorted."""
         below = self._base.packages() if self._base is not None else []
         return sorted({*below, *(name for source in self._sources for name in source.packages())})
 
     def names(self, package: str, kind: Kind = "msg") -> list[str] | None:
-        """Names of the messages or services of a package, sorted; None when there are none."""
+        """Return the names of the messages or services of a package, sorted; None if there are none."""
         found = self._package(package, kind)
         return None if found is None else sorted(found)
 
     def has(self, full_name: str, kind: Kind = "msg") -> bool:
-        """Whether a message or service type is known."""
+        """Return True if a message or service type is known."""
         package, _, name = full_name.partition("/")
         return name in (self._package(package, kind) or {})
 
     def text(self, full_name: str, kind: Kind = "msg") -> str:
-        """The definition of a message or service as it was written.
+        """Return the definition of a message or service as it was written.
 
         Raises:
-            UsageError: no such type.
+            UsageError: there is no such type.
         """
         package, _, name = full_name.partition("/")
         found = (self._package(package, kind) or {}).get(name)
@@ -98,10 +98,10 @@ class Library:
         return found.text
 
     def spec(self, full_name: str) -> Spec:
-        """The parsed definition of a type.
+        """Return the parsed definition of a type.
 
         Raises:
-            UsageError: no such type, or its text has a mistake, or it contains itself.
+            UsageError: there is no such type, or its text has an error, or it contains itself.
         """
         if self._base is not None and not self._is_own(full_name):
             return self._base.spec(full_name)
@@ -114,7 +114,7 @@ class Library:
         return found
 
     def md5sum(self, full_name: str) -> str:
-        """md5sum of a type."""
+        """Return the md5sum of a type."""
         if self._base is not None and not self._is_own(full_name):
             return self._base.md5sum(full_name)
         found = self._md5sums.get(full_name)
@@ -123,7 +123,7 @@ class Library:
         return found
 
     def full_text(self, full_name: str) -> str:
-        """Definition of a type and of all types in it."""
+        """Return the definition of a type and of all types in it."""
         if self._base is not None and not self._is_own(full_name):
             return self._base.full_text(full_name)
         found = self._full_texts.get(full_name)
@@ -132,10 +132,10 @@ class Library:
         return found
 
     def message_class(self, full_name: str) -> MessageClass:
-        """Class of a type.
+        """Return the class of a type.
 
         Raises:
-            UsageError: as `spec`.
+            UsageError: as for `spec`.
         """
         found = self._classes.get(full_name)
         if found is None:
@@ -144,10 +144,10 @@ class Library:
         return found
 
     def service_class(self, full_name: str) -> ServiceClass:
-        """Class of a service, with its request and response classes.
+        """Return the class of a service, with its request and response classes.
 
         Raises:
-            UsageError: no such service, or its text has a mistake.
+            UsageError: there is no such service, or its text has an error.
         """
         found = self._services.get(full_name)
         if found is None:
@@ -167,7 +167,9 @@ class Library:
         return f"{package}.srv._{name.removesuffix('Request').removesuffix('Response')}"
 
     def _is_own(self, full_name: str) -> bool:
-        """Whether a type is made here: it, or one nested in it, is of a package that the base does not know so."""
+        """Return True if a type is made here: it, or a type nested in it, is from a package that the base lacks or
+        has otherwise.
+        """
         if self._base is None:
             return True
         known = self._own.get(full_name)
@@ -201,7 +203,7 @@ class Library:
         raise UsageError(f"unknown message type {full_name!r}; check that its package is on ROS_PACKAGE_PATH")
 
     def _open_nested(self, found: Spec) -> None:
-        """Parse the nested types as well, so that a type with a gap in it is never half usable."""
+        """Parse the nested types as well, so that a type with a missing part cannot be used at all."""
         self._opening.append(found.full_name)
         try:
             if len(self._opening) > MESSAGE_DEPTH:
@@ -233,7 +235,7 @@ class Library:
                 raise UsageError(problem, file=found.file, line=found.fields[0].line)
 
     def _sum(self, spec: Spec) -> _Size:
-        """The size of a type; its nested types are held to the limits already."""
+        """Return the size of a type; its nested types have been checked against the limits already."""
         depth, fields, values = 0, 0, 0
         for field in spec.fields:
             inner = _Size(0, 1, 1) if field.base in BUILTINS else self._size(field.base)
@@ -250,10 +252,10 @@ class Library:
 
 
 def from_full_text(full_name: str, text: str) -> Library:
-    """A library of the types in a full text (`_full_text`, a connection header's message_definition).
+    """Make a library of the types in a full text (`_full_text`, a connection header's message_definition).
 
     Args:
-        full_name: name of the first type; the others name themselves.
+        full_name: name of the first type; the others have their names in the text.
         text: the full text.
     """
     definitions = {}
@@ -263,20 +265,20 @@ def from_full_text(full_name: str, text: str) -> Library:
 
 
 def restore_message(full_name: str) -> Message:
-    """An empty message of a shipped type, to be filled by pickle or copy."""
+    """Make an empty message of a shipped type, to be filled by pickle or copy."""
     cls = shipped().message_class(full_name)
     return cls.__new__(cls)
 
 
 @cache
 def shipped() -> Library:
-    """The library of the packages that come with cfepy; one per process, because its classes hold no state."""
+    """Return the library of the packages that come with cfepy; one per process, because its classes hold no state."""
     return Library([Shipped()], restore_message)
 
 
 @cache
 def library_of(full_name: str, definition: str) -> Library:
-    """The library that has a type as its users have it.
+    """Return the library that has a type as its users have it.
 
     Args:
         full_name: the type, e.g. "rover_msgs/Drive".

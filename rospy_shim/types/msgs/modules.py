@@ -34,8 +34,8 @@ class MessageModule(ModuleType):
 
         Args:
             name: its dotted name.
-            makers: what makes each of its classes.
-            parts: what makes each of its submodules.
+            makers: functions that make its classes.
+            parts: functions that make its submodules.
         """
         super().__init__(name)
         self.__all__ = list(makers)
@@ -43,15 +43,15 @@ class MessageModule(ModuleType):
         self._cfepy_makers = {**makers, **parts}
 
     def hand_on(self, load: Callable[[str], ModuleType]) -> None:
-        """Have a star import bring what it brings in ROS: also the modules that generated sources import.
+        """Let a star import bring the same names as in ROS, including the modules that generated sources import.
 
         Args:
-            load: gives the node's module of a name.
+            load: returns the node's module of a name.
         """
         makers = self._cfepy_makers
         makers.update({name: partial(load, name) for name in _IMPORTED})
         makers["python3"] = lambda: True
-        del self.__all__  # what it is can be said once the classes are there, which a star import makes
+        del self.__all__  # it can be computed once the classes exist, which a star import makes
         makers["__all__"] = lambda: self._star_names(load)
 
     def _star_names(self, load: Callable[[str], ModuleType]) -> list[str]:
@@ -73,20 +73,20 @@ class MessageModule(ModuleType):
 
 
 def make_module(name: str, library: Library | None = None) -> ModuleType | None:
-    """A fresh module of a ROS package or of genpy; or one of the modules that hold the codec, which all share.
+    """Make a fresh module of a ROS package or of genpy, or return one of the shared modules that hold the codec.
 
-    The latter (`rospy_shim.types.msgs`, `rospy_shim.types.genpy` and below) must be the same inside a node and outside:
-    a pickled message names a function there. So they are loaded by the name that the node asks for.
+    The latter (`rospy_shim.types.msgs`, `rospy_shim.types.genpy` and below) must be the same inside a node and outside,
+    because a pickled message names a function there. So they are loaded by the name that the node asks for.
 
     Args:
         name: dotted name as in an import statement.
-        library: where message types come from; the shipped ones by default.
+        library: library of message types; the shipped ones by default.
 
     Returns:
-        the module, or None when the name is none of these.
+        The module, or None if the name is none of these.
 
     Raises:
-        UsageError: a message definition in it has a mistake (when its class is first used).
+        UsageError: a message definition in it has an error (when its class is first used).
     """
     library = library or shipped()
     package, *rest = name.split(".")
@@ -159,7 +159,7 @@ def _genpy_contents(name: str, library: Library) -> dict[str, Any] | None:
         return times
     if name == "genpy":
         return {each: getattr(genpy, each) for each in genpy.__all__} | {"__all__": list(genpy.__all__)}
-    if name == "genpy.classes":  # what genpy.dynamic stands on
+    if name == "genpy.classes":  # used by genpy.dynamic
         return {"classes_of_text": generate_dynamic}
     if name != "genpy.message":
         return None
@@ -182,13 +182,13 @@ def _genpy_contents(name: str, library: Library) -> dict[str, Any] | None:
 
 
 def isstring(s: object) -> bool:
-    """Whether something is a str."""
+    """Return True if a value is a str."""
     return isinstance(s, str)
 
 
 def _finder(library: Library, kind: Kind) -> Callable[..., Any]:
     def find(type_name: str, reload_on_error: bool = False) -> Any:
-        """Class of a message or service type, or None when there is none such.
+        """Return the class of a message or service type, or None if there is no such type.
 
         Raises:
             ValueError: a name without a package.
@@ -209,14 +209,17 @@ def _finder(library: Library, kind: Kind) -> Callable[..., Any]:
 
 
 def generate_dynamic(core_type: str, msg_cat: str) -> dict[str, Any]:
-    """Classes of a type and of all types in it, from a full text (genpy.dynamic).
+    """Make the classes of a type and of all types in it, from a full text (genpy.dynamic).
 
     Args:
         core_type: name of the first type in the text.
         msg_cat: the full text, as in `_full_text`, a connection header or a bag.
 
+    Returns:
+        The classes by full name.
+
     Raises:
-        UsageError: the text has a mistake or lacks a type.
+        UsageError: the text has an error or lacks a type.
     """
     library = from_full_text(core_type, msg_cat)
     names = [f"{package}/{name}" for package in library.packages() for name in library.names(package) or ()]

@@ -1,7 +1,7 @@
-"""What generated codec functions stand on: their globals under short names, their source lines, and what they call.
+"""The environment of generated codec functions: their globals under short names, their source lines, and helpers.
 
-Structs are cached by length, encoded lists of strings at the place that held them last. Everything cached is a pure
-result, so a cache never changes what a message encodes or decodes to.
+Structs are cached by length, encoded lists of strings at the place that held them last. Every cached value is a pure
+result, so a cache never changes the encoding or decoding of a message.
 """
 
 from __future__ import annotations
@@ -62,12 +62,12 @@ def write_strings(site: StringSite, values: Any, length: int | None) -> bytes:
     """Encode a list of strings and remember it at its site.
 
     Args:
-        site: the place's memory.
+        site: the cache of the place.
         values: the strings.
-        length: of a fixed array, which has no count on the wire; else None.
+        length: length of a fixed array, which has no count on the wire; otherwise None.
 
     Raises:
-        TypeError: a fixed array of another length, or an item that is no string.
+        TypeError: a fixed array of another length, or an item that is not a string.
     """
     parts = [] if length is not None else [_COUNT.pack(len(values))]
     if length is not None and len(values) != length:
@@ -88,7 +88,7 @@ def read_strings(site: StringSite, data: bytes, start: int, length: int | None) 
     The encoding delimits itself, so bytes that start with the remembered ones decode to the remembered list.
 
     Returns:
-        the strings and the offset behind them.
+        The strings and the offset after them.
     """
     at, count = start, length
     if count is None:
@@ -99,14 +99,14 @@ def read_strings(site: StringSite, data: bytes, start: int, length: int | None) 
         (size,) = _COUNT.unpack_from(data, at)
         at += 4 + size
         values.append(data[at - size : at].decode("utf-8", "replace"))
-    # A last string that is cut off decodes to what is there, as in genpy; such a form is not complete.
+    # A truncated last string decodes to its available bytes, as in genpy; such a form is not complete.
     if at <= len(data) and _worth_keeping(values, data[start:at]):
         site[:] = values.copy(), data[start:at]
     return values, at
 
 
 def read_times(kind: type[Time] | type[Duration], code: str, data: bytes, at: int, count: int) -> list[Any]:
-    """Decode an array of times or durations, which are left as they came."""
+    """Decode an array of times or durations, without normalising them."""
     flat = Struct(f"<{2 * count}{code}").unpack_from(data, at)
     values = []
     for secs, nsecs in zip(flat[::2], flat[1::2], strict=True):
@@ -137,27 +137,29 @@ class Namespace:
         self._names: dict[tuple[str, ...], str] = {}
 
     def pack(self, code: str) -> str:
-        """Name of the `pack` of a format."""
+        """Return the name of the `pack` of a format."""
         return self._named(("pack", code), lambda: struct.Struct("<" + code).pack)
 
     def unpack(self, code: str) -> str:
-        """Name of the `unpack_from` of a format."""
+        """Return the name of the `unpack_from` of a format."""
         return self._named(("unpack", code), lambda: struct.Struct("<" + code).unpack_from)
 
     def packers(self, before: str, after: str) -> str:
-        """Name of a `Packers`."""
+        """Return the name of a `Packers`."""
         return self._named(("packers", before, after), lambda: Packers(before, after))
 
     def unpackers(self, code: str) -> str:
-        """Name of an `Unpackers`."""
+        """Return the name of an `Unpackers`."""
         return self._named(("unpackers", code), lambda: Unpackers(code))
 
     def cls(self, full_name: str, cls: type) -> str:
-        """Name of a message class."""
+        """Return the name of a message class."""
         return self._named(("class", full_name), lambda: cls)
 
     def strings_site(self, length: int | None) -> str:
-        """Name of a new memory for a list of strings; it starts with the default value, which is a true entry too."""
+        """Return the name of a new cache for a list of strings; it starts with the default value, which is a valid
+        entry too.
+        """
         site = [[""] * length, bytes(4 * length)] if length is not None else [[], bytes(4)]
         return self._named(("site", str(len(self._names))), lambda: site)
 
@@ -178,7 +180,7 @@ class Namespace:
 
 @cache
 def _code(source: str, file: str) -> CodeType:
-    """Code of a function; every node of a mission has message classes of its own, made of the same code."""
+    """Return the code of a function; every node of a mission has its own message classes, made from the same code."""
     return compile(source, file, "exec")
 
 
@@ -195,6 +197,6 @@ class CodeLines:
         self.lines.append("    " * self.depth + line)
 
     def local(self, prefix: str = "v") -> str:
-        """A name not used before in this function."""
+        """Return a name not used before in this function."""
         self._count += 1
         return f"{prefix}{self._count}"

@@ -1,8 +1,8 @@
-"""ROS packages on disk: which there are and where they lie, by the rules of rospkg and catkin.
+"""ROS packages on disk: their names and folders, by the rules of rospkg and catkin.
 
 A package is a folder with a package.xml (or rosbuild's manifest.xml), which also names it. Near a node and in `share`
-folders a folder with definitions in `msg`, `srv` or `action` will do; its own name is the package's then. This is the
-one place that knows the rules; code that reads definitions or looks packages up by name calls it.
+folders, a folder with definitions in `msg`, `srv` or `action` also counts; its own name is the package's then. Only
+this module knows the rules; code that reads definitions or looks packages up by name calls it.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ _SHOWN = 100  # characters of a name that is wrong
 class Packages:
     """The packages that a program can see, each by its first place.
 
-    They are looked for when the first is asked for: near the program, then along ROS_PACKAGE_PATH, then in the share
-    folders of CMAKE_PREFIX_PATH.
+    They are searched at first use: near the program, then along ROS_PACKAGE_PATH, then in the share folders of
+    CMAKE_PREFIX_PATH.
 
     Args:
-        script: the program's file; None leaves out what is near it.
-        environ: its environment, read when the first package is asked for.
-        resolve: makes an absolute path of one in the environment.
+        script: the program's file; None leaves out packages near it.
+        environ: its environment, read at first use.
+        resolve: makes a path from the environment absolute.
     """
 
     def __init__(
@@ -49,24 +49,26 @@ class Packages:
         self._resolve = resolve
 
     def names(self) -> list[str]:
-        """Names of all packages, sorted."""
+        """Return the names of all packages, sorted."""
         return sorted(self._found)
 
     def path(self, name: str) -> Path | None:
-        """Folder of a package (rospkg.RosPack.get_path), or None when there is none such."""
+        """Return the folder of a package (rospkg.RosPack.get_path), or None if there is none."""
         folders = self.folders(name)
         return folders[0] if folders else None
 
     def folders(self, name: str) -> list[Path]:
-        """All folders of a package, the one that counts first; a built one may have a `share` folder as well."""
+        """Return all folders of a package by precedence; a built package may have a `share` folder as well."""
         return self._found.get(name, [])
 
     def package_of(self, file: Path) -> str | None:
-        """Name of the package that a file belongs to (rospkg.get_package_name)."""
+        """Return the name of the package that a file belongs to (rospkg.get_package_name)."""
         return next((name_of(folder) for folder in file.absolute().parents if has_manifest(folder)), None)
 
     def code_folders(self) -> list[Path]:
-        """Folders with Python code that packages offer under their own names, as catkin_python_setup has it."""
+        """Return the folders with Python code that packages offer under their own names, as with
+        catkin_python_setup.
+        """
         found = [folders[0] / inner for folders in self._found.values() for inner in _code_roots(folders[0])]
         return [folder for folder in found if any(folder.glob("*/__init__.py"))]
 
@@ -90,7 +92,7 @@ class Packages:
 
 
 def _code_roots(package: Path) -> list[str]:
-    """Where a package has the code that it installs: `src`, or what its setup.py says of all its Python packages."""
+    """Return the folders of the code that a package installs: `src`, or the one in its setup.py."""
     try:
         match = _PACKAGE_DIR.search(text_limited(package / "setup.py", PYTHON_BYTES, "replace"))
     except (OSError, UsageError):
@@ -99,9 +101,10 @@ def _code_roots(package: Path) -> list[str]:
 
 
 def near(script: Path) -> Iterator[Path]:
-    """Packages near a program: those it lies in and their neighbours, then the folders next to the program itself.
+    """Yield packages near a program: those it lies in and their neighbours, then the folders next to the program
+    itself.
 
-    At last those of the catkin workspace, if the program's package lies in the `src` of one.
+    Last come the packages of the catkin workspace, if the program's package lies in the `src` of one.
     """
     homes = [folder for folder in script.absolute().parents if has_manifest(folder)]
     for folder in homes:
@@ -116,7 +119,7 @@ def near(script: Path) -> Iterator[Path]:
 
 
 def crawl(root: Path) -> Iterator[Path]:
-    """Packages in a folder of ROS_PACKAGE_PATH, at any depth; none inside another."""
+    """Yield packages in a folder of ROS_PACKAGE_PATH, at any depth; none inside another."""
     if has_manifest(root):
         yield root
     elif not any(os.path.exists(root / fence) for fence in _FENCES):
@@ -125,24 +128,26 @@ def crawl(root: Path) -> Iterator[Path]:
 
 
 def name_of(folder: Path) -> str:
-    """What a package's manifest calls it; without one, with rosbuild's, or with no legal name, the folder's name."""
+    """Return the name in a package's manifest; without one, with rosbuild's, or with an illegal name, the folder's
+    name.
+    """
     name = _name_in(folder / _MANIFESTS[0])
     return name if name is not None and is_package_name(name) else folder.name
 
 
 def is_package_name(name: str) -> bool:
-    """Whether a package may have a name, as catkin has it (REP 144 asks for small letters besides)."""
+    """Return True if a name is legal for a package, by catkin's rule (REP 144 also asks for small letters)."""
     return _LEGAL.fullmatch(name) is not None
 
 
 def check_package_name(folder: Path) -> None:
-    """Check what a package's manifest calls it.
+    """Check the name in a package's manifest.
 
     Args:
-        folder: of the package.
+        folder: folder of the package.
 
     Raises:
-        UsageError: no package may have the name.
+        UsageError: the name is not legal for a package.
     """
     file = folder / _MANIFESTS[0]
     name = _name_in(file)
@@ -152,7 +157,7 @@ def check_package_name(folder: Path) -> None:
 
 
 def _name_in(manifest: Path) -> str | None:
-    """The name in a manifest; None when it cannot be read, or has none."""
+    """Return the name in a manifest; None if it cannot be read, or has none."""
     try:
         match = _NAME.search(text_limited(manifest, XML_BYTES, "replace"))
     except (OSError, UsageError):
@@ -161,24 +166,24 @@ def _name_in(manifest: Path) -> str | None:
 
 
 def has_manifest(folder: Path) -> bool:
-    """Whether a folder says that it is a package."""
+    """Return True if a folder has a manifest."""
     return any(os.path.isfile(folder / manifest) for manifest in _MANIFESTS)
 
 
 def has_definitions(folder: Path) -> bool:
-    """Whether a folder has .msg files in `msg`, or .srv or .action files where they belong."""
+    """Return True if a folder has .msg files in `msg`, or .srv or .action files in their folders."""
     return any(True for kind in _DEFINITIONS for _ in (folder / kind).glob(f"*.{kind}"))
 
 
 def is_package(folder: Path) -> bool:
-    """Whether a folder is a package where none needs a manifest."""
+    """Return True if a folder is a package, where a manifest is not required."""
     return has_manifest(folder) or has_definitions(folder)
 
 
 def _subfolders(folder: Path) -> list[Path]:
-    """Folders in a folder that are not hidden, sorted; none when it cannot be read."""
+    """Return the folders in a folder that are not hidden, sorted; empty if it cannot be read."""
     try:
-        with os.scandir(folder) as found:  # tells folders from files without a look at each
+        with os.scandir(folder) as found:  # distinguishes folders from files without a stat of each
             return [folder / name for name in sorted(each.name for each in found if _is_subfolder(each))]
     except OSError:
         return []
@@ -188,4 +193,4 @@ def _is_subfolder(entry: os.DirEntry[str]) -> bool:
     try:
         return not entry.name.startswith(".") and entry.is_dir()
     except OSError:
-        return False  # a link that leads round in a circle
+        return False  # a circular link

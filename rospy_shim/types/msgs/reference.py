@@ -1,8 +1,8 @@
 """The plain encoder: one call after another, in the order and with the pieces of the code that genpy generates.
 
-It is what the fast code of `encoder` must agree with, byte for byte. Where that code fails, this one runs again and
-does what genpy does: it leaves in the buffer what genpy has written by then, and raises the same exception. Never on
-the hot path.
+The fast code of `encoder` must agree with it, byte for byte. If that code fails, this one runs again and does the same
+as genpy: it leaves the bytes in the buffer that genpy has written by then, and raises the same exception. Never on the
+hot path.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _PARTS = {"time": "uint32", "duration": "int32"}
 
 
 class FlatField(NamedTuple):
-    """A field, and by which attributes it is reached."""
+    """A field, and the attributes that lead to it."""
 
     path: tuple[str, ...]
     base: str
@@ -30,12 +30,12 @@ class FlatField(NamedTuple):
 
     @property
     def is_simple(self) -> bool:
-        """Whether one letter of `struct` stands for it."""
+        """True if one letter of `struct` stands for it."""
         return self.base in PRIMITIVES and not self.is_array
 
 
 def leaves_of(base: str, lookup: Lookup) -> list[FlatField]:
-    """The fields of a message type, a time or a duration."""
+    """Return the fields of a message type, a time or a duration."""
     part = _PARTS.get(base)
     if part is not None:
         return [FlatField(("secs",), part), FlatField(("nsecs",), part)]
@@ -43,7 +43,7 @@ def leaves_of(base: str, lookup: Lookup) -> list[FlatField]:
 
 
 def flat(spec: Spec, lookup: Lookup, prefix: tuple[str, ...] = ()) -> Iterator[FlatField]:
-    """The fields of a message with those of the single messages in it, which genpy writes as if they were its own."""
+    """Yield the fields of a message including those of single messages in it, which genpy writes in the same way."""
     for field in spec.fields:
         leaf = _leaf(field, prefix)
         if leaf.is_array or leaf.base in PRIMITIVES or leaf.base == "string":
@@ -59,7 +59,7 @@ def _leaf(field: Field, prefix: tuple[str, ...]) -> FlatField:
 
 
 def runs(leaves: Sequence[FlatField]) -> Iterator[list[FlatField]]:
-    """The fields in pieces: simple neighbours together, each other one alone."""
+    """Yield the fields in groups: simple neighbours together, each other one alone."""
     run: list[FlatField] = []
     for leaf in leaves:
         if run and (not leaf.is_simple or len(run) == LONGEST_RUN):
@@ -74,12 +74,12 @@ def runs(leaves: Sequence[FlatField]) -> Iterator[list[FlatField]]:
 
 
 def codes(run: Sequence[FlatField]) -> str:
-    """The format of simple neighbours."""
+    """Return the format of simple neighbours."""
     return "<" + "".join(PRIMITIVES[leaf.base] for leaf in run)
 
 
 def reach(owner: Any, path: Sequence[str]) -> Any:
-    """What attributes lead to."""
+    """Return the object at a path of attributes."""
     for name in path:
         owner = getattr(owner, name)
     return owner
@@ -93,18 +93,18 @@ def encode(spec: Spec, lookup: Lookup, message: Any) -> bytes:
 
 
 def write(spec: Spec, lookup: Lookup, message: Any, buff: BinaryIO, numpy: Any = None) -> None:
-    """Encode a message piece by piece (`serialize`, `serialize_numpy` of a class that genpy generated).
+    """Encode a message in groups of fields (`serialize`, `serialize_numpy` of a class that genpy generated).
 
     Args:
         spec: its type.
         lookup: specs of nested types.
         message: any object with the fields as attributes, and `_check_types`.
-        buff: where to; after an error it holds the pieces before.
+        buff: the output; after an error it holds the preceding groups.
         numpy: the module for number arrays of numpy's, None for others.
 
     Raises:
         SerializationError: a field does not fit.
-        AttributeError, ValueError, OverflowError: what genpy lets through.
+        AttributeError, ValueError, OverflowError: errors that genpy passes on.
     """
     writer = _Writer(lookup, message, buff, numpy is not None)
     failure: Exception
@@ -119,14 +119,14 @@ def write(spec: Spec, lookup: Lookup, message: Any, buff: BinaryIO, numpy: Any =
 
 
 class _Writer:
-    """Writes one message; `last` is what genpy's code has in its variable `_x`, which its error texts show."""
+    """Writes one message; `last` is the variable `_x` of genpy's code, which its error texts show."""
 
     def __init__(self, lookup: Lookup, message: Any, buff: BinaryIO, with_numpy: bool) -> None:
         self._lookup, self._message, self._buff, self._with_numpy = lookup, message, buff, with_numpy
         self.last = message
 
     def level(self, leaves: Sequence[FlatField], owner: Any) -> None:
-        """The fields of one object."""
+        """Write the fields of one object."""
         for run in runs(leaves):
             leaf = run[0]
             if leaf.is_simple:
@@ -197,11 +197,11 @@ class _Writer:
 
 
 def raw_array(value: Any) -> bytes:
-    """The bytes of a numpy array or number as they are: genpy looks neither at its dtype nor at its length.
+    """Return the bytes of a numpy array or number unchanged: genpy checks neither its dtype nor its length.
 
     Raises:
         AttributeError: it is neither.
     """
-    # What genpy calls is `tostring`, which NumPy 2 has no more and which did the same.
+    # genpy calls `tostring`, which NumPy 2 no longer has and which did the same.
     octets: bytes = value.tobytes() if hasattr(value, "dtype") else value.tostring()
     return octets

@@ -1,7 +1,8 @@
 """The plain decoder: one slice after another, in the order and with the pieces of the code that genpy generates.
 
-The mirror of `reference`: it reads what the fast code of `decoder` could not, so that as much is in the message as with
-genpy, and the same exception is raised. It also takes all that is no `bytes`. Never on the hot path.
+The mirror of `reference`: it reads data that the fast code of `decoder` could not read, so that the message holds as
+much as with genpy, and the same exception is raised. It also handles all data that is not `bytes`. Never on the hot
+path.
 """
 
 from __future__ import annotations
@@ -21,22 +22,22 @@ _TIMES: dict[str, type] = {"time": Time, "duration": Duration}
 
 
 def read(spec: Spec, lookup: Lookup, class_of: ClassOf, message: Any, data: Any, numpy: Any = None) -> Any:
-    """Fill a message piece by piece (`deserialize`, `deserialize_numpy` of a class that genpy generated).
+    """Fill a message in groups of fields (`deserialize`, `deserialize_numpy` of a class that genpy generated).
 
     Args:
         spec: its type.
         lookup: specs of nested types.
         class_of: classes of nested types.
-        message: the message; after an error it holds what was read before.
-        data: bytes, or what slices give such of.
+        message: the message; after an error it holds the values read before.
+        data: bytes, or an object whose slices are bytes.
         numpy: the module for number arrays of numpy's, None for tuples.
 
     Returns:
-        the message.
+        The message.
 
     Raises:
         DeserializationError: the data end too early, or have a count that they cannot fill (`bounds`).
-        TypeError, AttributeError, ValueError: they are no bytes, or what else genpy lets through.
+        TypeError, AttributeError, ValueError: they are not bytes, or another error that genpy passes on.
     """
     reader = _Reader(lookup, class_of, data, numpy)
     try:
@@ -63,11 +64,11 @@ class _Reader:
         self._empty = MOST_EMPTY
 
     def make(self, base: str) -> Any:
-        """A new object of a type."""
+        """Make a new object of a type."""
         return (_TIMES.get(base) or self._class_of(base))()
 
     def level(self, leaves: Sequence[FlatField], owner: Any) -> None:
-        """The fields of one object."""
+        """Read the fields of one object."""
         for run in runs(leaves):
             leaf = run[0]
             if leaf.is_simple:
@@ -96,7 +97,7 @@ class _Reader:
             setattr(reach(owner, leaf.path[:-1]), leaf.path[-1], bool(value) if leaf.base == "bool" else value)
 
     def _value(self, leaf: FlatField) -> Any:
-        """A string, octets or numbers."""
+        """Read a string, octets or numbers."""
         length = self._count() if leaf.length is None else leaf.length
         if not leaf.is_array:
             return self._take(length).decode("utf-8", "replace")
@@ -111,7 +112,7 @@ class _Reader:
         return list(map(bool, values)) if leaf.base == "bool" else values
 
     def _items(self, leaf: FlatField, holder: Any, name: str) -> None:
-        """An array of strings, times or messages."""
+        """Read an array of strings, times or messages."""
         if leaf.length is None:
             length = self._count()
             self._bound(leaf.base, length)

@@ -1,9 +1,9 @@
-"""ROS .msg text to a `Spec`: fields, constants and where they came from, by genmsg's rules; its md5sum and full text.
+"""ROS .msg text to a `Spec`: fields, constants and their places, by genmsg's rules; its md5sum and full text.
 
-A bare type name belongs to the message's own package, except that `Header` is std_msgs/Header; a string constant takes
-all that stands right of its `=`, comments included. A mistake is a UsageError with file and line. Two programs talk
-only if their md5sums agree; the full text travels in connection headers and bags, so that a reader without the package
-can still decode.
+A bare type name belongs to the message's own package, except that `Header` is std_msgs/Header. A string constant is all
+text to the right of its `=`, comments included. An error is a UsageError with file and line. Two programs can
+communicate only if their md5sums agree. The full text travels in connection headers and bags, so that a reader without
+the package can still decode.
 """
 
 from __future__ import annotations
@@ -41,16 +41,16 @@ class Field(NamedTuple):
     """One field of a message."""
 
     name: str
-    """As in the .msg file."""
+    """Name as in the .msg file."""
     attribute: str
-    """As in Python: a reserved word gets an underscore."""
+    """Name in Python: a reserved word gets an underscore."""
     base: str
     """Resolved type without the brackets, e.g. "float64" or "std_msgs/Header"."""
     is_array: bool
     length: int | None
-    """Of a fixed array."""
+    """Length of a fixed array."""
     line: int = 0
-    """Where it stands in its file."""
+    """Its line in its file."""
 
     @property
     def type(self) -> str:
@@ -68,9 +68,9 @@ class Constant(NamedTuple):
     attribute: str
     value: Any
     text: str
-    """As written, which is what enters the md5sum."""
+    """Text as written, which enters the md5sum."""
     line: int = 0
-    """Where it stands in its file."""
+    """Its line in its file."""
 
 
 class Spec(NamedTuple):
@@ -84,7 +84,7 @@ class Spec(NamedTuple):
 
     @property
     def has_header(self) -> bool:
-        """Whether the first field is `Header header`: such a message is stamped and counted by the publisher."""
+        """True if the first field is `Header header`: the publisher stamps and counts such a message."""
         first = self.fields[0] if self.fields else None
         return first is not None and first.name == "header" and first.type == HEADER
 
@@ -102,11 +102,14 @@ def parse(text: str, full_name: str, file: str, first_line: int = 1, mistakes: M
         full_name: "package/Name".
         file: path for errors.
         first_line: number of the text's first line in that file.
-        mistakes: takes a line that is neither a field nor a constant, a bad name or value, a field named twice; None
-            raises the first.
+        mistakes: receives a line that is neither a field nor a constant, a bad name or value, or a field named twice;
+            None raises the first error.
+
+    Returns:
+        The parsed definition.
 
     Raises:
-        UsageError: the first mistake.
+        UsageError: the first error.
     """
     package = full_name.rpartition("/")[0]
     fields: list[Field] = []
@@ -142,7 +145,7 @@ def parse(text: str, full_name: str, file: str, first_line: int = 1, mistakes: M
 
 
 def python_name(name: str) -> str:
-    """The attribute that holds a field, e.g. "from_" for "from"."""
+    """Return the attribute that holds a field, e.g. "from_" for "from"."""
     return name + "_" if name in _RESERVED else name
 
 
@@ -173,7 +176,7 @@ def _length(digits: str | None) -> int | None:
 def _resolve(base: str, is_array: bool, package: str) -> str:
     if base in BUILTINS or "/" in base:
         return base
-    # genmsg knows the bare name for a single Header only, not for an array of them.
+    # genmsg accepts the bare name for a single Header only, not for an array of them.
     return HEADER if base == "Header" and not is_array else f"{package}/{base}"
 
 
@@ -208,7 +211,7 @@ _Lookup = Callable[[str], Spec]
 
 
 def md5_text(spec: Spec, md5sum_of: Callable[[str], str]) -> str:
-    """The text that is hashed: constants, then fields; a nested message stands as its own md5sum.
+    """Return the text that is hashed: constants, then fields; a nested message is represented by its own md5sum.
 
     Args:
         spec: the message.
@@ -220,19 +223,19 @@ def md5_text(spec: Spec, md5sum_of: Callable[[str], str]) -> str:
 
 
 def md5sum(spec: Spec, md5sum_of: Callable[[str], str]) -> str:
-    """Fingerprint of a message, as 32 hexadecimal digits."""
+    """Return the fingerprint of a message, as 32 hexadecimal digits."""
     return hash_text(md5_text(spec, md5sum_of))
 
 
 def hash_text(text: str) -> str:
-    """md5 of a text; an identity, not a protection."""
+    """Return the md5 of a text; an identity, not a protection."""
     import hashlib
 
     return hashlib.md5(text.encode(), usedforsecurity=False).hexdigest()
 
 
 def full_text(spec: Spec, lookup: _Lookup) -> str:
-    """The definition followed by those of all types that it needs, each once, in order of first need."""
+    """Return the definition and the definitions of all types that it needs, each once, in order of first need."""
     parts = [spec.text + "\n"]
     for name in _needs(spec, lookup):
         parts.append(f"{_SEPARATOR}MSG: {name}\n{lookup(name).text}\n")
@@ -240,7 +243,7 @@ def full_text(spec: Spec, lookup: _Lookup) -> str:
 
 
 def split_full_text(text: str) -> Iterable[tuple[str | None, str, int]]:
-    """Take a full text apart: (type name or None for the first, definition, number of its first line)."""
+    """Split a full text. Yields (type name or None for the first, definition, number of its first line)."""
     line = 1
     parts = text.split("\n" + _SEPARATOR)
     for index, part in enumerate(parts):

@@ -1,7 +1,7 @@
-"""`cfepy console`: a standing ground console, for a mission that is flown meanwhile, or over UDP for any computer.
+"""`cfepy console`: an interactive ground console, for a mission that is flown meanwhile, or for any computer over UDP.
 
-`session` says what a line does, `flown_craft` and `remote` are what it speaks with, `pages` lays out telemetry,
-`completion` knows how a line may go on, `saved` keeps what was sent. `screen` and `plain` are its two faces.
+`session` carries out lines. `flown_craft` and `remote` are the targets. `pages` lays out telemetry. `completion`
+completes lines. `saved` keeps the packets that were sent. `screen` and `plain` are its two user interfaces.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ EXTRA = "the console on a terminal requires the package textual: pip install 'cf
 
 
 class Ended(NamedTuple):
-    """What a session came to: lines for the user, what of it is wrong, and the exit status."""
+    """The result of a session: lines for the user, the problems found, and the exit status."""
 
     lines: list[str]
     problems: list[str]
@@ -50,11 +50,11 @@ class Opening:
     """Opens the session that a command line asks for.
 
     Args:
-        arguments: of the command line.
-        interrupts: whether Ctrl-C was pressed.
+        arguments: the command line.
+        interrupts: reports whether Ctrl-C was pressed.
 
     Attributes:
-        ended: what the session came to; set when it is closed.
+        ended: the result of the session; set when it is closed.
     """
 
     def __init__(self, arguments: argparse.Namespace, interrupts: Interrupts) -> None:
@@ -66,13 +66,13 @@ class Opening:
 
     @contextlib.contextmanager
     def session(self, note: Callable[[str], object]) -> Iterator[ConsoleSession]:
-        """Around the session; the thread that enters it lets time go on, and leaves it.
+        """Open the session as a context manager. The thread that enters it must also advance time and leave it.
 
         Args:
-            note: gets what the user should know before anything runs.
+            note: receives messages for the user before the run starts.
 
         Raises:
-            UsageError: it cannot be opened like this.
+            UsageError: the options do not allow a session.
         """
         with self._remote() if self._arguments.udp is not None else self._flown(note) as session:
             yield session
@@ -128,7 +128,7 @@ class Opening:
         )
 
     def _save(self, session: ConsoleSession, plan: RunPlan, end_ns: int) -> str:
-        """Write the script; the command that repeats the run with it."""
+        """Write the script. Returns the command that repeats the run with it."""
         file = self._arguments.save_script
         again = replace(plan, seconds=None, script=file, stop_on_failure=False).command_line()
         session.saved.heading = ("What was sent in a session of cfepy console. The same run:", again)
@@ -141,7 +141,7 @@ class Opening:
         went_wrong = flown is not None and flown.results.problems
         return FOUND_PROBLEMS if session.failed or went_wrong else ENDED_WELL
 
-    # -- a computer elsewhere ------------------------------------------------------------------------------------------
+    # -- a remote target -----------------------------------------------------------------------------------------------
 
     @contextlib.contextmanager
     def _remote(self) -> Iterator[ConsoleSession]:
@@ -169,7 +169,7 @@ class Opening:
             self.ended = Ended(lines, [], self._status(session, None))
 
     def _enable(self, session: ConsoleSession, host: RemoteHost) -> None:
-        """Ask TO_LAB to send to this computer, or say how."""
+        """Ask TO_LAB to send to this computer, or show the user how to do it."""
         asked: str | None = self._arguments.enable
         elsewhere = (host_of(asked, CI_PORT) or RemoteHost(asked, CI_PORT)) if asked else host
         enable = f"TO_LAB_OUTPUT_ENABLE dest_IP={own_address(elsewhere.name)}"
@@ -188,7 +188,7 @@ class Opening:
 
 
 def _listening(text: str | None) -> RemoteHost:
-    """Where telemetry arrives, of "HOST:PORT", "HOST", "PORT" or nothing."""
+    """Parse the telemetry address: "HOST:PORT", "HOST", "PORT" or None."""
     if text is None:
         return RemoteHost(ANY_ADDRESS, TO_PORT)
     if text.isdecimal():
@@ -208,7 +208,7 @@ def run(arguments: argparse.Namespace) -> int:
         The exit status.
 
     Raises:
-        UsageError: it cannot be opened like this.
+        UsageError: the options do not allow a session.
     """
     _check(arguments)
     with Interrupts() as interrupts:
@@ -225,7 +225,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def is_terminal() -> bool:
-    """Whether a person sits in front of it."""
+    """Return True if standard input and output are a terminal."""
     return sys.stdin.isatty() and sys.stdout.isatty()
 
 

@@ -1,4 +1,4 @@
-"""How a line of the console may go on: its words, commands with their fields, what can be expected, files."""
+"""Completion of console lines: its words, commands with their fields, conditions to expect, and files."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ TRUTH = ("true", "false")
 
 
 class Candidate(NamedTuple):
-    """A word that may stand here, and what is to be known of it."""
+    """A possible word, and a hint about it."""
 
     text: str
     hint: str = ""
 
 
 class Completion(NamedTuple):
-    """What may stand in the place of the line's last word, which begins at `start`."""
+    """The possible replacements of the line's last word, which begins at `start`."""
 
     start: int
     choices: list[Candidate]
 
     def extended(self, line: str) -> str:
-        """The line as far as it can only go on in one way; a whole word gets a blank, unless a value follows."""
+        """Extend the line as far as it is unambiguous. A whole word gets a blank, unless a value follows."""
         texts = [choice.text for choice in self.choices]
         if not texts:
             return line
@@ -44,10 +44,10 @@ class Completion(NamedTuple):
 
 
 class Completer:
-    """Knows how a line may go on.
+    """Completes lines.
 
     Args:
-        session: what the line is for.
+        session: the session that will carry out the line.
     """
 
     def __init__(self, session: ConsoleSession) -> None:
@@ -58,7 +58,7 @@ class Completer:
         return self._session.craft.script.scene.dictionary
 
     def complete(self, line: str) -> Completion:
-        """What may stand in the place of the last word of a line; nothing after a blank is a word too."""
+        """Return the possible replacements of a line's last word. After a blank, that word is empty."""
         words = line.split(" ")
         last = words.pop()
         before = [word for word in words if word]
@@ -132,7 +132,7 @@ class Completer:
         return [Candidate(text) for text in (*following, "within")]
 
     def _comparison(self, words: list[str]) -> Iterable[Candidate]:
-        """`NAME [FIELD SIGN VALUE [and ...]]`"""
+        """Complete `NAME [FIELD SIGN VALUE [and ...]]`."""
         if not words:
             return self._packets()
         place = (len(words) - 1) % 4
@@ -146,14 +146,14 @@ class Completer:
 
 
 def _in_common(texts: list[str]) -> str:
-    """What all texts begin with."""
+    """Return the longest common prefix of all texts."""
     first, last = min(texts), max(texts)
     same = (number for number, (one, other) in enumerate(zip(first, last, strict=False)) if one != other)
     return first[: next(same, min(len(first), len(last)))]
 
 
 def fields_of(command: Command) -> dict[str, str]:
-    """The fields of a command that a line gives, with their types: an array is one, such as `u32[4]`."""
+    """Return the fields of a command that a line gives, with their types. An array is one field, such as `u32[4]`."""
     found: dict[str, str] = {}
     counts: dict[str, int] = {}
     for cell in command.payload.cells():
@@ -164,24 +164,24 @@ def fields_of(command: Command) -> dict[str, str]:
 
 
 def _values(command: Command, path: str) -> Iterable[str]:
-    """Values that a field can have, where they are few."""
+    """Return the values of a field that has few."""
     return TRUTH if fields_of(command).get(path) == "bool" else _names(command.payload, path)
 
 
 def _names(layout: Layout, path: str) -> Iterable[str]:
-    """The names of a field's values, if they have some."""
+    """Return the names of a field's values, if it has names."""
     return next((cell.names.values for cell in layout.cells() if cell.path == path and cell.names is not None), ())
 
 
 def _fitting(choices: Iterable[Candidate], word: str) -> Iterator[Candidate]:
-    """Those that begin with the word, in capitals or not; if none does, those in which it occurs."""
+    """Yield the choices that begin with the word, ignoring case. If there are none, yield those that contain it."""
     every = list(choices)
     begin = [each for each in every if each.text.lower().startswith(word.lower())]
     yield from begin or (each for each in every if word.lower() in each.text.lower())
 
 
 def _files(word: str) -> Iterator[Candidate]:
-    """Files and folders that a path may go on to."""
+    """Yield files and folders that complete a path."""
     folder, slash, _ = word.rpartition("/")
     try:
         inside = sorted(Path(f"{folder}{slash}" or ".").iterdir())

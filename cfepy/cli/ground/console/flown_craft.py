@@ -19,11 +19,11 @@ from cfepy.pilot import Course, Flown, LiveRun, RunPlan, takeoff
 from cfepy.script import Collected, Scene, StandingScript
 
 MOST_PACKETS = 50_000
-"""How many packets an expectation can look back on."""
+"""How many recent packets an expectation can look at."""
 
 
 class CraftScene(Scene):
-    """A mission at hand; what is sent goes through its door to the outside, so that a journal has it."""
+    """A scene of a mission in this process. Packets are sent as outside events, so that a journal records them."""
 
     def __init__(self, mission: Mission, dictionary: Dictionary, packets: Collected, saved: SavedScript) -> None:
         super().__init__(mission, dictionary, packets)
@@ -36,7 +36,7 @@ class CraftScene(Scene):
 
 
 class StandingCourse(Course):
-    """A run that goes on as long as its user likes."""
+    """The course of a run that continues until its user ends it."""
 
     script: StandingScript
 
@@ -45,7 +45,7 @@ class StandingCourse(Course):
 
 
 class News(SilentDisplay):
-    """Packets and lines of the console in the order in which they come, until they are taken."""
+    """Keeps packets and console lines in the order in which they arrive, until they are taken."""
 
     def __init__(self) -> None:
         self._news: list[Seen | str] = []
@@ -56,11 +56,11 @@ class News(SilentDisplay):
     tell = line
 
     def packet(self, seen: Seen) -> None:
-        """A packet was sent."""
+        """Keep a packet that was sent."""
         self._news.append(seen)
 
     def take(self) -> list[Seen | str]:
-        """All since the last call."""
+        """Return all packets and lines since the last call."""
         news, self._news = self._news, []
         return news
 
@@ -69,18 +69,21 @@ class FlownCraft:
     """A mission that is flown for a console; use as a context manager.
 
     Args:
-        plan: what is flown; without a length, it goes on until the session ends.
+        plan: the run; without a length, it goes on until the session ends.
         spec: the mission.
-        dictionary: of the mission.
-        saved: gets what is sent.
-        interrupts: whether Ctrl-C was pressed.
-        realtime: as of `WatchedHost`.
-        ports, add_ons: as of `WatchedHost`.
-        journal: records the run; None for nobody.
-        note: gets what the user should know.
+        dictionary: the dictionary of the mission.
+        saved: receives the packets that are sent.
+        interrupts: reports whether Ctrl-C was pressed.
+        realtime: as for `WatchedHost`.
+        ports: as for `WatchedHost`.
+        add_ons: as for `WatchedHost`.
+        journal: records the run, if it is not None.
+        note: receives messages for the user.
 
     Attributes:
-        name, flows, script: see `Craft`.
+        name: see `Craft`.
+        flows: see `Craft`.
+        script: see `Craft`.
     """
 
     def __init__(

@@ -1,7 +1,7 @@
-"""Pages of telemetry: the newest packet of each kind, field by field, with what has changed in it.
+"""Pages of telemetry: the newest packet of each kind, field by field; changed values are marked.
 
-A page is a choice of packets. It is laid out for a width in columns, as rows of pieces of text with a style each, so
-that a screen can colour them and a plain stream can leave the styles away.
+A page is a selection of packets. It is laid out in columns for a given width. Its rows consist of styled texts, so that
+a screen can colour them and a plain stream can omit the styles.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ DOTS = "…"
 
 
 class Piece(NamedTuple):
-    """A piece of text and its style."""
+    """A text and its style."""
 
     text: str
     style: str = VALUE
@@ -36,7 +36,7 @@ Row = list[Piece]
 
 @dataclass(slots=True)
 class Kind:
-    """The packets of one MsgId: how many came, the newest, and the texts of its fields when it was last looked at."""
+    """The packets of one MsgId: their number, the newest one, and the texts of its fields at the last look."""
 
     newest: Seen
     count: int = 0
@@ -53,7 +53,7 @@ class PacketBoard:
         dictionary: names the packets and their fields.
 
     Attributes:
-        page: what is chosen: "hk", "all", or names of packets.
+        page: the chosen page: "hk", "all", or names of packets.
     """
 
     def __init__(self, dictionary: Dictionary) -> None:
@@ -62,7 +62,7 @@ class PacketBoard:
         self._kinds: dict[int, Kind] = {}
 
     def note(self, seen: Seen) -> None:
-        """A telemetry packet was sent."""
+        """Keep a telemetry packet that was sent."""
         msg_id = seen.packet[0] << 8 | seen.packet[1]
         kind = self._kinds.get(msg_id)
         if kind is None:
@@ -74,7 +74,7 @@ class PacketBoard:
         """Turn to another page.
 
         Args:
-            names: "hk", "all", or packets by name, MsgId or pattern; none turns to the next of hk and all.
+            names: "hk", "all", or packets by name, MsgId or pattern. An empty list switches between hk and all.
 
         Raises:
             UsageError: there is no such packet.
@@ -87,7 +87,7 @@ class PacketBoard:
         self.page = tuple(names)
 
     def counters(self) -> tuple[int, int]:
-        """How many commands the applications have accepted and refused, as their newest housekeeping says."""
+        """Return how many commands the applications accepted and refused, according to their newest housekeeping."""
         accepted = refused = 0
         for kind in self._kinds.values():
             if not kind.name or _is_hk(kind.name):
@@ -97,10 +97,13 @@ class PacketBoard:
         return accepted, refused
 
     def rows(self, width: int) -> list[Row]:
-        """The chosen page.
+        """Lay out the chosen page.
 
         Args:
             width: columns of the screen.
+
+        Returns:
+            The rows.
         """
         if self.page == (ALL,):
             return list(self._overview(width))
@@ -122,7 +125,7 @@ class PacketBoard:
         return any(fnmatchcase(kind.name, name) or name.lower() == number.lower() for name in self.page)
 
     def _look(self, kind: Kind) -> None:
-        """Read the newest packet, if there was another one since the last look."""
+        """Decode the newest packet, if it arrived after the last look."""
         if kind.looked == kind.count:
             return
         decoded = self._dictionary.decode(kind.newest.packet)
@@ -131,7 +134,7 @@ class PacketBoard:
         kind.name, kind.texts, kind.looked = visible_line(decoded.name), texts, kind.count
 
     def _overview(self, width: int) -> Iterator[Row]:
-        """A row for each kind of packet."""
+        """Yield a row for each kind of packet."""
         for kind in sorted(self._kinds.values(), key=lambda each: each.newest.msg_id):
             decoded = self._dictionary.decode(kind.newest.packet)
             head = f"{visible_line(decoded.name)}  {kind.count:,}  {kind.newest.at_ns / NS_PER_S:.3f}  "
@@ -150,7 +153,7 @@ def _is_hk(name: str) -> bool:
 
 
 def _rows_of(kind: Kind, width: int) -> Iterator[Row]:
-    """A packet's title, and its fields in as many columns as there is room for."""
+    """Yield a packet's title, and its fields in as many columns as fit."""
     yield [Piece(cut(f"{kind.name}  n={kind.count:,}  at {kind.newest.at_ns / NS_PER_S:.3f}", width), TITLE)]
     lengths = {path: len(path) + 1 + len(text) for path, text in kind.texts.items()}
     most = min(MOST_COLUMN, width)
@@ -166,7 +169,7 @@ def _rows_of(kind: Kind, width: int) -> Iterator[Row]:
 
 
 def _cell(path: str, kind: Kind, width: int) -> Row:
-    """`path value`, the value at the right end; one that is too long is cut."""
+    """Lay out `path value` with the value right-aligned. A text that is too long is cut."""
     name = cut(path, width)
     text = cut(kind.texts[path], width - len(name) - 1)
     blank = " " * (width - len(name) - len(text))
@@ -174,5 +177,5 @@ def _cell(path: str, kind: Kind, width: int) -> Row:
 
 
 def cut(text: str, width: int) -> str:
-    """A text that is no longer than a width; what is left out shows as dots."""
+    """Shorten a text to a width; dots mark the cut."""
     return text if len(text) <= width else text[: max(0, width - 1)] + DOTS if width > 0 else ""

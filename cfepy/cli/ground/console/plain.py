@@ -1,7 +1,7 @@
-"""The console as plain text: lines are read one by one, and what there is to tell is printed. No terminal is needed.
+"""The console as plain text: it reads lines one by one and prints the output. It needs no terminal.
 
-A line is taken when the one before it is done: a run is over, an expectation is decided. So a session that is piped in
-is as deterministic as a script.
+It takes a line when the one before it is done: its run is over, or its expectation is decided. So a session that is
+piped in is as deterministic as a script.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ WAIT_S = 0.05
 
 
 class LineSource(Protocol):
-    """LineSource that come from somewhere."""
+    """Interface of a source of lines."""
 
     at_end: bool
 
     def next(self, timeout_s: float) -> str | None:
-        """The next line; None when none came in time, or none will come."""
+        """Return the next line, or None if none arrived in time or the source is at its end."""
 
 
 class PlainConsole:
-    """Reads and prints.
+    """Reads lines and prints the output.
 
     Args:
-        session: what the lines are for.
-        lines: where they come from.
-        out: where it prints to.
+        session: carries out the lines.
+        lines: the source of the lines.
+        out: the output.
     """
 
     def __init__(self, session: ConsoleSession, lines: LineSource, out: TextIO) -> None:
@@ -40,7 +40,7 @@ class PlainConsole:
         self._page = session.board.page
 
     def run(self) -> None:
-        """Until the lines, or the session, are at their end."""
+        """Run until the lines or the session end."""
         session = self._session
         while not session.is_over and not session.is_landed:
             if session.go_on():
@@ -55,7 +55,7 @@ class PlainConsole:
         self.print()
 
     def print(self) -> None:
-        """Print what there is to tell."""
+        """Print the entries of the session since the last call."""
         for entry in self._session.take_entries():
             if entry.event is None or self._session.is_shown(entry.event):
                 self._out.write(f"{_mark(entry)}{entry.text}\n")
@@ -74,5 +74,5 @@ def _mark(entry: Entry) -> str:
 
 
 def text_of_row(row: Row) -> str:
-    """A row without its styles."""
+    """Return the text of a row without its styles."""
     return "".join(piece.text for piece in row).rstrip()

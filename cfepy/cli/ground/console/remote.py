@@ -1,4 +1,4 @@
-"""The craft of a console that speaks with a computer elsewhere, over UDP: any cFS with CI_LAB and TO_LAB."""
+"""The craft of a console that talks to a remote computer over UDP: any cFS with CI_LAB and TO_LAB."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ PIECE_NS = 50 * NS_PER_MS
 
 
 class RemoteScene(Scene):
-    """A computer elsewhere: its packets, and the time since the session began."""
+    """A scene of a remote computer: its packets, and the time since the session began."""
 
     def __init__(self, host: RemoteHost, dictionary: Dictionary, packets: Collected, saved: SavedScript) -> None:
         super().__init__(None, dictionary, packets)
@@ -40,29 +40,31 @@ class RemoteScene(Scene):
         return Since(len(self.packets), 0)
 
     def send(self, packet: bytes, must_arrive: bool) -> str:
-        """UDP has no receipts, so all that is known is whether a computer at hand listens."""
+        """Send a packet. UDP has no receipts, so a failure is only detected if the target is this computer."""
         self._saved.sent(packet, self.now_ns)
         return (
             "" if send_datagram(self._host.name, self._host.port, packet) else f"{self._host}: no receiver is listening"
         )
 
     def learn_topics(self) -> None:
-        """See `Scene.learn_topics`; nothing is known of them."""
+        """Do nothing: the topics of a remote computer are not known."""
 
 
 class RemoteCraft:
-    """A computer elsewhere; use as a context manager.
+    """A remote computer; use as a context manager.
 
     Args:
-        host: where commands are sent to.
-        listen: where telemetry arrives on this computer.
-        spec: the mission whose names are meant; None for none.
+        host: the address that commands are sent to.
+        listen: the address of this computer at which telemetry arrives.
+        spec: the mission whose names are used, or None.
         dictionary: names the packets.
-        saved: gets what is sent.
-        interrupts: whether Ctrl-C was pressed.
+        saved: receives the packets that are sent.
+        interrupts: reports whether Ctrl-C was pressed.
 
     Attributes:
-        name, flows, script: see `Craft`.
+        name: see `Craft`.
+        flows: see `Craft`.
+        script: see `Craft`.
     """
 
     flows = True
@@ -105,7 +107,7 @@ class RemoteCraft:
         return self._interrupts.asked
 
     def step(self, until_ns: int) -> bool:
-        """Take what arrives."""
+        """Take the packets that arrive."""
         begin_ns = self.stands_ns
         rest_s = min(WAIT_S, max(0, until_ns - begin_ns) / NS_PER_S)
         packet = self._listener.receive(max(rest_s, NO_WAIT_S))
@@ -121,15 +123,15 @@ class RemoteCraft:
         return True
 
     def stand(self) -> None:
-        """What arrives waits in the socket."""
+        """Do nothing: arriving packets wait in the socket."""
 
     def next_event(self) -> int | None:
         return None
 
     def pace(self, factor: float | None) -> None:
-        """Its time is its own."""
+        """Do nothing: a remote computer sets its own pace."""
 
     def news(self) -> list[Seen | str]:
-        """What it prints is not seen here."""
+        """Return the packets since the last call. The console output of a remote computer is not available."""
         news, self._new = self._new, []
         return news

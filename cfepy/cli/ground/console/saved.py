@@ -1,8 +1,8 @@
-"""What was sent in a session, as a mission script: `cfepy run MISSION --script FILE` repeats the same run.
+"""The packets of a session as a mission script: `cfepy run MISSION --script FILE` repeats the same run.
 
-Each packet is written with the virtual time at which the run stood when it was sent. What was expected is written too
-where it cannot hold up what follows; elsewhere it is a comment, since an expectation in a file waits, while one that
-was typed let others pass.
+Each packet is written with the virtual time at which the run stood when it was sent. An expectation in a file waits,
+while a typed one let other lines pass. So an expectation is written as a step only where it cannot delay the following
+steps; elsewhere it is a comment.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cfepy.units import NS_PER_S
 
 @dataclass(frozen=True, slots=True)
 class Noted:
-    """A line of the script: when it was begun and done, in virtual ns, and what it expects, if it does."""
+    """A line of the script: when it began and ended, in virtual ns, and the step if it expects something."""
 
     began_ns: int
     done_ns: int
@@ -30,7 +30,9 @@ class Noted:
 
     @property
     def is_quick(self) -> bool:
-        """Whether it is done at once: something sent, a state that is judged, what is watched for beside the rest."""
+        """True if the step is done at once: a packet, a state that is judged, or a condition that is watched in the
+        background.
+        """
         step = self.step
         if step is None or step.must_not:
             return True
@@ -38,7 +40,7 @@ class Noted:
 
 
 class SavedScript:
-    """Keeps what was sent.
+    """Keeps the packets that were sent.
 
     Args:
         dictionary: names the commands.
@@ -52,15 +54,15 @@ class SavedScript:
 
     @property
     def count(self) -> int:
-        """How many packets were sent."""
+        """The number of packets that were sent."""
         return sum(each.step is None for each in self._noted)
 
     def sent(self, packet: bytes, at_ns: int) -> None:
-        """A packet was sent at a virtual time in ns."""
+        """Note a packet that was sent at a virtual time in ns."""
         self._noted.append(Noted(at_ns, at_ns, f"send {self._words(packet)}"))
 
     def expected(self, step: Step, verdict: StepVerdict, began_ns: int, done_ns: int) -> None:
-        """A step that expects something was begun, and has its verdict, at virtual times in ns."""
+        """Note an expectation and its verdict, with the virtual times in ns at which it began and was decided."""
         self._noted.append(Noted(began_ns, done_ns, without_when(step.text), step, verdict.detail == OVER))
 
     def write(self, file: str | Path, end_ns: int) -> None:
@@ -79,7 +81,7 @@ class SavedScript:
             raise UsageError(f"cannot be written: {error.strerror}", file=file) from None
 
     def text(self, end_ns: int) -> str:
-        """The whole script, for a run that ends at a virtual time in ns."""
+        """Return the whole script, for a run that ends at a virtual time in ns."""
         lines = [*(f"# {line}" for line in self.heading), *self._lines(end_ns), f"at {time_text(end_ns)} end"]
         return "\n".join(lines) + "\n"
 
@@ -101,7 +103,7 @@ class SavedScript:
             done_ns = each.done_ns if each.step is None or not each.step.must_not else each.began_ns
 
     def _words(self, packet: bytes) -> str:
-        """A packet as a script writes it: by its name if that gives the very same bytes."""
+        """Return a packet as a script writes it: by its name if that yields exactly the same bytes."""
         if get_header_size(packet) == CMD_HEADER_SIZE:
             decoded = self._dictionary.decode(packet)
             command = self._dictionary.commands.get(decoded.name)
@@ -115,19 +117,19 @@ class SavedScript:
 
 
 def _is_done(each: Noted, next_ns: int, follows_at_once: bool) -> bool:
-    """Whether an expectation has its verdict before anything else happens, also when a file expects it."""
+    """Return True if an expectation is decided before the next packet, also when a file expects it."""
     return not each.was_over and each.done_ns + (0 if follows_at_once else LOOK_NS) <= next_ns
 
 
 def _ends(each: Noted, end_ns: int) -> bool:
-    """Whether what must not come is not watched for longer than the run takes."""
+    """Return True if the watch for an unwanted condition does not outlast the run."""
     assert each.step is not None
     has_limit = each.step.within_ns is not None or each.step.until_ns is not None
     return not has_limit or not each.was_over
 
 
 def _given(values: dict[str, object]) -> dict[str, object]:
-    """Values without those that are zero anyway."""
+    """Return the values that are not zero."""
     return {name: value for name, value in values.items() if value not in (0, "", b"")}
 
 
@@ -138,19 +140,19 @@ def _split(words: str) -> list[str]:
 
 
 def time_text(ns: int) -> str:
-    """A virtual time in seconds, exact to the ns."""
+    """Format a virtual time in seconds, exact to the ns."""
     whole, rest = divmod(max(0, ns), NS_PER_S)
     return f"{whole}.{rest:09d}".rstrip("0").rstrip(".")
 
 
 def when_of(step: Step, before_ns: int) -> int:
-    """When a step began that could have begun at a virtual time in ns."""
+    """Return when a step began, if it could have begun at `before_ns`, a virtual time in ns."""
     if step.at_ns is not None:
         return max(step.at_ns, before_ns)
     return before_ns + (step.after_ns or 0)
 
 
 def without_when(text: str) -> str:
-    """A step's text without its time in front."""
+    """Return a step's text without its leading time."""
     first, _, rest = text.partition(" ")
     return rest.strip().partition(" ")[2].strip() if first in ("at", "after") else text

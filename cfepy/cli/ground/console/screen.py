@@ -1,8 +1,8 @@
-"""The console on a terminal: telemetry, events, what was said, and a line to type into with completion and history.
+"""The console on a terminal: telemetry, events, replies, and an input line with completion and history.
 
-The session, and with it the mission, lives in a thread of its own, so that the screen answers while a piece of the run
-is under way, or a task does not give up the processor. Between two pieces that thread has the screen brought up to
-date, and waits for it: so nothing of the session changes while it is drawn.
+The session, and with it the mission, runs in a thread of its own. So the screen responds while the simulation is busy,
+or while a task does not give up the processor. Between two steps that thread updates the screen and waits for it, so
+the session does not change while it is drawn.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from cfepy.writing.escapes import visible, visible_line
 
 OpenSession = Callable[[Callable[[str], object]], AbstractContextManager[ConsoleSession]]
 
-REFRESH_NS = NS_PER_S // 5  # wall time between two drawings while time goes on
+REFRESH_NS = NS_PER_S // 5  # wall time between two drawings while time advances
 IDLE_S = 0.1
 MOST_LINES = 2000
 MOST_HISTORY = 500
@@ -44,7 +44,7 @@ NOTHING_FITS = "no matching name"
 ENTRY_STYLES = {CONSOLE: "dim", TYPED_LINE: "bold", REPLY: "", GOOD: "green", BAD: "bold red"}
 EVENT_STYLES = {"DEBUG": "dim", "INFORMATION": "cyan", "ERROR": "bold red", "CRITICAL": "bold white on red"}
 ACTIONS = {key: each.action for each in Input.BINDINGS if isinstance(each, Binding) for key in each.key.split(",")}
-"""What keys do in a line, such as backspace."""
+"""Editing keys of a line, such as backspace."""
 
 PIECE_STYLES = {
     pages.TITLE: "bold cyan",
@@ -55,13 +55,13 @@ PIECE_STYLES = {
 
 
 class LineInput(Input):
-    """The line that is typed into.
+    """The input line.
 
     Args:
-        enter: gets each line.
+        enter: receives each line.
 
     Attributes:
-        completer: completes it; None as long as there is no session.
+        completer: completes the line; None as long as there is no session.
     """
 
     def __init__(self, enter: Callable[[str], object]) -> None:
@@ -72,7 +72,7 @@ class LineInput(Input):
         self._at = 0
 
     def submit(self) -> None:
-        """The line is typed to its end."""
+        """Enter the typed line."""
         line, self.value = self.value.strip(), ""
         if line and self._history[-1:] != [line]:
             self._history = [*self._history[-MOST_HISTORY:], line]
@@ -81,7 +81,7 @@ class LineInput(Input):
             self._enter(line)
 
     async def _on_key(self, event: Key) -> None:
-        """What keys do is done here, in the order in which they were pressed: bindings fall behind the letters."""
+        """Handle keys here, in the order in which they were pressed: bindings would run after the letters."""
         if event.key == "enter":
             self.submit()
         elif event.key in ACTIONS:
@@ -97,7 +97,7 @@ class LineInput(Input):
         event.prevent_default()
 
     def _on_paste(self, event: Paste) -> None:
-        """Several lines are entered one by one, such as those of a script."""
+        """Enter several pasted lines one by one, such as lines of a script."""
         *whole, rest = event.text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
         for text in whole:
             self.insert_text_at_cursor(text)
@@ -113,14 +113,14 @@ class LineInput(Input):
         self.cursor_position = len(self.value)
 
     def _complete(self) -> None:
-        """Complete the line as far as it can only go on in one way."""
+        """Complete the line as far as it is unambiguous."""
         if self.completer is not None:
             self.value = self.completer.complete(self.value).extended(self.value)
             self.cursor_position = len(self.value)
 
 
 class FirstChoice(Suggester):
-    """Suggests the first word that fits, which the right arrow takes."""
+    """Suggests the first word that fits; the right arrow takes it."""
 
     def __init__(self, completer: Completer) -> None:
         super().__init__(use_cache=False, case_sensitive=True)
@@ -138,10 +138,10 @@ class ConsoleScreen(App[None]):
     """The screen of a console.
 
     Args:
-        open_session: opens the session, in the thread that lets time go on; its argument gets what is to be known.
+        open_session: opens the session in the thread that advances time. Its argument receives messages for the user.
 
     Attributes:
-        is_idle: time stands still, and all that was typed is done and shown.
+        is_idle: time stands still, and all typed lines are done and shown.
     """
 
     CSS = """
@@ -183,16 +183,16 @@ class ConsoleScreen(App[None]):
         self._leaving: Stopwatch | None = None
 
     def show(self) -> None:
-        """Until the session is over.
+        """Show the screen until the session is over.
 
         Raises:
-            BaseException: what ended the session, if it was not its user.
+            BaseException: the error that ended the session, if there was one.
         """
         self.run()
         self.tell_error()
 
     def tell_error(self) -> None:
-        """Raise what ended the session, if it was not its user."""
+        """Raise the error that ended the session, if there was one."""
         if self._error is not None:
             raise self._error
 
@@ -220,7 +220,7 @@ class ConsoleScreen(App[None]):
             with self._open_session(self._notes.append) as session:
                 self.call_from_thread(self._begin, session)
                 self._go_on(session)
-        except BaseException as error:  # told when the screen is away
+        except BaseException as error:  # reported when the screen is closed
             self._error = error
         self.call_from_thread(self.exit)
 
@@ -234,7 +234,7 @@ class ConsoleScreen(App[None]):
                 drawn = Stopwatch()
 
     def _take(self, session: ConsoleSession, timeout_s: float) -> bool:
-        """Do what was typed; whether there was something."""
+        """Carry out a typed line. Returns False if there was none."""
         try:
             line = self._typed.get(timeout=timeout_s) if timeout_s else self._typed.get_nowait()
         except queue.Empty:
@@ -243,7 +243,7 @@ class ConsoleScreen(App[None]):
         return True
 
     def enter(self, line: str) -> None:
-        """Something was typed."""
+        """Queue a typed line for the session."""
         self.is_idle = False
         self._typed.put(line)
 
@@ -301,17 +301,17 @@ class ConsoleScreen(App[None]):
     # -- keys ----------------------------------------------------------------------------------------------------------
 
     def on_input_changed(self, message: Input.Changed) -> None:
-        """Say how the line may go on."""
+        """Show how the line may go on."""
         completer = self.query_one(LineInput).completer
         hint = KEYS if completer is None or not message.value else hint_of(completer.complete(message.value))
         self.query_one("#hint", Static).update(Text(hint, no_wrap=True, overflow="ellipsis"))
 
     def action_say(self, line: str) -> None:
-        """As if a line had been typed."""
+        """Enter a line as if the user had typed it."""
         self.enter(line)
 
     def action_leave(self) -> None:
-        """End the session; some time later, end the process, for a task that never gives up the processor."""
+        """End the session. If a task never gives up the processor, a second call ends the process some time later."""
         if self._leaving is not None and self._leaving.elapsed_ns() > PATIENCE_NS:
             with self.suspend():
                 os.write(STDERR, b"cfepy: a task does not end; the process exits\n")
@@ -321,13 +321,13 @@ class ConsoleScreen(App[None]):
         self.enter(QUIT)
 
     def on_print(self, message: Print) -> None:
-        """See `App.begin_capture_print`: what this process itself prints, such as a report of a task that is stuck."""
+        """Show output of this process, such as a report of a stuck task; see `App.begin_capture_print`."""
         text = message.text.rstrip("\n")
         if text:
             self.query_one("#log", RichLog).write(Text(visible(text), style=ENTRY_STYLES[BAD]))
 
     def action_run_or_pause(self) -> None:
-        """Let time go on, or stand still."""
+        """Start or pause time."""
         if self._session is not None:
             self.enter("pause" if self._session.moves else "run")
 
@@ -343,7 +343,7 @@ class ConsoleScreen(App[None]):
 
 
 def hint_of(completion: Completion) -> str:
-    """The candidates on one line; a single one with what is to be known of it."""
+    """Return the candidates on one line; a single one with its hint."""
     candidates = completion.choices
     if not candidates:
         return NOTHING_FITS

@@ -1,8 +1,8 @@
-"""A session of the console, without a face: what a typed line does, and what is to be told.
+"""A session of the console, without a user interface: it carries out typed lines and collects the output.
 
-A line is a step of a mission script, a command by its name, or a word of the console such as `run 5`. The session lets
-time go on piece by piece: as long as it was told to, and as long as a line waits for something. What there is to tell
-is collected as entries, which a screen or a plain stream shows as it likes.
+A line is a step of a mission script, a command by its name, or a word of the console such as `run 5`. The session
+advances time in short steps: as long as the user asked for, and as long as a line waits for something. Its output is a
+list of entries, which a screen or a plain stream shows.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ SPEED_NS = NS_PER_S // 2  # wall time over which the speed is measured
 
 
 class Entry(NamedTuple):
-    """Something to be told: what kind of thing, its text as a screen may show it, and the event, if it is one."""
+    """An output entry: its kind, its text in displayable form, and the event if it is one."""
 
     kind: str
     text: str
@@ -47,12 +47,12 @@ class Entry(NamedTuple):
 
 
 class Craft(Protocol):
-    """What a console speaks with: a mission that is flown for it, or a computer elsewhere.
+    """The target of a console: a mission that is flown for it, or a remote computer.
 
     Attributes:
-        name: for the status line.
-        flows: its time goes on by itself.
-        script: what does its steps.
+        name: name for the status line.
+        flows: its time advances without a request.
+        script: carries out its steps.
     """
 
     name: str
@@ -65,31 +65,31 @@ class Craft(Protocol):
 
     @property
     def is_asked(self) -> bool:
-        """Whether the user wants all to end, by Ctrl-C or SIGTERM."""
+        """True if the user asked to end, by Ctrl-C or SIGTERM."""
 
     @property
     def is_over(self) -> bool:
-        """Whether time does not go on any more."""
+        """True if time cannot advance any more."""
 
     def step(self, until_ns: int) -> bool:
-        """Go on for a short while, to a virtual time in ns at the most; whether it did."""
+        """Advance for a short while, at most to a virtual time in ns. Returns True if time advanced."""
 
     def stand(self) -> None:
-        """Its time stands still for a short while."""
+        """Let time stand still for a short while."""
 
     def next_event(self) -> int | None:
-        """Virtual time in ns of the next thing to happen; None when there is nothing, or it is not known."""
+        """Return the virtual time in ns of the next event, or None if there is none or it is not known."""
 
     def pace(self, factor: float | None) -> None:
-        """From here on, so many times as fast as the wall clock; None is as fast as it goes."""
+        """Set the speed as a multiple of the wall clock; None is as fast as possible."""
 
     def news(self) -> list[Seen | str]:
-        """Packets that were sent and lines that its console printed, since the last call."""
+        """Return packets that were sent and lines that its console printed, since the last call."""
 
 
 @dataclass(frozen=True, slots=True)
 class ConsoleWord:
-    """A word of the console: what does it, how it is written, what it does."""
+    """A word of the console: its function, its usage, and its description."""
 
     act: Callable[[list[str]], None]
     usage: str
@@ -97,24 +97,24 @@ class ConsoleWord:
 
 
 class ConsoleSession:
-    """What a console does.
+    """Carries out the lines of a console.
 
     Args:
-        craft: what it speaks with.
+        craft: the target.
         board: keeps telemetry.
-        saved: keeps what was sent.
-        factor: how many times as fast as the wall clock; None for as fast as it goes.
+        saved: keeps the packets that are sent.
+        factor: speed as a multiple of the wall clock; None for as fast as possible.
         stop_on_failure: the first failed step or wrong line ends the session.
 
     Attributes:
         words: the console's own words.
-        sent: how many packets were sent.
-        failed: how many steps failed, or lines were wrong.
-        is_over: the session is at its end.
-        is_landed: time does not go on any more; what there was can still be looked at.
-        speed: how many times as fast as the wall clock time went on lately.
-        least_type: events of a lower type are not to be shown.
-        only_app: the application whose events alone are to be shown; None for all.
+        sent: number of packets that were sent.
+        failed: number of failed steps and wrong lines.
+        is_over: the session has ended.
+        is_landed: time cannot advance any more; the results can still be viewed.
+        speed: the recent speed, as a multiple of the wall clock.
+        least_type: events of a lower type are not shown.
+        only_app: the only application whose events are shown; None for all.
     """
 
     def __init__(
@@ -156,36 +156,36 @@ class ConsoleSession:
             "quit": ConsoleWord(self._quit, "quit", "end the session"),
         }
 
-    # -- what there is to tell ---------------------------------------------------------------------------------------
+    # -- output --------------------------------------------------------------------------------------------------------
 
     def take_entries(self) -> list[Entry]:
-        """What there was to tell since the last call."""
+        """Return the output since the last call."""
         entries, self._entries = self._entries, []
         return entries
 
     def say(self, kind: str, text: str) -> None:
-        """Tell something."""
+        """Add an output entry."""
         self._entries.append(Entry(kind, visible(text)))
 
     @property
     def moves(self) -> bool:
-        """Whether time is to go on."""
+        """True if time should advance."""
         if self.is_over or self.is_landed:
             return False
         return self._goal_ns is not None or self._flows or self.craft.script.is_waiting
 
     @property
     def is_busy(self) -> bool:
-        """Whether something is under way that a line of a script would wait for."""
+        """True if an action is in progress that a line of a script would wait for."""
         waits = self._goal_ns is not None or self.craft.script.is_waiting or (self._flows and not self.craft.flows)
         return waits and not self.is_over and not self.is_landed
 
     def is_shown(self, event: DecodedEvent) -> bool:
-        """Whether an event passes the filter."""
+        """Return True if an event passes the filter."""
         return event.event_type >= self.least_type and self.only_app in (None, event.app)
 
     def status(self) -> str:
-        """One line: when, how fast, what was sent and accepted."""
+        """Return one line: the time, the speed, and the numbers of packets sent and accepted."""
         state = f"{self.speed:.1f} x real time" if self.moves else "over" if self.is_landed else "stands"
         accepted, refused = self.board.counters()
         time = f"{self.craft.script.scene.now_ns / NS_PER_S:.3f} s"
@@ -195,8 +195,8 @@ class ConsoleSession:
     # -- time --------------------------------------------------------------------------------------------------------
 
     def go_on(self) -> bool:
-        """Let time go on for a short while, if it is to; whether it did."""
-        self.craft.script.advance()  # what is decided now is waited for no more
+        """Advance time for a short while, if it should. Returns True if it advanced."""
+        self.craft.script.advance()  # steps that are decided now are no longer waited for
         self._look_for_the_end()
         if not self.moves:
             self._stood = True
@@ -221,7 +221,7 @@ class ConsoleSession:
             self.say(REPLY, "the run is over; quit ends the session")
 
     def gather(self) -> None:
-        """Take what the craft has to tell."""
+        """Take the news of the craft."""
         for each in self.craft.news():
             if isinstance(each, str):
                 self._gather_line(each)
@@ -234,7 +234,7 @@ class ConsoleSession:
                 self.board.note(each)
 
     def _gather_line(self, line: str) -> None:
-        """A line of the craft's console; what its event port prints comes as an event right after it."""
+        """Add a line of the craft's console. Skip output of its event port, because it arrives as an event next."""
         self._prints_event = self._prints_event or line.startswith(EVENT_PORT)
         if not self._prints_event:
             self.say(CONSOLE, line)
@@ -246,7 +246,7 @@ class ConsoleSession:
             self._watch, self._watched_ns = Stopwatch(), self.craft.stands_ns
 
     def end(self) -> None:
-        """All is over: what is still expected is decided."""
+        """End the session, and decide all open expectations."""
         self.is_over = True
         self.craft.script.end()
         self.gather()
@@ -254,7 +254,7 @@ class ConsoleSession:
     # -- lines -------------------------------------------------------------------------------------------------------
 
     def take(self, line: str) -> None:
-        """Do what a line says; what is wrong with it is told."""
+        """Carry out a line, and report an error in it."""
         line = line.strip()
         if not line or line.startswith("#") or self.is_over:
             return
@@ -272,7 +272,7 @@ class ConsoleSession:
         self.gather()
 
     def _as_send(self, line: str) -> str:
-        """The step that a command by its name stands for, in small letters too."""
+        """Return the step that sends a command by its name; the name may be in lower case."""
         name, blank, fields = line.partition(" ")
         commands = self.craft.script.scene.dictionary.commands
         return f"send {name.upper() if name not in commands else name}{blank}{fields}"
@@ -284,7 +284,7 @@ class ConsoleSession:
             self.is_over = True
 
     def _add(self, text: str, file: str = TYPED) -> None:
-        """A line or a file of a script."""
+        """Add a line, or the file of a script."""
         script, began_ns = self.craft.script, self.craft.stands_ns
 
         def tell(step: Step, verdict: StepVerdict) -> None:
@@ -337,7 +337,7 @@ class ConsoleSession:
 
         script.add(f"after 0 expect {' '.join(words)}{limit}", TYPED, tell)
         script.advance()
-        scene.mark_ns, scene.since = mark  # it looks from here on; what a script expects, it does not touch
+        scene.mark_ns, scene.since = mark  # `until` looks from here on; it does not affect the expectations of a script
 
     def _step(self, words: list[str]) -> None:
         count = _parsed(count_of, words) if words else 1
@@ -357,7 +357,7 @@ class ConsoleSession:
         self.pause()
 
     def pause(self) -> None:
-        """Stand still, and wait no more for what was expected."""
+        """Stand still, and give up all open expectations."""
         self._goal_ns, self._flows = None, self.craft.flows and not self.craft.script.scene.has_mission
         given_up = self.craft.script.give_up()
         if given_up:
@@ -394,10 +394,10 @@ class ConsoleSession:
         self.load(words[0])
 
     def load(self, file: str) -> None:
-        """Do what a script's file says.
+        """Carry out the file of a script.
 
         Raises:
-            UsageError: it cannot be read, or has a mistake; then nothing of it is done.
+            UsageError: it cannot be read, or has a mistake; then none of its steps is done.
         """
         try:
             text = text_limited(file, LINE_FILE_BYTES, handed=True)
@@ -431,7 +431,7 @@ class ConsoleSession:
 
 
 def _parsed(parse: Callable[[str], T], words: list[str]) -> T:
-    """What stands behind a word of the console, read as an option of the command line is."""
+    """Parse the argument of a console word in the same way as a command line option."""
     try:
         return parse(" ".join(words))
     except ArgumentTypeError as error:

@@ -1,6 +1,6 @@
-"""The commands trace, report and plot, which show a run; here are their options.
+"""The commands trace, report and plot, which show a run; their options are defined here.
 
-A command belongs here when it shows what happened in a run: that of a journal, or of a mission that it flies.
+A command belongs here if it shows the events of a run, either from a journal or from a mission that it flies.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ def add_board_report(actions: argparse._SubParsersAction[argparse.ArgumentParser
 
 
 def size_of(text: str) -> tuple[float, float]:
-    """Width and height in inches, for argparse."""
+    """Parse width and height in inches, for argparse."""
     try:
         width, height = map(float, text.lower().split("x"))
     except ValueError:

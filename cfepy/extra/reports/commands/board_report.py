@@ -1,4 +1,4 @@
-"""`cfepy board report`: what a mission needs of a board, and what makes it fit."""
+"""`cfepy board report`: a mission's requirements for a board, and the changes that make it fit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ UNKNOWN = "not measured"
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Report.
+    """Print the report.
 
     Returns:
         The exit status.

@@ -15,8 +15,8 @@ from cfepy.pilot import RunPlan
 from cfepy.plugins import Hook
 
 STORY_OF_RUN: Hook[Callable[[RunPlan], Any]] = Hook("story_of_run")
-"""What happened in a run that failed: a table of tasks and rows, the cause, how it ended; None when nothing failed."""
-MOST_KEPT = 10_000  # messages of each topic and packet, of which the values are drawn
+"""Returns the story of a failed run: a table of tasks and rows, the cause, and the end; None if it did not fail."""
+MOST_KEPT = 10_000  # messages of each topic and packet whose values are drawn
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -41,7 +41,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _story(plan: RunPlan) -> PageStory | None:
-    """What happened under a schedule such as `cfepy explore` finds; None for all others, and when nothing failed."""
+    """Return the story of a run with deviations, as `cfepy explore` finds them; None for others, and without a
+    failure.
+    """
     if not plan.schedule.is_told:
         return None
     find_story = STORY_OF_RUN.first()

@@ -14,7 +14,7 @@ KINDS = (".png", ".svg", ".pdf")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Draw what the command line names.
+    """Draw the values that the command line names.
 
     Returns:
         The exit status.
@@ -27,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(
             f"must be a picture with a name that ends with {', '.join(KINDS)}", file=path, field="--output"
         )
-    picture_of([[]])  # that matplotlib is installed is better known before a long run than after it
+    picture_of([[]])  # fail before a long run if matplotlib is not installed
     check_writable(path, "--output")
     series, status = look_at_series(arguments, arguments.names)
     drawn = [curves.since(arguments.from_s or 0.0) for word in arguments.names for curves in curves_of(series, word)]

@@ -25,12 +25,12 @@ class Lines(Attachment):
     """Prints the trace while the mission runs.
 
     Args:
-        stream: where to.
-        wanted: which records: gets virtual time in ns, the task's name, and what happened.
+        stream: the output.
+        wanted: selects records by virtual time in ns, the task's name, and the event.
 
     Attributes:
         count: lines so far.
-        error: what writing raised; inside the simulation nothing of the host may be raised.
+        error: the error of writing. It is kept here because host errors must not be raised inside the simulation.
     """
 
     def __init__(self, stream: TextIO, wanted: Callable[[int, str, str], bool]) -> None:
@@ -95,7 +95,7 @@ def _write(arguments: argparse.Namespace, path: str) -> int:
 
 
 def _filter(arguments: argparse.Namespace) -> Callable[[int, str, str], bool]:
-    """Which records the command line wants."""
+    """Make the filter of records that the command line asks for."""
     from_ns = round((arguments.from_s or 0) * NS_PER_S)
     until_ns = None if arguments.until is None else round(arguments.until * NS_PER_S)
     tasks, topics = arguments.task, arguments.topic

@@ -1,10 +1,9 @@
 """`--foxglove`: the mission in Foxglove, live, over its WebSocket protocol (docs.foxglove.dev, "Foxglove WebSocket").
 
-What belongs here says in Foxglove's terms what the mission has, and the other way round.
+A module belongs here if it translates between the mission and Foxglove's protocol.
 
-`FoxgloveViewer` watches the bus, as a recording does, so a run that is shown has the trace of one that is not. What
-comes in enters while the run stands still, through `cfepy.mission.outside`; so a journal has it, and a replay needs
-none of this.
+`FoxgloveViewer` watches the bus, as a recording does, so viewers do not change the trace of a run. Input enters while
+the run stands still, through `cfepy.mission.outside`. So a journal records it, and a replay needs no viewer.
 """
 
 from __future__ import annotations
@@ -38,23 +37,23 @@ if TYPE_CHECKING:
 
 __all__ = ["FoxgloveViewer"]
 
-LOOK_S = 0.05  # wall time between two looks at what there is
+LOOK_S = 0.05  # wall time between two looks at the graph
 
 
 class FoxgloveViewer(TopicWatch):
-    """Attach it to the mission, join it to the host, and close it when the run is over.
+    """A server for Foxglove. Attach it to the mission, join it to the host, and close it when the run is over.
 
     Args:
-        place: where viewers connect.
-        admission: whom it lets in.
-        name: of the mission; viewers show it.
-        counts: of the run's report.
+        place: the address at which viewers connect.
+        admission: decides which viewers may connect.
+        name: name of the mission; viewers show it.
+        counts: counts for the run's report.
+
+    Attributes:
+        place: the address at which viewers connect, with the actual port.
 
     Raises:
         UsageError: the package websockets is not installed, or the port is taken.
-
-    Attributes:
-        place: where viewers connect, with the port that was free.
     """
 
     def __init__(self, place: ListenPlace, admission: Admission, name: str, counts: PeerCounts) -> None:
@@ -97,7 +96,7 @@ class FoxgloveViewer(TopicWatch):
         self._channels.show_packet(seen, declared, self._stamp(seen.at_ns) or 0)
 
     def _show_as(self, topic: str, seen: Seen) -> None:
-        """Show the packet of an application as the message that the mission file makes of it."""
+        """Show the packet of an application as the message that the mission file defines for it."""
         header = self._shown.header(topic) or {}
         if not self._channels.announce(topic, header).is_heard:
             return
@@ -112,11 +111,11 @@ class FoxgloveViewer(TopicWatch):
     # -- the host ----------------------------------------------------------------------------------------------------
 
     def fileno(self) -> int:
-        """What can be read when something wants to come in."""
+        """Return the descriptor that becomes readable when input arrives."""
         return self._server.fileno()
 
     def exchange(self) -> None:
-        """Bring in what arrived, and show what is new; the run stands still."""
+        """Bring in the input that arrived, and show news, while the run stands still."""
         mission, incoming = self._mission, self._incoming
         assert mission is not None
         assert incoming is not None
@@ -132,8 +131,8 @@ class FoxgloveViewer(TopicWatch):
             self._look(mission)
 
     def close(self) -> None:
-        """The run is over: let the last messages out, and end all connections; may be called more than once."""
-        self._incoming = None  # viewers that leave now leave nothing in the mission
+        """Send the last messages, and end all connections at the end of the run. You may call it more than once."""
+        self._incoming = None  # viewers that leave now have nothing left in the mission
         self._services.forget("the run is over")
         self._server.close()
 
@@ -182,16 +181,16 @@ class FoxgloveViewer(TopicWatch):
         self._services.look(ros.graph)
         self._graph_shown.look(ros.graph)
 
-    # -- the way out of the nodes that viewers are ---------------------------------------------------------------------
+    # -- output to the nodes that stand for viewers --------------------------------------------------------------------
 
     def message(self, topic: str, publisher: str, subscriber: str, payload: bytes) -> None:
-        """Viewers watch the bus, and subscribe to nothing in the graph."""
+        """Do nothing: viewers watch the bus, and subscribe to nothing in the graph."""
 
     def packet(self, topic: str, packet: bytes) -> None:
-        """Viewers watch the bus, and subscribe to nothing in the graph."""
+        """Do nothing: viewers watch the bus, and subscribe to nothing in the graph."""
 
     def request(self, service: str, number: int, header: dict[str, str], body: bytes) -> None:
-        """Viewers offer no services."""
+        """Do nothing: viewers offer no services."""
 
     def answer(self, number: int, good: bool, body: bytes) -> None:
         self._services.answer(number, good, body)

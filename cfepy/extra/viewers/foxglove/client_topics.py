@@ -1,8 +1,8 @@
-"""What viewers publish: ROS messages that enter the mission's graph, and commands of cFE by their names.
+"""Publications of viewers: ROS messages that enter the mission's graph, and commands of cFE by their names.
 
-A viewer is a node outside, /foxglove_1 and so on, and has its publishers as all others have
-(`rospy_shim.graph.outside`). What enters goes through `cfepy.mission.outside`, so a journal has it. On a channel
-/cfe/NAME, where NAME is a command of the dictionary, a JSON object is its fields.
+A viewer is an outside node, /foxglove_1 and so on, and has publishers as all outside nodes do
+(`rospy_shim.graph.outside`). Its messages enter through `cfepy.mission.outside`, so a journal records them. On a
+channel /cfe/NAME, where NAME is a command of the dictionary, a JSON object holds its fields.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ NAME = re.compile(r"/[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 
 
 class RosPublication(NamedTuple):
-    """What a viewer publishes on a topic of ROS: the node that it is, and the type."""
+    """A ROS topic that a viewer publishes, with the viewer's node and the type."""
 
     topic: str
     node: str
@@ -45,21 +45,21 @@ class RosPublication(NamedTuple):
 
 
 class CommandPublication(NamedTuple):
-    """A viewer sends a command of cFE."""
+    """A channel on which a viewer sends a command of cFE."""
 
     topic: str
     command: Command
 
 
 class ClientTopics:
-    """All of it.
+    """All publications of viewers.
 
     Args:
         mission: the mission.
         dictionary: knows its commands.
-        counts: of the run's report.
-        way_out: of the viewers' nodes: it takes what the mission has for them.
-        tell: shows the user of the viewers what is wrong: a text, and a key under which the next one replaces it.
+        counts: counts for the run's report.
+        way_out: receives the mission's output for the viewers' nodes.
+        tell: shows an error to the users of the viewers: a text, and a key under which the next one replaces it.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class ClientTopics:
         self._numbers: dict[Viewer, int] = {}  # of viewers that publish
 
     def advertise(self, viewer: Viewer, wanted: Advertised) -> None:
-        """A viewer wants to publish."""
+        """Begin a publication of a viewer."""
         key = (viewer, wanted.number)
         self._leave(key)
         try:
@@ -93,18 +93,18 @@ class ClientTopics:
             self._counts.of(wanted.topic, PEER, INTO).connections += 1
 
     def unadvertise(self, viewer: Viewer, number: int) -> None:
-        """It will not any more."""
+        """End a publication of a viewer."""
         self._leave((viewer, number))
 
     def gone(self, viewer: Viewer) -> None:
-        """A viewer has left."""
+        """End all publications of a viewer that has left."""
         for key in [key for key in self._publications if key[0] is viewer]:
             self._leave(key)
 
     def publish(self, viewer: Viewer, message: Published) -> None:
-        """A message of a viewer."""
+        """Take a message of a viewer."""
         publication = self._publications.get((viewer, message.number))
-        if publication is None:  # what is wrong with it was told when it was advertised, if it was
+        if publication is None:  # an error was reported when it was advertised
             row = self._counts.of(CONNECTIONS, PEER, INTO)
             row.dropped += 1
             row.why = f"channel {message.number} of a viewer is not, or cannot be, published"
@@ -129,13 +129,13 @@ class ClientTopics:
         self._enter(publication)
 
     def enter(self) -> None:
-        """Let messages in that have waited for room."""
+        """Enter messages that have waited for room."""
         for publication in self._publications.values():
             if isinstance(publication, RosPublication) and publication.waiting:
                 self._enter(publication)
 
     def begin(self) -> None:
-        """The mission's graph is new: a processor reset has made another."""
+        """Join all publications to a new graph, such as after a processor reset."""
         for publication in self._publications.values():
             if isinstance(publication, RosPublication):
                 self._join(publication)
@@ -152,13 +152,13 @@ class ClientTopics:
             row.dropped += len(publication.waiting)
             self._mission.outside.act(ROS, "publish no more", publication.topic, publication.node)
 
-    # -- what a viewer wants -----------------------------------------------------------------------------------------
+    # -- begin a publication -------------------------------------------------------------------------------------------
 
     def _publication(self, viewer: Viewer, wanted: Advertised) -> RosPublication | CommandPublication:
-        """What becomes of it.
+        """Make a publication.
 
         Raises:
-            UsageError, CfeError, ValueError, KeyError: it cannot be.
+            UsageError, CfeError, ValueError, KeyError: it is not possible.
         """
         command = self._dictionary.commands.get(wanted.topic.removeprefix(PACKETS))
         if wanted.topic.startswith(PACKETS) and command is not None:
@@ -180,14 +180,16 @@ class ClientTopics:
         return found
 
     def _number_of(self, viewer: Viewer) -> int:
-        """The number of a viewer that publishes: the least that is free, so that no names are left behind."""
+        """Return the number of a viewer that publishes: the lowest free one, so that the number of names stays
+        small.
+        """
         here = {viewer for viewer, _ in self._publications}
         self._numbers = {each: number for each, number in self._numbers.items() if each in here}
         taken = set(self._numbers.values())
         return self._numbers.setdefault(viewer, next(number for number in count(1) if number not in taken))
 
     def _definition(self, topic: str, wanted: Advertised) -> str:
-        """The definition of a type: as the mission knows it, or else as the viewer says."""
+        """Return the definition of a type: from the mission, or else from the viewer."""
         from rospy_shim.types.msgs import message_class
 
         ros = self._mission.ros
@@ -208,7 +210,7 @@ class ClientTopics:
         assert ros is not None
         ros.outside.ways_out[node] = self._way_out
 
-    # -- what enters -------------------------------------------------------------------------------------------------
+    # -- input ---------------------------------------------------------------------------------------------------------
 
     def _enter(self, publication: RosPublication) -> None:
         ros, waiting = self._mission.ros, publication.waiting
@@ -226,7 +228,7 @@ class ClientTopics:
     def _command(self, command: Command, data: bytes) -> None:
         try:
             self._send(command, data)
-        except (TypeError, KeyError, AttributeError, OverflowError) as error:  # of values that no field takes
+        except (TypeError, KeyError, AttributeError, OverflowError) as error:  # of values that do not fit a field
             raise ValueError(f"invalid {command.name}: {error}") from None
 
     def _send(self, command: Command, data: bytes) -> None:
@@ -238,7 +240,7 @@ class ClientTopics:
 
 
 def _name_of(topic: str) -> str:
-    """The name of a topic for the report; what is none is not repeated there."""
+    """Return the name of a topic for the report, or a placeholder for an invalid one."""
     return topic if NAME.fullmatch(topic) else "(no topic)"
 
 
@@ -249,7 +251,7 @@ def _library(kind: str, definition: str) -> Any:
 
 
 def _encoder(class_of: Callable[[str], Any], kind: str, is_json: bool) -> Callable[[bytes], bytes]:
-    """What makes a message, as ROS serialises it, of what a viewer sends; it raises ValueError for what is none."""
+    """Make a function that serialises a viewer's message as ROS does; it raises ValueError for invalid data."""
     made = class_of(kind)
 
     def encode(data: bytes) -> bytes:
@@ -257,7 +259,7 @@ def _encoder(class_of: Callable[[str], Any], kind: str, is_json: bool) -> Callab
             if is_json:
                 return bytes(message_from_json(class_of, kind, loads(data))._pack())
             is_whole = made._unpack(data)._pack() == data
-        except Exception as error:  # whatever the generated code raises for what is no such message
+        except Exception as error:  # the generated code may raise any error for invalid data
             raise ValueError(f"invalid {kind}: {error}") from None
         if not is_whole:
             raise ValueError(f"invalid {kind}: wrong number of bytes")

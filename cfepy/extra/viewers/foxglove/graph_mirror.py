@@ -1,4 +1,4 @@
-"""What viewers are told of the mission's graph: its parameters, its services, who publishes and hears what."""
+"""The mission's graph for viewers: its parameters, its services, its publishers and subscribers."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 CALLER = "/foxglove"
 HIGHEST, LOWEST = 2**63 - 1, -(2**63)
 CALL_S = 60.0  # wall time for which a viewer waits for an answer
-MOST_CALLS = 32  # of one viewer that wait for their answers; as foxglove-sdk has it
+MOST_CALLS = 32  # pending calls of one viewer; as in foxglove-sdk
 
 
 class ParameterMirror:
     """The mission's parameters, as viewers know them.
 
     Args:
-        server: tells viewers of changes.
+        server: sends changes to viewers.
     """
 
     def __init__(self, server: ViewerServer) -> None:
@@ -35,7 +35,7 @@ class ParameterMirror:
         self._is_stale = False
 
     def watch(self, tree: ParameterTree) -> None:
-        """The graph is new, or the first one."""
+        """Watch the parameters of a new graph."""
         self._tree = tree
         self._is_stale = True
         tree.on_change(self._changed)
@@ -44,7 +44,7 @@ class ParameterMirror:
         self._is_stale = True
 
     def look(self) -> None:
-        """Tell of what has changed."""
+        """Send changes to the viewers."""
         tree = self._tree
         if not self._is_stale or tree is None:
             return
@@ -57,7 +57,7 @@ class ParameterMirror:
             self._server.tell_parameters([*changed, *gone])
 
     def set(self, mission: Mission, wanted: ParametersSet) -> None:
-        """A viewer sets parameters; what was not possible it sees at once."""
+        """Set parameters for a viewer, and send it the resulting values at once."""
         for name, value in wanted.values.items():
             arguments = (CALLER, name) if value is None else (CALLER, name, value)
             try:
@@ -74,7 +74,7 @@ class ParameterMirror:
 
 
 def _plain(value: Any) -> Any:
-    """A value as viewers take it."""
+    """Convert a value to the types that viewers accept."""
     if isinstance(value, dict):
         return {str(name): _plain(each) for name, each in value.items()}
     if isinstance(value, list | tuple):
@@ -102,12 +102,12 @@ class ServiceMirror:
     def __init__(self, server: ViewerServer) -> None:
         self._server = server
         self._offered: dict[str, tuple[int | None, str]] = {}
-        """The number under which viewers know a service, None for one that they do not know, and its md5sum."""
+        """The viewers' number of a service and its md5sum; the number is None if the service is not offered to them."""
         self._calls: dict[int, _Call] = {}
         self._last = 0
 
     def look(self, graph: RosGraph) -> None:
-        """Offer what is new, and what is gone no more; end calls that have waited for too long."""
+        """Offer new services, withdraw lost ones, and end calls that have waited for too long."""
         here = {name: entry.service.service_class for name, entry in list(graph.services.items())}
         known = {name: kind._md5sum for name, kind in here.items() if kind._md5sum not in ("", "*")}
         gone = [name for name, (_, md5sum) in self._offered.items() if known.get(name) != md5sum]
@@ -124,13 +124,13 @@ class ServiceMirror:
         try:
             _, kind = graph.caller(name)
             request, response = kind._request_class._full_text, kind._response_class._full_text
-        except Exception:  # a compiled node's, of a type that no node in Python knows: it cannot be described
+        except Exception:  # a compiled node's service, with a type that no Python node knows: it cannot be described
             self._offered[name] = (None, md5sum)
         else:
             self._offered[name] = (self._server.offer(name, kind._type, request, response), md5sum)
 
     def begin(self, mission: Mission, viewer: Viewer, wanted: Called, way_out: Any) -> None:
-        """A viewer calls a service of the mission."""
+        """Call a service of the mission for a viewer."""
         call = _Call(viewer, wanted, time.monotonic())
         service = next((name for name, (number, _) in self._offered.items() if number == wanted.service), None)
         if service is None:
@@ -154,7 +154,7 @@ class ServiceMirror:
             self.answer(number, False, f"service {service} cannot be called: {error}".encode())
 
     def answer(self, number: int, good: bool, body: bytes) -> None:
-        """The mission has answered."""
+        """Send the answer of the mission."""
         call = self._calls.pop(number, None)
         if call is None:
             return
@@ -167,21 +167,21 @@ class ServiceMirror:
         call.viewer.tell(service_failure(call.wanted.service, call.wanted.call, why))
 
     def gone(self, viewer: Viewer) -> None:
-        """A viewer has left: nobody waits for the answers to its calls."""
+        """Drop the calls of a viewer that has left."""
         self._calls = {number: call for number, call in self._calls.items() if call.viewer is not viewer}
 
     def forget(self, why: str) -> None:
-        """Nobody answers any more."""
+        """Let all pending calls fail."""
         calls, self._calls = self._calls, {}
         for call in calls.values():
             self._fail(call, why)
 
 
 class GraphMirror:
-    """Who publishes and hears what.
+    """Publishers, subscribers and services for viewers.
 
     Args:
-        server: tells it.
+        server: sends the graph to viewers.
     """
 
     def __init__(self, server: ViewerServer) -> None:
@@ -189,7 +189,7 @@ class GraphMirror:
         self._told = NOTHING
 
     def look(self, graph: RosGraph) -> None:
-        """Tell it, if it is another than before."""
+        """Send the graph if it has changed."""
         published, subscribed = {}, {}
         for name, entry in list(graph.topics.items()):
             published[name] = [link.node.names.name for link in entry.links]

@@ -1,8 +1,8 @@
-"""Foxglove's WebSocket protocol: what goes to viewers, and what they ask for, as bytes (foxglove/ws-protocol, spec.md).
+"""Foxglove's WebSocket protocol: messages to and from viewers, as bytes (foxglove/ws-protocol, spec.md).
 
-It is spoken under two names, which differ in nothing that is used here: Foxglove itself asks for `foxglove.sdk.v1`, its
-older client library and Lichtblick for `foxglove.websocket.v1`. A text is a JSON object with an `op`; the first byte of
-a binary message says what it is. Numbers are little-endian.
+It has two names, without a difference in the parts used here: Foxglove itself asks for `foxglove.sdk.v1`, its older
+client library and Lichtblick for `foxglove.websocket.v1`. A text is a JSON object with an `op`. The first byte of a
+binary message is its opcode. Numbers are little-endian.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ JSON, ROS1 = "json", "ros1"
 ROS1_SCHEMA, JSON_SCHEMA = "ros1msg", "jsonschema"
 WARNING, ERROR = 1, 2  # levels of a status
 MOST_ROWS = {"channels": 100, "parameters": 1_000}
-"""Entries of lists whose entries are work; others have `VIEWER_ROWS`."""
-HALF_A_CHARACTER = "\\ud"  # in JSON: one of two surrogates, without the other of which it is no text
+"""Maximum entries of lists whose entries are expensive; others have `VIEWER_ROWS`."""
+HALF_A_CHARACTER = "\\ud"  # in JSON: a surrogate; without its other half it is not a valid text
 
 _MESSAGE_DATA, _TIME, _SERVICE_RESPONSE = 1, 2, 3  # from the server
 _SERVICE_REQUEST = 2  # from a viewer; its messages are 1, too
@@ -36,23 +36,23 @@ _MOST_NUMBER = 2**32 - 1
 _FLOAT, _FLOATS, _BYTES = "float64", "float64_array", "byte_array"
 
 Graph = tuple[Mapping[str, Sequence[str]], Mapping[str, Sequence[str]], Mapping[str, Sequence[str]]]
-"""Publishers and subscribers of each topic, and who offers each service."""
+"""Publishers and subscribers of each topic, and the nodes that offer each service."""
 
 
 class FrameError(ValueError):
-    """A viewer has sent what the protocol does not know."""
+    """A viewer has sent a message that the protocol does not define."""
 
 
 # -- to viewers --------------------------------------------------------------------------------------------------------
 
 
 def text(op: str, **fields: Any) -> str:
-    """A message in JSON."""
+    """Return a message in JSON."""
     return json.dumps({"op": op, **fields})
 
 
 def server_info(name: str, session: str) -> str:
-    """What each viewer is told first."""
+    """Return the first message to each viewer."""
     return text(
         "serverInfo",
         name=name,
@@ -64,12 +64,12 @@ def server_info(name: str, session: str) -> str:
 
 
 def status(level: int, message: str, key: str | None = None) -> str:
-    """Something that the user of a viewer should know; one with the same key takes its place."""
+    """Return a message for the user of a viewer; one with the same key replaces it."""
     return text("status", level=level, message=message, **({} if key is None else {"id": key}))
 
 
 def service(number: int, name: str, kind: str, request: str, response: str) -> dict[str, Any]:
-    """A service of ROS, as it is advertised, with the definitions of both of its parts."""
+    """Return a ROS service as it is advertised, with the definitions of both of its parts."""
 
     def part(ending: str, definition: str) -> dict[str, str]:
         name = f"{kind}{ending}"
@@ -87,32 +87,33 @@ def service(number: int, name: str, kind: str, request: str, response: str) -> d
 
 
 def message_head(subscription: int, time_ns: int) -> bytes:
-    """What comes before the bytes of a message."""
+    """Return the header of a message."""
     return _message_head(_MESSAGE_DATA, subscription, time_ns)
 
 
 def time_message(time_ns: int) -> bytes:
-    """What time it is."""
+    """Return a message with the time."""
     return _time(_TIME, time_ns)
 
 
 def service_response(service: int, call: int, answer: bytes) -> bytes:
-    """The answer to a call."""
+    """Return the answer to a call."""
     encoding = ROS1.encode()
     return _response_head(_SERVICE_RESPONSE, service, call, len(encoding)) + encoding + answer
 
 
 def service_failure(service: int, call: int, why: str) -> str:
-    """A call has failed."""
+    """Return the message for a failed call."""
     return text("serviceCallFailure", serviceId=service, callId=call, message=why)
 
 
 def parameters(values: Iterable[tuple[str, Any]], request: str | None = None) -> str:
-    """What parameters are; of None, that there is none.
+    """Return a message with the values of parameters.
 
     Args:
-        values: with their names; bytes, numbers, texts, and lists and dicts of them.
-        request: of which it is the answer.
+        values: names and values; bytes, numbers, texts, and lists and dicts of them. None means that there is no such
+            parameter.
+        request: id of the request that it answers.
     """
     told = [{"name": name, **_told(value)} for name, value in values]
     return text("parameterValues", parameters=told, **({} if request is None else {"id": request}))
@@ -131,7 +132,7 @@ def _told(value: Any) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """A value as JSON has it, which has no number that is none, and no bytes."""
+    """Convert a value to JSON, which has no NaN or infinity, and no bytes."""
     if isinstance(value, float) and not math.isfinite(value):
         return None
     if isinstance(value, bytes):
@@ -142,7 +143,7 @@ def _plain(value: Any) -> Any:
 
 
 def graph_update(before: Graph, now: Graph) -> str:
-    """How the graph differs from what was told before."""
+    """Return the difference of two graphs."""
     publishers, subscribers, providers = (
         [{"name": name, key: list(ids)} for name, ids in new.items() if ids != old.get(name, ())]
         for old, new, key in zip(before, now, ("publisherIds", "subscriberIds", "providerIds"), strict=True)
@@ -162,19 +163,19 @@ def graph_update(before: Graph, now: Graph) -> str:
 
 
 class Subscribed(NamedTuple):
-    """A viewer wants messages: pairs of a number of its own and one of a channel."""
+    """A viewer subscribes: pairs of a subscription number of its own and a channel number."""
 
     pairs: list[tuple[int, int]]
 
 
 class Unsubscribed(NamedTuple):
-    """It does not any more; the numbers are its own."""
+    """A viewer unsubscribes; the numbers are its own."""
 
     numbers: list[int]
 
 
 class Advertised(NamedTuple):
-    """It wants to publish; `definition` is that of the type, if it gave one."""
+    """A viewer announces a publication; `definition` is the definition of the type, if it gave one."""
 
     number: int
     topic: str
@@ -184,47 +185,47 @@ class Advertised(NamedTuple):
 
 
 class Unadvertised(NamedTuple):
-    """It will not any more."""
+    """A viewer ends publications."""
 
     numbers: list[int]
 
 
 class Published(NamedTuple):
-    """Its message."""
+    """A viewer publishes a message."""
 
     number: int
     data: bytes
 
 
 class ParametersAsked(NamedTuple):
-    """It wants to know parameters, all of them if it names none."""
+    """A viewer asks for parameters; all of them if it names none."""
 
     names: list[str]
     request: str | None
 
 
 class ParametersSet(NamedTuple):
-    """It sets parameters; None deletes one."""
+    """A viewer sets parameters; None deletes one."""
 
     values: dict[str, Any]
     request: str | None
 
 
 class ParametersWatched(NamedTuple):
-    """It wants to hear of changes, of all that there are if it names none; or not any more."""
+    """A viewer subscribes to changes of parameters, or unsubscribes; all existing ones if it names none."""
 
     names: list[str]
     is_on: bool
 
 
 class GraphWatched(NamedTuple):
-    """It wants to hear how the graph changes, or not any more."""
+    """A viewer subscribes to changes of the graph, or unsubscribes."""
 
     is_on: bool
 
 
 class Called(NamedTuple):
-    """It calls a service."""
+    """A viewer calls a service."""
 
     service: int
     call: int
@@ -247,10 +248,13 @@ Op = (
 
 
 def ops_of(frame: str | bytes) -> list[Op]:
-    """What a viewer asks for.
+    """Parse a message of a viewer.
+
+    Returns:
+        Its operations.
 
     Raises:
-        FrameError: it is no message of the protocol.
+        FrameError: it is not a message of the protocol.
     """
     if isinstance(frame, bytes):
         return [_binary(frame)] if frame else []
@@ -307,7 +311,7 @@ def _advertised(channel: Mapping[str, Any]) -> Advertised:
 
 
 def _value(parameter: Mapping[str, Any]) -> Any:
-    """The value of a parameter; numbers are of one type in a list, since JavaScript writes 1.0 as 1."""
+    """Return the value of a parameter. Numbers in a list get one type, since JavaScript writes 1.0 as 1."""
     value, kind = parameter.get("value"), parameter.get("type")
     if value is None:
         return None

@@ -1,7 +1,7 @@
-"""What viewers see: a channel for each topic of ROS, for each packet of cFE, and for the events.
+"""The channels of viewers: one for each topic of ROS, one for each packet of cFE, and one for the events.
 
 Topics are in ROS's own encoding with their definitions, so nothing is converted. Packets and events are JSON, as in an
-MCAP file (`cfepy.ground.json_packets`). What nobody has subscribed to costs a look into a set.
+MCAP file (`cfepy.ground.json_packets`). A message without subscribers costs only a look-up in a set.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ class ShownChannel:
     """One channel.
 
     Args:
-        number: of the channel, no other's.
+        number: unique number of the channel.
         topic: its name.
-        encoding: of its messages.
+        encoding: encoding of its messages.
         schema: name, encoding and text of the schema.
-        counts: of the run's report.
+        counts: counts for the run's report.
 
     Attributes:
-        viewers: those that have subscribed, with the numbers of their subscriptions.
+        viewers: the subscribed viewers, with the numbers of their subscriptions.
         latched: the last message and its time of each publisher that latches.
     """
 
@@ -65,16 +65,16 @@ class ShownChannel:
 
     @property
     def is_heard(self) -> bool:
-        """Whether anybody has subscribed."""
+        """True if there is a subscriber."""
         return bool(self.viewers)
 
     def show(self, data: bytes, time_ns: int) -> None:
-        """Send a message to all that have subscribed."""
+        """Send a message to all subscribers."""
         for viewer in self.viewers:
             self._show_to(viewer, data, time_ns)
 
     def greet(self, viewer: Viewer) -> None:
-        """A viewer has subscribed: it gets the latched messages, as a new subscriber in ROS does."""
+        """Send a new subscriber the latched messages, as ROS does."""
         for data, time_ns in self.latched.values():
             self._show_to(viewer, data, time_ns)
 
@@ -86,9 +86,9 @@ class ShownChannels:
     """All channels.
 
     Args:
-        server: tells viewers of them.
-        dictionary: of the mission.
-        counts: of the run's report.
+        server: advertises them to viewers.
+        dictionary: the dictionary of the mission.
+        counts: counts for the run's report.
     """
 
     def __init__(self, server: ViewerServer, dictionary: Dictionary, counts: PeerCounts) -> None:
@@ -106,11 +106,14 @@ class ShownChannels:
     # -- topics ------------------------------------------------------------------------------------------------------
 
     def announce(self, topic: str, header: Mapping[str, str]) -> ShownChannel:
-        """A topic of ROS with its type; of another type than before, its former channel ends.
+        """Advertise a topic of ROS with its type. If the type has changed, its former channel ends.
 
         Args:
             topic: its name.
             header: the connection header of a publisher, with type, md5sum and message_definition.
+
+        Returns:
+            The channel.
         """
         known = self._topics.get(topic)
         if known is not None and known[0] == header["md5sum"]:
@@ -122,10 +125,10 @@ class ShownChannels:
         return made
 
     def show_message(self, message: TopicMessage) -> None:
-        """A message was published."""
+        """Show a message that was published."""
         header = message.header
         if header["md5sum"] == "*" or "message_definition" not in header:
-            return  # of a type that nobody has told yet
+            return  # of a type that is not known yet
         channel = self.announce(message.topic, header)
         time_ns = message.stamp_ns or 0  # /clock has not begun
         if header.get("latching") == "1":
@@ -135,7 +138,7 @@ class ShownChannels:
     # -- packets and events ------------------------------------------------------------------------------------------
 
     def show_packet(self, seen: Seen, declared: Command | Telemetry | None, time_ns: int) -> None:
-        """A packet was sent that is no message of ROS."""
+        """Show a packet that is not a message of ROS."""
         name = f"{PACKETS}{f'0x{seen.msg_id:04X}' if declared is None else declared.name}"
         channel = self._packets.get(name) or self._packet(name, declared)
         if channel.is_heard:
@@ -147,7 +150,7 @@ class ShownChannels:
         try:
             event = DecodedEvent.of(seen)
         except (CfeError, UsageError):
-            return  # an application has sent something else on this MsgId, which the packet's own channel shows
+            return  # an application has sent other data on this MsgId, which the packet's own channel shows
         self._events.show(event_json(event, time_ns), time_ns)
 
     def _packet(self, name: str, declared: Command | Telemetry | None) -> ShownChannel:

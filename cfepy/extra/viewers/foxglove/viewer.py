@@ -1,7 +1,7 @@
-"""One viewer: what it has subscribed to, what it gets of it, and what it wants from the mission.
+"""One viewer: its subscriptions, the messages to it, and its requests.
 
-Messages of channels are lost when a viewer does not keep up, the oldest first, so that what it shows is of now. All
-else it gets whole; one that leaves too much of that unread is sent away.
+Messages of channels are dropped if a viewer does not keep up, the oldest first, so that it shows current data. All
+other messages arrive completely; a viewer that leaves too many of them unread is disconnected.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ if TYPE_CHECKING:
 PEER = "foxglove"
 MOST_WAITING = 1024  # messages of channels for one viewer
 MOST_BYTES = 1 << 26  # of them; one message may be longer
-MOST_UNREAD = 900  # of what is not to be lost; the socket keeps few more
+MOST_UNREAD = 900  # of messages that must not be dropped; the socket keeps a few more
 TOO_MUCH = 1008  # RFC 6455, 7.4.1
 LOST = "lost on the way to viewers that are too slow, or left"
 LONGEST_TROUBLE = 200  # characters
 
 
 class ViewerChannel(Protocol):
-    """What a viewer may subscribe to.
+    """A channel that viewers may subscribe to.
 
     Attributes:
-        number: of the channel, no other's.
+        number: unique number of the channel.
         topic: its name.
-        viewers: those that have subscribed, with the numbers of their subscriptions.
+        viewers: the subscribed viewers, with the numbers of their subscriptions.
     """
 
     number: int
@@ -53,7 +53,7 @@ class ViewerChannel(Protocol):
         """The channel as it is advertised."""
 
     def greet(self, viewer: Viewer) -> None:
-        """A viewer has subscribed."""
+        """Take a new subscriber."""
 
 
 class _Waiting(NamedTuple):
@@ -69,15 +69,15 @@ class Viewer:
     """A viewer.
 
     Args:
-        counts: of the run's report.
-        channel: the channel of a number, if there is one.
-        welcome: called when the viewer is there.
-        do: does what it asks of the mission, or of the server.
+        counts: counts for the run's report.
+        channel: returns the channel of a number, or None.
+        welcome: called when the viewer has connected.
+        do: carries out requests to the mission or the server.
         farewell: called when it is gone.
 
     Attributes:
-        watched: names of parameters of whose changes it wants to hear.
-        watches_graph: whether it wants to hear of those of the graph.
+        watched: names of parameters whose changes it has subscribed to.
+        watches_graph: True if it has subscribed to changes of the graph.
     """
 
     def __init__(
@@ -100,11 +100,11 @@ class Viewer:
         self._waiting: deque[_Waiting] = deque()
         self._size = 0
 
-    # -- what comes --------------------------------------------------------------------------------------------------
+    # -- input ---------------------------------------------------------------------------------------------------------
 
     @property
     def is_ready(self) -> bool:
-        """What it publishes waits elsewhere for room."""
+        """Always True: its publications wait elsewhere for room."""
         return True
 
     @property
@@ -113,7 +113,7 @@ class Viewer:
 
     @property
     def takes_part(self) -> bool:
-        """One that publishes is heard now and then."""
+        """True if it has a subscription. The server also hears from a viewer that publishes."""
         return bool(self._subscribed or self.watched or self.watches_graph)
 
     def begin(self, connection: WebSocket) -> None:
@@ -138,7 +138,7 @@ class Viewer:
                 self._do(self, op)
 
     def complain(self, what: str) -> None:
-        """Tell the viewer, and the report, what is wrong with something that it has sent."""
+        """Report an error in a message of the viewer, to it and in the run's report."""
         row = self._counts.of(CONNECTIONS, PEER, INTO)
         row.dropped += 1
         row.why = what = what[:LONGEST_TROUBLE]
@@ -172,32 +172,32 @@ class Viewer:
             self._forget(channel.number)
 
     def ends(self, channel: ViewerChannel) -> None:
-        """There is no such channel any more."""
+        """Drop the subscription to a removed channel."""
         number = channel.viewers.get(self)
         if number is not None:
             self._unsubscribe(number)
 
     def _forget(self, channel: int) -> None:
-        """Messages of a channel are not wanted any more."""
+        """Drop the waiting messages of a channel."""
         kept = deque(each for each in self._waiting if each.channel != channel)
         for each in self._waiting:
             if each.channel == channel:
                 self._lose(each)
         self._waiting = kept
 
-    # -- what goes ---------------------------------------------------------------------------------------------------
+    # -- output --------------------------------------------------------------------------------------------------------
 
     def tell(self, message: str | bytes) -> None:
-        """Send what is not to be lost."""
+        """Send a message that must not be dropped."""
         self._connection.send(message)
 
     def tell_if_idle(self, message: bytes) -> None:
-        """Send what a viewer that is behind does not need."""
+        """Send a message unless the viewer is behind."""
         if not self._connection.is_slow:
             self._connection.send(message)
 
     def show(self, channel: ViewerChannel, number: int, data: bytes, time_ns: int, row: PeerCount) -> None:
-        """Send a message of a channel, or let it wait; `number` is that of the subscription."""
+        """Send a message of a channel, or let it wait; `number` is the number of the subscription."""
         message = _Waiting(channel.number, message_head(number, time_ns) + data, len(data), row)
         if not self._waiting and not self._connection.is_slow:
             self._send(message)

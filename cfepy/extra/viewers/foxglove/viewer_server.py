@@ -1,4 +1,4 @@
-"""`ViewerServer`: what all viewers are told, whom it lets in, and what they ask of the mission."""
+"""`ViewerServer`: admits viewers, sends messages to all of them, and passes on their requests to the mission."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
 OPTION, EXTRA = "--foxglove", "viz"
 APPS = ("https://app.foxglove.dev", "https://studio.foxglove.dev")
-"""Pages that are Foxglove itself."""
+"""Sites that are Foxglove itself."""
 PROGRAMS = ("app",)
-"""Schemes of the pages in programs with windows of their own, besides files; --viewer-origin lets others in."""
+"""Schemes of the pages in desktop programs, besides files; --viewer-origin admits others."""
 MOST_WATCHED = 10_000  # names of parameters, by one viewer
 NOTHING: Graph = ({}, {}, {})
 
@@ -45,16 +45,16 @@ class ViewerServer:
     """The server.
 
     Args:
-        place: where it listens.
-        admission: whom it lets in.
-        name: of the mission; viewers show it.
-        counts: of the run's report.
-        do: does what a viewer asks of the mission.
-        gone: is told of a viewer that has left.
+        place: the address that it listens at.
+        admission: decides which viewers may connect.
+        name: name of the mission; viewers show it.
+        counts: counts for the run's report.
+        do: carries out a viewer's request to the mission.
+        gone: called when a viewer has left.
 
     Attributes:
-        place: where it listens, with the port that was free.
-        values: the mission's parameters; `tell_parameters` says which of them have changed.
+        place: the address that it listens at, with the actual port.
+        values: the mission's parameters; `tell_parameters` names the changed ones.
 
     Raises:
         UsageError: the package websockets is not installed, or the port is taken.
@@ -86,22 +86,22 @@ class ViewerServer:
 
     @property
     def viewers(self) -> list[Viewer]:
-        """Those that are connected."""
+        """The connected viewers."""
         return self._listener.clients
 
     def fileno(self) -> int:
-        """What can be read when something wants to come in."""
+        """Return the descriptor that becomes readable when input arrives."""
         return self._listener.fileno()
 
     def exchange(self) -> None:
-        """Send what has waited for room, and bring in what viewers ask for."""
+        """Send messages that have waited for room, and take the requests of viewers."""
         self._listener.exchange()
 
     def close(self) -> None:
-        """Let the last messages out, and end all connections."""
+        """Send the last messages, and end all connections."""
         self._listener.close()
 
-    # -- whom it lets in -----------------------------------------------------------------------------------------------
+    # -- admission -----------------------------------------------------------------------------------------------------
 
     def _viewer(self, address: str) -> Viewer:
         return Viewer(self._counts, self._channels.get, self._welcome, self._ask, self._gone)
@@ -126,7 +126,7 @@ class ViewerServer:
         if self._services:
             viewer.tell(text("advertiseServices", services=list(self._services.values())))
 
-    # -- what it is asked ----------------------------------------------------------------------------------------------
+    # -- requests ------------------------------------------------------------------------------------------------------
 
     def _ask(self, viewer: Viewer, op: Op) -> None:
         match op:
@@ -150,31 +150,35 @@ class ViewerServer:
             case _:
                 self._do(viewer, op)
 
-    # -- what it tells -------------------------------------------------------------------------------------------------
+    # -- output --------------------------------------------------------------------------------------------------------
 
     def _tell(self, message: str) -> None:
         for viewer in self.viewers:
             viewer.tell(message)
 
     def advertise(self, channel: ViewerChannel) -> None:
-        """There is a new channel; its number is no other's."""
+        """Advertise a new channel; its number must be unique."""
         self._channels[channel.number] = channel
         self._tell(text("advertise", channels=[channel.description]))
 
     def unadvertise(self, channel: ViewerChannel) -> None:
-        """There is no such channel any more."""
+        """Remove a channel."""
         del self._channels[channel.number]
         for viewer in list(channel.viewers):
             viewer.ends(channel)
         self._tell(text("unadvertise", channelIds=[channel.number]))
 
     def offer(self, name: str, kind: str, request: str, response: str) -> int:
-        """Offer a service of ROS; returns its number.
+        """Offer a service of ROS.
 
         Args:
-            name: of the service.
+            name: name of the service.
             kind: its type.
-            request, response: their definitions.
+            request: definition of its request.
+            response: definition of its response.
+
+        Returns:
+            Its number.
         """
         number = next(self._service_numbers)
         self._services[number] = service(number, name, kind, request, response)
@@ -182,20 +186,20 @@ class ViewerServer:
         return number
 
     def withdraw(self, services: list[int]) -> None:
-        """Offer services no more."""
+        """Withdraw services."""
         for each in services:
             del self._services[each]
         if services:
             self._tell(text("unadvertiseServices", serviceIds=services))
 
     def tell_time(self, time_ns: int) -> None:
-        """Tell the viewers what time it is in the mission."""
+        """Send the viewers the mission's time."""
         message = time_message(time_ns)
         for viewer in self.viewers:
             viewer.tell_if_idle(message)
 
     def tell_parameters(self, names: Iterable[str]) -> None:
-        """Parameters have changed: tell those that want to know of them."""
+        """Send changed parameters to the viewers that have subscribed to them."""
         changed = list(names)
         for viewer in self.viewers:
             told = [(name, self.values.get(name)) for name in changed if name in viewer.watched]
@@ -203,11 +207,11 @@ class ViewerServer:
                 viewer.tell(parameters(told))
 
     def tell_problem(self, what: str, key: str) -> None:
-        """Show a warning in the viewers; one with the same key takes its place."""
+        """Show a warning in the viewers; one with the same key replaces it."""
         self._tell(status(WARNING, what, key))
 
     def tell_graph(self, graph: Graph) -> None:
-        """Tell those that want to know how the graph has changed."""
+        """Send the changes of the graph to the viewers that have subscribed to it."""
         update = graph_update(self._graph, graph)
         self._graph = graph
         for viewer in self.viewers:
@@ -216,9 +220,9 @@ class ViewerServer:
 
 
 def _is_app(origin: str | None) -> bool:
-    """Whether a page is Foxglove's own: from its site, or in a program that has windows of its own, such as Electron.
+    """Return True if a page is Foxglove's own: from its site, or in a desktop program such as one based on Electron.
 
-    Extensions of a browser are not: they have schemes of their own, too, such as chrome-extension and moz-extension.
+    Extensions of a browser are not; their schemes differ, such as chrome-extension and moz-extension.
     """
     if origin is None or origin.rstrip("/") in APPS:
         return True

@@ -1,7 +1,7 @@
-"""The rosbridge protocol: clients such as roslibjs and roslibpy take part in a mission that runs (`--rosbridge`).
+"""The rosbridge protocol: clients such as roslibjs and roslibpy take part in a running mission (`--rosbridge`).
 
-What belongs here speaks what rosbridge_suite's rosbridge_websocket speaks over WebSockets, and answers for rosapi.
-What outside nodes have in the mission's graph is `rospy_shim.graph.outside`; who is let in,
+A module belongs here if it speaks the protocol of rosbridge_suite's rosbridge_websocket over WebSockets, or answers for
+rosapi. The entries of outside nodes in the mission's graph belong to `rospy_shim.graph.outside`; admission belongs to
 `cfepy.extra.viewers.listen`.
 """
 

@@ -1,8 +1,8 @@
-"""`BridgeNode`: what all clients together have in the mission's graph, under one name, as rosbridge_websocket has it.
+"""`BridgeNode`: the joint node of all clients in the mission's graph, under one name, as in rosbridge_websocket.
 
-A topic that several clients publish or hear has one publisher or subscriber. All that enters goes through
-`cfepy.mission.outside` as acts, so a journal has it, and a replay needs no client. What the mission has for clients is
-put aside while its tasks run, and handed on between two pieces of the run.
+A topic that several clients publish or subscribe to has one publisher or subscriber. All input enters through
+`cfepy.mission.outside` as host actions. So a journal records it, and a replay needs no client. Output for clients is
+kept while the mission's tasks run, and passed on between two steps of the run.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ if TYPE_CHECKING:
 NODE = "/rosbridge_websocket"
 ACT = "ros"
 UNREGISTER_S = 10.0  # wall time for which a publisher outlives its last client, as rosbridge's `unregister_timeout`
-MOST_WAITING = 1 << 27  # bytes of messages that are put aside in a piece of the run
+MOST_WAITING = 1 << 27  # bytes of messages that are kept in a step of the run
 
 
 class Hearer(Protocol):
-    """A client, as the node sees it."""
+    """The interface of a client for the node."""
 
     def heard(self, topic: str, message: Outgoing) -> None:
-        """A message of a topic that it has subscribed to."""
+        """Take a message of a topic that it has subscribed to."""
 
     def requested(self, service: str, number: str, values: dict[str, Any]) -> None:
-        """A call of a service that it offers."""
+        """Take a call of a service that it offers."""
 
 
 class _Published:
@@ -57,12 +57,12 @@ class _Published:
 
 
 class _Heard:
-    """A topic that clients hear."""
+    """A topic that clients subscribe to."""
 
     def __init__(self, kind: MessageClass | None) -> None:
         self.kind = kind  # None as long as only raw messages are wanted
         self.clients: dict[Hearer, None] = {}
-        self.publishers: set[str] = set()  # with which the node is connected
+        self.publishers: set[str] = set()  # to which the node is connected
         self.latched: dict[str, Outgoing] = {}  # by publisher
 
 
@@ -72,7 +72,7 @@ class _Offered:
     def __init__(self, client: Hearer, kind: ServiceClass) -> None:
         self.client = client
         self.kind = kind
-        self.calls: dict[str, int] = {}  # numbers of calls by what the client knows them by
+        self.calls: dict[str, int] = {}  # numbers of calls by the ids that the client knows
 
 
 class BridgeNode:
@@ -80,13 +80,13 @@ class BridgeNode:
 
     Args:
         mission: the mission.
-        uri: where the node answers, for the master.
-        lost: told of each message that was left out: its topic, and why.
-        packets: those of applications that are shown, by topic.
+        uri: URI of the node, for the master.
+        lost: called for each dropped message: its topic, and the reason.
+        packets: shown packets of applications, by topic.
 
     Attributes:
-        types: what is known of types.
-        reading: makes messages of what clients send.
+        types: the known types.
+        reading: makes messages from the clients' values.
         packets: as given.
     """
 
@@ -122,14 +122,14 @@ class BridgeNode:
         return self._mission.ros
 
     def ros_time(self) -> tuple[int, int]:
-        """The mission's ROS time, s and ns."""
+        """Return the mission's ROS time in s and ns."""
         return divmod(self._mission.processor.machine.epoch_ns + self._mission.kernel.now, NS_PER_S)
 
     def exchange(self, now_s: float) -> None:
-        """Hand on what the mission has for clients, and look who has come and gone.
+        """Pass on the mission's output to clients, and look for new and lost publishers and services.
 
         Args:
-            now_s: wall time since some instant.
+            now_s: wall time in s since an arbitrary instant.
         """
         if self._ros is not None and self._mission.ros is not self._ros:
             self._again()
@@ -144,13 +144,13 @@ class BridgeNode:
         self._look()
 
     def close(self) -> None:
-        """The run is over: nothing enters any more."""
+        """Stop all input at the end of the run."""
         self._is_over = True
         if self._ros is not None:
             self._ros.outside.ways_out.pop(NODE, None)
 
     def _act(self, name: str, *values: Any) -> Any:
-        """Do something to the mission's graph (`OutsideGraph.do`), through the door that a journal has."""
+        """Perform a host action on the mission's graph (`OutsideGraph.do`); a journal records it."""
         if self._is_over:
             return ""
         try:
@@ -159,10 +159,10 @@ class BridgeNode:
             raise NotPossible(str(error)) from None
 
     def ask(self, method: str, *arguments: Any) -> Answer:
-        """Ask the mission's master for something that changes it.
+        """Send the mission's master a request that changes it.
 
         Raises:
-            NotPossible: it cannot be, or an argument is nothing that XML-RPC carries.
+            NotPossible: it is refused, or XML-RPC cannot carry an argument.
         """
         try:
             body = dumps((NODE, *arguments), method).encode()
@@ -175,7 +175,7 @@ class BridgeNode:
         return answer
 
     def _begin(self) -> OutsideGraph:
-        """The ROS side, made if there was no node yet."""
+        """Return the ROS side; make it if there was no node yet."""
         if self._ros is None or self._mission.ros is not self._ros:
             self._mission.outside.act(ACT)
             ros = self._ros = self._mission.ros
@@ -185,7 +185,7 @@ class BridgeNode:
         return self._ros.outside
 
     def _again(self) -> None:
-        """The processor was reset: what clients had in the graph is there again."""
+        """Restore the clients' entries in the graph after a processor reset."""
         self._ros = None
         for number in list(self._calls):
             self._answered(number, False, b"the processor was reset")
@@ -200,16 +200,16 @@ class BridgeNode:
             try:
                 self._register_subscriber(topic, heard)
             except UsageError:
-                pass  # its MsgId is another topic's now; nobody is heard there
+                pass  # its MsgId belongs to another topic now; the subscription stays without messages
         for service, offered in self._offered.items():
             offered.calls.clear()
             self._register_service(service, offered)
 
     def resolved(self, name: str) -> str:
-        """The full name that a name means.
+        """Return the full name for a name.
 
         Raises:
-            NotPossible: it is no name of ROS's (wiki.ros.org/Names).
+            NotPossible: it is not a legal ROS name (wiki.ros.org/Names).
         """
         if not name or len(name) > ROS_NAME or not is_legal_name(name) or name.strip("/~") == "":
             raise NotPossible(f"{name[:200]!r} is not a legal name")
@@ -218,14 +218,14 @@ class BridgeNode:
     # -- topics --------------------------------------------------------------------------------------------------------
 
     def _fitting(self, topic: str, kind: str | None) -> MessageClass:
-        """The class of a topic's messages.
+        """Return the class of a topic's messages.
 
         Args:
             topic: its full name.
-            kind: the type that a client gives; None leaves it to the graph.
+            kind: the type that a client gives; None takes it from the graph.
 
         Raises:
-            NotPossible: it is unknown, or another one.
+            NotPossible: the type is unknown, or differs from the one in the graph.
         """
         established = self.types.topic_type(topic)
         if kind is None and not established:
@@ -239,7 +239,7 @@ class BridgeNode:
     # -- publishers ----------------------------------------------------------------------------------------------------
 
     def advertise(self, client: Hearer, topic: str, kind: str | None, latching: bool) -> None:
-        """A client publishes a topic.
+        """Let a client publish a topic.
 
         Raises:
             NotPossible: it cannot.
@@ -267,7 +267,7 @@ class BridgeNode:
             raise NotPossible(f"topic {topic}: {wrong}")
 
     def unadvertise(self, client: Hearer, topic: str, now_s: float) -> None:
-        """A client publishes a topic no longer; the last one leaves it open for a while."""
+        """End a client's publication of a topic. After the last client, the publisher stays for a while."""
         published = self._published.get(topic)
         if published is not None and client in published.clients:
             published.clients.remove(client)
@@ -280,10 +280,10 @@ class BridgeNode:
         self.ask("unregisterPublisher", topic, self._uri)
 
     def packed(self, topic: str, values: Any) -> bytes:
-        """A message for a topic that is published, as ROS serialises it.
+        """Serialize a message for a published topic, as ROS does.
 
         Raises:
-            UsageError: it is none.
+            UsageError: the values are not such a message.
         """
         published = self._published[topic]
         payload = self.reading.serialized(values, published.kind, published.seq + 1)
@@ -291,12 +291,12 @@ class BridgeNode:
         return payload
 
     def has_room(self, topic: str, payload: bytes) -> bool:
-        """Whether the mission takes a message now."""
+        """Return True if the mission can take a message now."""
         link = None if self._ros is None else self._ros.outside.links.get((topic, NODE))
         return link is None or link.has_room(payload)
 
     def publish(self, topic: str, payload: bytes) -> bool:
-        """A message of a client enters; whether the bus took it. Clients that hear the topic get it in any case."""
+        """Enter a message of a client, and pass it to subscribed clients. Returns True if the bus took it."""
         took: bool = self._act("message", topic, NODE, payload)
         if topic in self._heard:
             self._put(topic, NODE, payload)
@@ -305,13 +305,13 @@ class BridgeNode:
     # -- subscribers ---------------------------------------------------------------------------------------------------
 
     def subscribe(self, client: Hearer, topic: str, kind: str | None, raw: bool) -> None:
-        """A client hears a topic; it gets what is latched there.
+        """Subscribe a client to a topic; it gets the latched messages.
 
         Args:
             client: the client.
             topic: full name.
-            kind: type that it wants; None leaves it to the graph.
-            raw: it wants the messages as they are, whatever their type.
+            kind: the type that it wants; None takes it from the graph.
+            raw: it wants serialised messages, regardless of their type.
 
         Raises:
             NotPossible: it cannot.
@@ -331,7 +331,7 @@ class BridgeNode:
             for message in heard.latched.values():
                 message.kind = found
         heard.clients[client] = None
-        for message in heard.latched.values():  # also for one that subscribes again
+        for message in heard.latched.values():  # also for a client that subscribes again
             client.heard(topic, message)
 
     def _register_subscriber(self, topic: str, heard: _Heard) -> None:
@@ -347,12 +347,12 @@ class BridgeNode:
             raise NotPossible(f"topic {topic}: {wrong}")
 
     def _publishers_of(self, topic: str) -> set[str]:
-        """Nodes that publish a topic, but for this one."""
+        """Return the nodes that publish a topic, except this one."""
         assert self._ros is not None
         return {*self._ros.switchboard.master.registry.publishers().get(topic, {})} - {NODE}
 
     def _connect(self, topic: str, heard: _Heard, publishers: set[str]) -> None:
-        """Connect with those publishers of a topic that are new, and leave those that are gone."""
+        """Connect to new publishers of a topic, and disconnect from lost ones."""
         kind = heard.kind
         name, md5sum = (ANY, ANY) if kind is None else (kind._type, kind._md5sum)
         for publisher in sorted(heard.publishers - publishers):
@@ -364,7 +364,7 @@ class BridgeNode:
             self._act("subscribe", topic, NODE, self._uri, name, md5sum, publisher)
 
     def _look(self) -> None:
-        """See who publishes what clients hear, and which services are gone."""
+        """Look for new and lost publishers of subscribed topics, and for lost services."""
         if self._ros is None or not (self._heard or self._calls):
             return
         publishers = self._ros.switchboard.master.registry.publishers()
@@ -377,7 +377,7 @@ class BridgeNode:
                 self._answered(number, False, f"service [{service}] has ended".encode())
 
     def unsubscribe(self, client: Hearer, topic: str) -> None:
-        """A client hears a topic no longer."""
+        """End a client's subscription of a topic."""
         heard = self._heard.get(topic)
         if heard is None or client not in heard.clients:
             return
@@ -391,11 +391,13 @@ class BridgeNode:
             self.ask("unregisterSubscriber", topic, self._uri)
 
     def _heard_in_graph(self) -> list[tuple[str, _Heard]]:
-        """What clients hear of nodes; packets of applications are watched, and the mission does not see it."""
+        """Return subscriptions of topics of nodes. Those of shown packets are left out, because the mission does not
+        see them.
+        """
         return [(topic, heard) for topic, heard in self._heard.items() if topic not in self.packets]
 
     def show(self, packet: bytes) -> None:
-        """An application has sent a packet; called inside the simulation."""
+        """Show a packet that an application has sent; called inside the simulation."""
         msg_id = get_msg_id(packet)
         for topic, shown in self.packets.items():
             if shown.msg_id != msg_id or topic not in self._heard:
@@ -407,7 +409,7 @@ class BridgeNode:
                 self._put(topic, APPLICATIONS, payload)
 
     def _put(self, topic: str, publisher: str, payload: bytes) -> None:
-        """Put a message aside."""
+        """Keep a message for the clients."""
         self._waiting += len(payload)
         if self._waiting > MOST_WAITING:
             self._lost(topic, "too much between two pieces of the run")
@@ -441,14 +443,14 @@ class BridgeNode:
 
         Args:
             service: full name.
-            arguments: a dict of fields, or a list of their values in order; anything else is no arguments.
-            over: gets whether it went well, and the values of the response or what went wrong.
+            arguments: a dict of fields, or a list of their values in order; any other value means no arguments.
+            over: receives True and the values of the response, or False and the error.
 
         Returns:
             The number of the call.
 
         Raises:
-            UsageError: it cannot be called like this.
+            UsageError: it cannot be called with these arguments.
         """
         kind = self.types.class_of_service(service)
         if kind is None:
@@ -465,7 +467,7 @@ class BridgeNode:
         return number
 
     def forget_call(self, number: int) -> None:
-        """Nobody waits for the answer any more."""
+        """Drop a call whose client no longer waits for the answer."""
         found = self._calls.pop(number, None)
         if found is not None:
             self._act("forget call", found[0], number, NODE)
@@ -488,7 +490,7 @@ class BridgeNode:
     # -- services of clients -------------------------------------------------------------------------------------------
 
     def offer(self, client: Hearer, service: str, kind: str) -> bool:
-        """A client offers a service; whether another one did, which does no more.
+        """Offer a service of a client. Returns True if it replaces the service of another client.
 
         Raises:
             NotPossible: it cannot.
@@ -510,16 +512,16 @@ class BridgeNode:
         self.ask("registerService", service, address, self._uri)
 
     def offers(self, service: str) -> Hearer | None:
-        """The client that offers a service."""
+        """Return the client that offers a service, or None."""
         offered = self._offered.get(service)
         return None if offered is None else offered.client
 
     def offered_by(self, client: Hearer) -> int:
-        """How many services a client offers."""
+        """Return the number of services that a client offers."""
         return sum(each.client is client for each in self._offered.values())
 
     def withdraw(self, service: str) -> None:
-        """A service is offered no longer; who waits for an answer is told."""
+        """Withdraw a service; pending calls fail."""
         offered = self._offered.pop(service)
         for number in offered.calls.values():
             self._act("answer", service, number, False, b"the service has ended")
@@ -528,14 +530,14 @@ class BridgeNode:
         self.ask("unregisterService", service, address)
 
     def withdraw_all(self, client: Hearer) -> None:
-        """A client is gone."""
+        """Withdraw all services of a client that is gone."""
         for service in [name for name, each in self._offered.items() if each.client is client]:
             self.withdraw(service)
 
     def _request(self, service: str, number: int, body: bytes) -> None:
         offered = self._offered.get(service)
         if offered is None:
-            return  # who called was told when it was withdrawn
+            return  # the caller got an error when the service was withdrawn
         try:
             values = _values_of(body, offered.kind._request_class)
         except WrongMessage as error:
@@ -547,10 +549,10 @@ class BridgeNode:
         offered.client.requested(service, name, values)
 
     def respond(self, service: str, name: str, values: Any) -> None:
-        """A client answers a call.
+        """Send a client's answer to a call.
 
         Raises:
-            UsageError: nobody waits for it, or it is no response; the caller is told.
+            UsageError: no call waits for it, or it is not a response of the service. In the latter case the call fails.
         """
         offered = self._offered[service]
         number = offered.calls.pop(name, None)
@@ -563,13 +565,13 @@ class BridgeNode:
             raise
         self._act("answer", service, number, True, body)
 
-    # -- what goes out, in the mission's tasks (`WayOut`) --------------------------------------------------------------
+    # -- output, called in the mission's tasks (`WayOut`) --------------------------------------------------------------
 
     def message(self, topic: str, publisher: str, subscriber: str, payload: bytes) -> None:
         self._put(topic, publisher, payload)
 
     def packet(self, topic: str, packet: bytes) -> None:
-        """Packets of applications are watched (`show`), and not asked for."""
+        """Do nothing: packets of applications are watched (`show`)."""
 
     def request(self, service: str, number: int, header: dict[str, str], body: bytes) -> None:
         self._aside.append(lambda: self._request(service, number, body))
@@ -579,19 +581,19 @@ class BridgeNode:
 
 
 def _values_of(body: bytes, kind: MessageClass) -> dict[str, Any]:
-    """The values of a serialised message, which may come from a program outside.
+    """Return the values of a serialised message, which may come from an external program.
 
     Raises:
         WrongMessage: the bytes are not a message of the type.
     """
     try:
         return json_values(kind().deserialize(body))
-    except Exception as error:  # whatever the generated code raises for bytes that are no such message
+    except Exception as error:  # the generated code may raise any error for bytes of another type
         raise WrongMessage(f"{kind._type}: {error}") from None
 
 
 def fields_of(arguments: Any, kind: MessageClass) -> dict[str, Any]:
-    """The fields of a request, of a dict of them or a list of their values in order."""
+    """Return the fields of a request, from a dict of them or a list of their values in order."""
     if isinstance(arguments, list):
         return dict(zip(kind.__slots__, arguments, strict=False))
     return arguments if isinstance(arguments, dict) else {}

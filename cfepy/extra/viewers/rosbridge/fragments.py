@@ -1,4 +1,4 @@
-"""Messages of rosbridge in pieces, the op `fragment` (ROSBRIDGE_PROTOCOL.md 3.1): cut up, and put together again."""
+"""Fragments of rosbridge messages, the op `fragment` (ROSBRIDGE_PROTOCOL.md 3.1): splitting and reassembly."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from typing import Any
 
 from cfepy.status import UsageError
 
-PATIENCE_S = 600.0  # wall time for the next piece of a message, as rosbridge has it
-MOST_BEGUN = 16  # messages of a client of which a piece is missing
+PATIENCE_S = 600.0  # wall time for the next fragment of a message, as in rosbridge
+MOST_BEGUN = 16  # incomplete messages of a client
 MOST_PIECES = 100_000
-PIECE_BYTES = 150  # that a piece takes besides its characters
+PIECE_BYTES = 150  # memory of a fragment besides its characters
 
 
 def fragments(text: str, size: int, name: object) -> Iterator[dict[str, Any]]:
-    """The pieces of a text.
+    """Yield the fragments of a text.
 
     Args:
         text: a message.
-        size: characters of a piece.
+        size: characters of a fragment.
         name: the message's id.
     """
     total = -(-len(text) // size)
@@ -28,20 +28,20 @@ def fragments(text: str, size: int, name: object) -> Iterator[dict[str, Any]]:
 
 
 class _Begun:
-    """A message of which pieces have come, the last one at a wall time."""
+    """An incomplete message, with the wall time of its last fragment."""
 
     def __init__(self, total: int, at_s: float) -> None:
         self.total = total
         self.pieces: dict[int, str] = {}
-        self.size = self.held = 0  # characters; bytes that they take, about
+        self.size = self.held = 0  # characters; estimated bytes of memory
         self.at_s = at_s
 
 
 class Assembly:
-    """Puts the pieces together that one client sends.
+    """Reassembles the fragments of one client.
 
     Args:
-        longest: characters of a message, and of all that are not whole; more are refused.
+        longest: maximum characters of a message, and of all incomplete messages together; longer ones are refused.
     """
 
     def __init__(self, longest: int) -> None:
@@ -50,18 +50,21 @@ class Assembly:
 
     @property
     def size(self) -> int:
-        """About how many bytes the pieces take that wait for others."""
+        """Estimated bytes of the fragments of incomplete messages."""
         return sum(each.held for each in self._begun.values())
 
     def add(self, message: dict[str, Any], now_s: float) -> str | None:
-        """A piece has come; the whole message when it was the last one missing.
+        """Add a fragment.
 
         Args:
             message: the op.
-            now_s: wall time since some instant.
+            now_s: wall time in s since an arbitrary instant.
+
+        Returns:
+            The whole message if this was the last missing fragment, otherwise None.
 
         Raises:
-            UsageError: it is none, or belongs to no message, or there are too many.
+            UsageError: it is not a fragment, does not fit its message, or there are too many.
         """
         name, number, total, data = (message.get(key) for key in ("id", "num", "total", "data"))
         if name is None or type(number) is not int or type(total) is not int or not isinstance(data, str):
@@ -78,7 +81,7 @@ class Assembly:
             begun = _Begun(total, now_s)
         if total != begun.total or not 0 <= number < total or number in begun.pieces:
             raise UsageError(f"error while trying to append fragment {number}")
-        self._begun[key] = begun  # not before: a piece that was refused begins nothing
+        self._begun[key] = begun  # not earlier: a refused fragment does not begin a message
         begun.pieces[number] = data
         begun.size += len(data)
         begun.held += PIECE_BYTES + len(data) * (1 if data.isascii() else 4)

@@ -1,8 +1,8 @@
 """Messages as rosbridge writes them in JSON, and back (RobotWebTools/rosbridge_suite, ROSBRIDGE_PROTOCOL.md 2 and 3.4).
 
-A message is an object of its fields. Times are {"secs", "nsecs"}, uint8[] and char[] are base64, numbers that JSON does
-not know, not a number and the infinities, are null. What comes in is checked against the type of each field, and what
-is wrong is told in rosbridge's words.
+A message is an object of its fields. Times are {"secs", "nsecs"}, uint8[] and char[] are base64. Numbers that JSON
+lacks, NaN and the infinities, are null. Input is checked against the type of each field, and errors have rosbridge's
+texts.
 """
 
 from __future__ import annotations
@@ -33,18 +33,18 @@ _FITTING: dict[type, frozenset[str]] = {
     float: frozenset(FLOATS),
     str: frozenset({"string"}),
 }
-"""Types of fields that a value of Python's may stand for."""
+"""Types of fields for a type of a Python value."""
 
 
 class WrongMessage(UsageError):
-    """What a client has sent is no message of the type."""
+    """A client has sent values that are not a message of the type."""
 
 
 # -- out ---------------------------------------------------------------------------------------------------------------
 
 
 def json_values(message: Message) -> dict[str, Any]:
-    """A message as an object of JSON."""
+    """Convert a message to an object of JSON."""
     return {
         name: getattr(message, name) if convert is None else convert(getattr(message, name))
         for name, convert in _fields(message)
@@ -52,7 +52,7 @@ def json_values(message: Message) -> dict[str, Any]:
 
 
 def _fields(message: Message) -> list[tuple[str, Convert | None]]:
-    """Names of a message's fields, and what is done with their values; None for those that stay as they are."""
+    """Return the names of a message's fields, and converters of their values; None for values that stay unchanged."""
     return [(name, _converter(field)) for name, field in zip(message.__slots__, message._slot_types, strict=True)]
 
 
@@ -94,11 +94,11 @@ def _base64(value: Any) -> str:
 
 
 class Reading:
-    """Makes messages of what a client has sent.
+    """Makes messages from the values of a client.
 
     Args:
-        class_of: gives the class of a type that is nested in another.
-        now: gives the mission's ROS time, (s, ns).
+        class_of: returns the class of a nested type.
+        now: returns the mission's ROS time, (s, ns).
     """
 
     def __init__(self, class_of: ClassOf, now: Callable[[], tuple[int, int]]) -> None:
@@ -106,10 +106,10 @@ class Reading:
         self._now = now
 
     def message(self, values: Any, kind: MessageClass) -> Message:
-        """A message of values.
+        """Make a message from values.
 
         Args:
-            values: an object; fields that it lacks have their defaults.
+            values: an object; missing fields have their defaults.
             kind: class of the message.
 
         Raises:
@@ -120,22 +120,22 @@ class Reading:
         return message
 
     def serialized(self, values: Any, kind: MessageClass, seq: int | None = None) -> bytes:
-        """A message as ROS serialises it.
+        """Serialize a message as ROS does.
 
         Args:
-            values: as of `message`.
+            values: as for `message`.
             kind: its class.
-            seq: number of the message, which publishers put into a header; None for what is not published.
+            seq: number of the message, which publishers put into a header; None for a message that is not published.
 
         Raises:
-            WrongMessage: as `message`.
+            WrongMessage: as for `message`.
         """
         message: Any = self.message(values, kind)
         if seq is not None and kind._has_header:
             message.header.seq = seq
         try:
             packed: bytes = message._pack()
-        except Exception as error:  # what generated code raises for values that do not fit, OverflowError too
+        except Exception as error:  # generated code raises various errors for values that do not fit, OverflowError too
             raise WrongMessage(str(error)) from None
         return packed
 

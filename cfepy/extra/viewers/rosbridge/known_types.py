@@ -1,6 +1,6 @@
 """`KnownTypes`: types of topics, messages and services, as nodes of the mission and of ROS know them.
 
-Texts of errors are those of rosbridge_library's ros_loader, where they fit.
+Errors have the texts of rosbridge_library's ros_loader, where they fit.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ ANY = "*"
 
 
 class NotPossible(UsageError):
-    """What a client asks for cannot be; the text is for the client."""
+    """A client's request is not possible; the text is for the client."""
 
 
 class KnownTypes:
@@ -29,7 +29,7 @@ class KnownTypes:
 
     Args:
         mission: the mission.
-        packets: those of applications that are shown, by topic.
+        packets: shown packets of applications, by topic.
     """
 
     def __init__(self, mission: Mission, packets: Mapping[str, ShownPacket]) -> None:
@@ -41,7 +41,7 @@ class KnownTypes:
         return self._mission.ros
 
     def topic_type(self, topic: str) -> str:
-        """The type of a topic; "" as long as it is not known."""
+        """Return the type of a topic; "" as long as it is not known."""
         ros = self._ros
         found = "" if ros is None else ros.switchboard.master.registry.topic_types().get(topic, "")
         if found in ("", ANY) and topic in self._packets:
@@ -49,10 +49,10 @@ class KnownTypes:
         return "" if found == ANY else found
 
     def message_class(self, name: str) -> MessageClass:
-        """The class of a type: of the mission's own packages, or of those that come with cfepy.
+        """Return the class of a type, from the mission's own packages or from those that come with cfepy.
 
         Raises:
-            NotPossible: there is none.
+            NotPossible: there is no such type.
         """
         full_name = _full_name(name)
         for library in self._libraries():
@@ -68,7 +68,7 @@ class KnownTypes:
         raise self._unknown(full_name, "msg")
 
     def _libraries(self) -> Iterator[Library]:
-        """Where types are known: the packages of the mission's nodes, then those that come with cfepy."""
+        """Yield the sources of types: the packages of the mission's nodes, then those that come with cfepy."""
         if self._ros is not None:
             yield from (node.library for node in self._ros.graph.nodes.values())
         yield shipped()
@@ -80,10 +80,10 @@ class KnownTypes:
         return NotPossible(f"Unable to import {kind} class {name} from package {package}. Caused by: it is not there")
 
     def service_class(self, name: str) -> ServiceClass:
-        """The class of a service type.
+        """Return the class of a service type.
 
         Raises:
-            NotPossible: there is none.
+            NotPossible: there is no such type.
         """
         full_name = _full_name(name)
         for library in self._libraries():
@@ -92,7 +92,7 @@ class KnownTypes:
         raise self._unknown(full_name, "srv")
 
     def class_of_service(self, service: str) -> ServiceClass | None:
-        """The class of a service that is offered; None when nobody does.
+        """Return the class of an offered service, or None if it is not offered.
 
         Raises:
             NotPossible: its type is unknown.
@@ -106,7 +106,7 @@ class KnownTypes:
 
 
 def _full_name(name: str) -> str:
-    """The name of a type, without slashes that are too many."""
+    """Return the name of a type without superfluous slashes."""
     parts = [part for part in name.split("/") if part]
     if len(parts) != 2:
         raise NotPossible(f"{name} is not a valid type string")

@@ -1,9 +1,9 @@
 """A message on its way to clients: in JSON, as the pixels of a PNG, or in CBOR (ROSBRIDGE_PROTOCOL.md 3.4).
 
-It is made once for all who want it in the same form. A text of JSON in UTF-8 fills a PNG with three bytes a pixel,
-about as wide as high; newlines fill what is left of it (W3C PNG). In CBOR numbers, texts, maps and lists are CBOR's own
-(RFC 8949); uint8[] is a byte string, an array of other numbers a byte string of little-endian numbers under a tag that
-says which (RFC 8746).
+It is made once for all clients that want the same form. A JSON text in UTF-8 fills a PNG with three bytes a pixel,
+about as wide as high; newlines fill the rest of it (W3C PNG). In CBOR, numbers, texts, maps and lists are CBOR's own
+(RFC 8949). uint8[] is a byte string. An array of other numbers is a byte string of little-endian numbers, under a tag
+for the type (RFC 8746).
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ class Outgoing:
     """A message.
 
     Args:
-        payload: as ROS serialises it.
-        kind: its class; None for one that is only wanted as it is.
-        at: ROS time, s and ns, at which it is handed on.
+        payload: the message as ROS serialises it.
+        kind: its class; None if all clients want it serialised.
+        at: ROS time, s and ns, at which it is passed on.
 
     Attributes:
         kind: its class.
@@ -54,14 +54,14 @@ class Outgoing:
         self._made: dict[tuple[str, str], str | bytes] = {}
 
     def op(self, topic: str, compression: str) -> str | bytes:
-        """The op `publish` that tells of it.
+        """Return the op `publish` for it.
 
         Args:
             topic: its name, as the client has given it.
-            compression: of `sending.COMPRESSIONS`.
+            compression: one of `sending.COMPRESSIONS`.
 
         Raises:
-            DeserializationError: it is no message of its class.
+            DeserializationError: it is not a message of its class.
         """
         found = self._made.get((topic, compression))
         if found is None:
@@ -83,13 +83,13 @@ class Outgoing:
             assert self.kind is not None
             try:
                 self._message = self.kind().deserialize(self.payload)
-            except Exception as error:  # whatever the generated code raises for bytes that are no such message
+            except Exception as error:  # the generated code may raise any error for bytes of another type
                 raise DeserializationError(str(error)) from None
         return self._message
 
 
 def png_of(text: str) -> str:
-    """The image of a text, in base64."""
+    """Return the image of a text, in base64."""
     data = text.encode(errors="replace")
     pixels = max(1, -(-len(data) // _PIXEL))
     width = max(1, isqrt(len(data) // _PIXEL))
@@ -117,7 +117,7 @@ class Tagged(NamedTuple):
 
 
 def cbor_values(message: Message) -> dict[str, Any]:
-    """A message as what `dumps` takes."""
+    """Convert a message to a value for `dumps`."""
     kind = type(message)
     return {
         name: _value(getattr(message, name), field)
@@ -142,7 +142,7 @@ def _value(value: Any, field: str) -> Any:
 
 
 def dumps(value: Any) -> bytes:
-    """A value in CBOR: a dict of texts, a list, a text, bytes, a number, None, or a `Tagged`."""
+    """Encode a value in CBOR: a dict of texts, a list, a text, bytes, a number, None, or a `Tagged`."""
     out: list[bytes] = []
     _write(value, out)
     return b"".join(out)
@@ -176,7 +176,7 @@ def _write(value: Any, out: list[bytes]) -> None:
 
 
 def _head(major: int, number: int) -> bytes:
-    """A major type with its number, in the fewest bytes."""
+    """Return a major type with its number, in the fewest bytes."""
     first = major << 5
     if number < 24:
         return bytes((first | number,))

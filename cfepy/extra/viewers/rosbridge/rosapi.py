@@ -1,7 +1,7 @@
-"""What clients look around with: topics, nodes, services, types, parameters (wiki.ros.org/rosapi).
+"""The introspection services of rosapi: topics, nodes, services, types, parameters (wiki.ros.org/rosapi).
 
-They are answered from the mission's graph, without the mission: it does not see that somebody looks. Parameters that
-are set or deleted enter it.
+They are answered from the mission's graph, without the mission, so that a query does not affect it. Changes of
+parameters do enter it.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ TypeDef = dict[str, Any]
 
 
 class Rosapi:
-    """Answers.
+    """Answers the services.
 
     Args:
         node: knows the mission.
-        uri: where the node rosapi would answer.
+        uri: URI of the node rosapi.
     """
 
     def __init__(self, node: BridgeNode, uri: str) -> None:
@@ -80,14 +80,14 @@ class Rosapi:
         }
 
     def call(self, service: str, arguments: Any) -> Values:
-        """The values of the answer.
+        """Return the values of the answer.
 
         Args:
             service: one of `services`.
-            arguments: as `BridgeNode.call` takes them.
+            arguments: as for `BridgeNode.call`.
 
         Raises:
-            UsageError: the request is none, or cannot be done.
+            UsageError: the request is invalid, or cannot be done.
         """
         kind, answer = self.services[service]
         request = shipped().service_class(kind)._request_class
@@ -101,7 +101,7 @@ class Rosapi:
     # -- the graph -----------------------------------------------------------------------------------------------------
 
     def _publishers(self) -> Entries:
-        """The master's, and the node that stands for applications whose packets are shown."""
+        """Return the master's publishers, and the node that stands for applications whose packets are shown."""
         ros = self._node.ros
         found = {} if ros is None else ros.switchboard.master.registry.publishers()
         return found | {topic: {APPLICATIONS: "", **found.get(topic, {})} for topic in self._node.packets}
@@ -111,7 +111,7 @@ class Rosapi:
         return {} if ros is None else ros.switchboard.master.registry.subscribers()
 
     def _providers(self) -> Entries:
-        """Services with the nodes that offer them; rosapi's own are there, too."""
+        """Return services with the nodes that offer them, including rosapi's own."""
         ros = self._node.ros
         found = {} if ros is None else ros.switchboard.master.registry.providers()
         return {**found, **{name: {NAME: ""} for name in self.services}}
@@ -122,7 +122,7 @@ class Rosapi:
         return [*dict.fromkeys([*found, NAME, NODE])]
 
     def _topic_types(self) -> list[tuple[str, str]]:
-        """Topics that somebody publishes or hears, with their types, "" for one that is not known."""
+        """Return topics with a publisher or subscriber, and their types; "" for an unknown type."""
         topics = dict.fromkeys([*self._publishers(), *self._subscribers()])
         return [(topic, self._node.types.topic_type(topic)) for topic in topics]
 
@@ -176,7 +176,7 @@ class Rosapi:
         return {"services": [name for name in sorted(self._providers()) if self._service_type(name) == asked.type]}
 
     def _service_providers(self, asked: Any) -> Values:
-        """By the type of the services, as rosapi does it."""
+        """Return the providers by the type of the service, as rosapi does."""
         providers = self._providers()
         return {
             "providers": [
@@ -282,11 +282,11 @@ def _of(entries: Entries, node: str) -> list[str]:
 
 
 def typedefs(name: str, class_of: Callable[[str], MessageClass]) -> list[TypeDef]:
-    """The definition of a message type, and those of the types in it, each once; none for a plain number or text.
+    """Return the definitions of a message type and of the types in it, each once; empty for a plain number or text.
 
     Args:
         name: the type.
-        class_of: gives the class of a type.
+        class_of: returns the class of a type.
 
     Raises:
         UsageError: there is no such type.
@@ -297,7 +297,7 @@ def typedefs(name: str, class_of: Callable[[str], MessageClass]) -> list[TypeDef
 
 
 def typedefs_of(kind: MessageClass, class_of: Callable[[str], MessageClass]) -> list[TypeDef]:
-    """The same of a class, such as that of a service's requests."""
+    """Return the definitions for a class, such as the class of a service's requests."""
     found = [_typedef(kind)]
     seen: set[str] = set()
     for field in found[0]["fieldtypes"]:

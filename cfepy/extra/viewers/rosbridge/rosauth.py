@@ -1,8 +1,8 @@
 """The op `auth`: a client shows that it knows the token without sending it (wiki.ros.org/rosauth).
 
-What it sends is a SHA-512 of the token, its own address, the server's, a random text, the time, a level and the end of
-what it wants, as rosauth's `ros_mac_authentication` checks it with a secret file. So `authenticate` of roslibjs works
-with the token for a secret.
+It sends a SHA-512 of the token, its own address, the server's address, a random text, the time, a level and the end of
+its session. rosauth's `ros_mac_authentication` checks the same data with a secret file. So `authenticate` of roslibjs
+works with the token as its secret.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ import hmac
 from typing import Any
 
 FIELDS = ("client", "dest", "rand", "t", "level", "end")
-PATIENCE_S = 5  # between the client's clock and this computer's
+PATIENCE_S = 5  # maximum difference between the client's clock and this computer's
 
 
 class MacCheck:
-    """Checks what clients send.
+    """Checks the ops of clients.
 
     Args:
-        token: what they have to know.
+        token: the token that they must know.
     """
 
     def __init__(self, token: str) -> None:
@@ -27,7 +27,7 @@ class MacCheck:
         self._seen: dict[str, float] = {}
 
     def admits(self, message: dict[str, Any], now_s: float) -> bool:
-        """Whether the one who sent an op knows the token; the same op does not count twice.
+        """Return True if the sender of an op knows the token; a repeated op is not accepted.
 
         Args:
             message: the op.

@@ -1,6 +1,6 @@
-"""`RosbridgeClient`: one client's ops, and what it hears of them (ROSBRIDGE_PROTOCOL.md).
+"""`RosbridgeClient`: the ops of one client, and the messages to it (ROSBRIDGE_PROTOCOL.md).
 
-What is wrong with an op is told with a `status` of level `error`, and the op has done nothing. Texts are those of
+An error in an op is reported with a `status` of level `error`, and the op has no effect. Texts are those of
 rosbridge_library, where it has one.
 """
 
@@ -26,10 +26,10 @@ from cfepy.status import UsageError
 from rospy_shim.types.genpy import DeserializationError
 
 LEVELS = ("none", "error", "warning", "info")
-"""Of `status`, from the one that tells least."""
-MOST_CALLS = 1000  # of a client that wait for their answers
-MOST_TOPICS = 1000  # that a client publishes, and that it hears
-MOST_PATIENCE_S = 1.0  # wall time for which the mission may be full, before a message is lost
+"""Levels of `status`, from the least verbose."""
+MOST_CALLS = 1000  # pending calls of a client
+MOST_TOPICS = 1000  # that a client publishes, and that it subscribes to
+MOST_PATIENCE_S = 1.0  # wall time for which the mission may be full, before a message is dropped
 SHORTEST_FRAGMENT = 16  # characters
 LONGEST_ID = 1000  # characters
 MOST_IDS = 100  # of one topic
@@ -46,7 +46,7 @@ P = ParamSpec("P")
 
 
 def _alone(step: Callable[Concatenate[RosbridgeClient, P], None]) -> Callable[Concatenate[RosbridgeClient, P], None]:
-    """Let an error of a step that the mission takes for a client end the client's connection, and nothing else."""
+    """Decorate a step of a client that the mission calls, so that an error in it only ends the client's connection."""
 
     def guarded(client: RosbridgeClient, /, *values: P.args, **named: P.kwargs) -> None:
         try:
@@ -63,9 +63,9 @@ class RosbridgeClient:
     Args:
         node: knows the mission.
         rosapi: answers the services of rosapi.
-        counts: of the run.
-        peer: how the report calls it.
-        mac: checks `auth`, with which the client begins if nothing else admits it.
+        counts: counts for the run's report.
+        peer: name of the client in the report.
+        mac: checks `auth`, with which the client must begin unless it is admitted otherwise.
 
     Attributes:
         socket: its connection.
@@ -103,14 +103,14 @@ class RosbridgeClient:
         }
 
     def is_admitted(self) -> None:
-        """The client needs no `auth`."""
+        """Admit the client without `auth`."""
         self._mac = None
 
-    # -- what comes ----------------------------------------------------------------------------------------------------
+    # -- input ---------------------------------------------------------------------------------------------------------
 
     @property
     def is_ready(self) -> bool:
-        """Whether there is room in the mission for what the client asks for."""
+        """True if the mission has room for the client's messages."""
         return self._stalled is None
 
     @property
@@ -124,16 +124,16 @@ class RosbridgeClient:
 
     @property
     def has_more(self) -> bool:
-        """Whether it has messages that wait for room: the connection itself has them."""
+        """Always False: the connection itself keeps messages that wait for room."""
         return False
 
     def begin(self, connection: WebSocket) -> None:
-        """The connection is there."""
+        """Keep the new connection."""
         self.socket = connection
         self._counts.of(CONNECTIONS, self._peer, INTO).connections += 1
 
     def go_on(self, now_s: float) -> None:
-        """After a piece of the run: let in what the mission had no room for, and send what has waited for its time."""
+        """Go on after a step of the run: enter a message that waited for room, and send messages that are due."""
         if self._stalled is not None:
             self._enter(*self._stalled, now_s)
         for by_name in list(self._hears.values()):
@@ -142,7 +142,7 @@ class RosbridgeClient:
                     self._tell(name, pacing, message)
 
     def take(self, message: str | bytes) -> None:
-        """A message of the client's has come."""
+        """Take a message of the client."""
         count = self._counts.of(CONNECTIONS, self._peer, INTO)
         count.messages += 1
         count.size += len(message)
@@ -201,7 +201,7 @@ class RosbridgeClient:
         if LEVELS.index(level) <= self._level:
             self._send({"op": "status", "level": level, "msg": text, **({} if name is None else {"id": name})})
 
-    # -- what goes -----------------------------------------------------------------------------------------------------
+    # -- output --------------------------------------------------------------------------------------------------------
 
     def _send(self, op: Op) -> None:
         self._out(json.dumps(op), op.get("id"))
@@ -216,7 +216,7 @@ class RosbridgeClient:
         for each in fragments(message, size, name):
             self.socket.send(json.dumps(each))
 
-    # -- topics that it publishes --------------------------------------------------------------------------------------
+    # -- published topics ----------------------------------------------------------------------------------------------
 
     def _advertise(self, op: Op) -> None:
         _check(op, ("topic", True, _TEXT), ("type", True, _TEXT))
@@ -257,7 +257,7 @@ class RosbridgeClient:
         self._enter(topic, payload, now_s, now_s)
 
     def _enter(self, topic: str, payload: bytes, since_s: float, now_s: float) -> None:
-        """Let a message in, if the mission has room for it, or has had none for too long."""
+        """Enter a message, if the mission has room for it or has been full for too long."""
         if not self._node.has_room(topic, payload) and now_s - since_s < MOST_PATIENCE_S:
             return
         self._stalled = None
@@ -269,7 +269,7 @@ class RosbridgeClient:
             count.why = f"the Software Bus did not take a message of {topic}"
             self._status("error", f"publish: {count.why}")
 
-    # -- topics that it hears ------------------------------------------------------------------------------------------
+    # -- subscribed topics ---------------------------------------------------------------------------------------------
 
     def _subscribe(self, op: Op) -> None:
         _check(
@@ -429,7 +429,7 @@ class RosbridgeClient:
 
     def _auth(self, op: Op) -> None:
         if self._mac is None:
-            return  # nobody has to, or it did already
+            return  # not required, or done already
         if self._mac.admits(op, time.time()):
             self._mac = None
         else:
@@ -442,7 +442,7 @@ class RosbridgeClient:
         self.socket.close(POLICY, why)
 
     def gone(self, why: str) -> None:
-        """The connection is over: nothing of the client's stays in the mission, but publishers for a while."""
+        """Remove all entries of the client at the end of its connection; publishers stay for a while."""
         now_s = time.monotonic()
         for number in list(self._calls):
             self._node.forget_call(number)
@@ -463,10 +463,10 @@ class RosbridgeClient:
 
 
 def _check(op: Op, *fields: tuple[str, bool, tuple[type, ...]]) -> None:
-    """Check fields of an op: name, whether it must be there, and the types that it may have.
+    """Check fields of an op: name, True if it is required, and the permitted types.
 
     Raises:
-        NotPossible: one of them is missing, or of another type.
+        NotPossible: one of them is missing, or has another type.
     """
     for name, is_needed, kinds in fields:
         if name not in op:

@@ -1,6 +1,6 @@
-"""When a client gets the messages of a topic: its subscriptions, rates and queues (ROSBRIDGE_PROTOCOL.md 3.4.4).
+"""Delivery of a topic's messages to a client: its subscriptions, rates and queues (ROSBRIDGE_PROTOCOL.md 3.4.4).
 
-A client may subscribe to a topic more than once, under several ids; it gets each message once, at the highest of the
+A client may subscribe to a topic more than once, under several ids. It gets each message once, at the highest of the
 rates, with the shortest of the queues and the strongest of the compressions.
 """
 
@@ -13,7 +13,7 @@ from typing import Generic, TypeVar
 
 NONE, PNG, CBOR, CBOR_RAW = "none", "png", "cbor", "cbor-raw"
 COMPRESSIONS = (NONE, PNG, CBOR, CBOR_RAW)
-"""From the weakest."""
+"""Compressions, from the weakest."""
 LONGEST_QUEUE = 10_000
 MOST_QUEUED_BYTES = 8 << 20  # of the messages of a topic that wait for a client
 
@@ -22,12 +22,12 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Wish:
-    """What a client asks for with `subscribe`.
+    """The options of one `subscribe`.
 
     Attributes:
-        throttle_ms: wall time in ms that is at least between two messages; 0 for none.
-        queue_length: messages that wait for their time; 0 leaves out what comes too early.
-        compression: one of `COMPRESSIONS`; others are none.
+        throttle_ms: minimum wall time in ms between two messages; 0 for none.
+        queue_length: maximum number of messages that wait; 0 drops messages that come too early.
+        compression: one of `COMPRESSIONS`; other values mean none.
     """
 
     throttle_ms: int = 0
@@ -36,14 +36,14 @@ class Wish:
 
 
 class Pacing(Generic[T]):
-    """Decides when a client gets which message of one topic.
+    """Schedules the messages of one topic to a client.
 
     Args:
-        size_of: gives the bytes of a message.
+        size_of: returns the bytes of a message.
 
     Attributes:
-        compression: how they are sent.
-        dropped: messages that the queue had no room for. What a rate leaves out is as asked for.
+        compression: the compression of the messages.
+        dropped: messages dropped because the queue was full. Messages that the rate leaves out do not count.
     """
 
     def __init__(self, size_of: Callable[[T], int] = lambda message: 0) -> None:
@@ -54,21 +54,21 @@ class Pacing(Generic[T]):
         self._throttle_s = 0.0
         self._length = 0
         self._queue: deque[T] = deque()
-        self._size = 0  # of what waits
+        self._size = 0  # of the waiting messages
         self._last_s = float("-inf")
 
     @property
     def wishes(self) -> int:
-        """How many subscriptions there are."""
+        """The number of subscriptions."""
         return len(self._wishes)
 
     def want(self, name: object, wish: Wish) -> None:
-        """A subscription under an id, or another one in its place."""
+        """Add a subscription under an id, or replace it."""
         self._wishes[name] = wish
         self._settle()
 
     def want_no_more(self, name: object) -> bool:
-        """A subscription ends, all of them for None; whether there is none left."""
+        """Remove a subscription, or all of them if `name` is None. Returns True if no subscription is left."""
         if name is None:
             self._wishes.clear()
         self._wishes.pop(name, None)
@@ -83,11 +83,14 @@ class Pacing(Generic[T]):
         self.compression = COMPRESSIONS[max(ranks, default=0)]
 
     def add(self, message: T, now_s: float) -> T | None:
-        """A message has come; it, if it is to be sent now.
+        """Accept a message.
 
         Args:
             message: the message.
-            now_s: wall time since some instant.
+            now_s: wall time in s since an arbitrary instant.
+
+        Returns:
+            The message if it may be sent now, otherwise None.
         """
         is_time = now_s >= self._last_s + self._throttle_s
         if is_time and not self._queue:
@@ -102,7 +105,7 @@ class Pacing(Generic[T]):
         return None
 
     def due(self, now_s: float) -> T | None:
-        """The next message that has waited for its time; None when there is none."""
+        """Return the next waiting message that is due, or None."""
         if not self._queue or now_s < self._last_s + self._throttle_s:
             return None
         self._last_s = now_s

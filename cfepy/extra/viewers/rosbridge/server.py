@@ -27,12 +27,12 @@ class RosbridgeServer(PacketWatch):
     """The server: an attachment of the mission, and a guest at its bridge to the outside.
 
     Args:
-        place: where it listens.
-        admission: whom it lets in.
-        counts: gets what passes.
+        place: the address that it listens at.
+        admission: decides which clients may connect.
+        counts: counts messages and connections.
 
     Attributes:
-        place: where it listens, with the port that it has.
+        place: the address that it listens at, with the actual port.
 
     Raises:
         UsageError: the port is taken, or the package websockets is missing.
@@ -58,31 +58,31 @@ class RosbridgeServer(PacketWatch):
         mission.record.tables[TABLE] = self._counts.rows
 
     def fileno(self) -> int:
-        """What can be read when something wants to come in."""
+        """Return the descriptor that becomes readable when input arrives."""
         return self._listener.fileno()
 
     def exchange(self) -> None:
-        """Hand out what the mission has for clients, and bring in what they have sent."""
+        """Pass on the mission's output to clients, and take their messages."""
         self._node.exchange(time.monotonic())
         self._listener.exchange()
 
     def finish(self) -> None:
-        """Nothing enters any more."""
+        """Stop all input."""
         self._node.close()
         self._listener.finish()
 
     def close(self) -> None:
-        """Nobody is served any more; may be called more than once."""
+        """Close the server. You may call it more than once."""
         self._listener.close()
 
     def _client(self, address: str) -> RosbridgeClient:
         return RosbridgeClient(self._node, self._rosapi, self._counts, _peer(address), self._mac)
 
     def _refusal(self, client: RosbridgeClient, request: Request) -> Refusal | None:
-        """Why a request is refused; None takes it.
+        """Check a request. Returns the refusal, or None to accept it.
 
-        Who shows the token is let in, wherever it comes from. Without it a page of a browser must be of this computer,
-        and if there is a token, whoever it is must show with `auth` that it knows it.
+        A client that shows the token is admitted from anywhere. Without it, a page of a browser must come from this
+        computer. If there is a token, every such client must then prove with `auth` that it knows it.
         """
         has_token = self._admission.knows(token_of(request))
         if not has_token and not self._admission.welcomes(request.headers.get("Origin")):
@@ -107,5 +107,5 @@ class RosbridgeServer(PacketWatch):
 
 
 def _peer(address: str) -> str:
-    """How the report calls a client."""
+    """Return the name of a client in the report."""
     return f"{OUTSIDE} {address}"

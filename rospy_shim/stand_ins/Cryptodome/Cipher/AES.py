@@ -1,4 +1,4 @@
-"""The cipher of encrypted bags, which needs the real package."""
+"""The cipher of encrypted bags, which requires the real package."""
 
 from __future__ import annotations
 
@@ -12,6 +12,6 @@ def new(*args: Any, **options: Any) -> NoReturn:
     """Refuse.
 
     Raises:
-        ImportError: always; it says what to install.
+        ImportError: always; it names the package to install.
     """
     raise ImportError("encrypted bags need PyCryptodomex: pip install pycryptodomex")

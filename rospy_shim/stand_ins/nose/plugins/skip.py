@@ -1,4 +1,4 @@
-"""nose.plugins.skip: what a test raises that does not apply."""
+"""nose.plugins.skip: the exception of a test that does not apply."""
 
 from __future__ import annotations
 
