@@ -277,7 +277,7 @@ def _usage(parser: argparse.ArgumentParser) -> str:
     for action in parser._actions:
         if action.option_strings or isinstance(action, argparse._SubParsersAction):
             continue
-        value = _words(action).strip("`")
+        value = action.dest.upper() if action.choices and not action.metavar else _words(action).strip("`")
         words.append({"?": f"[{value}]", "*": f"[{value} ...]", "+": f"{value} ..."}.get(str(action.nargs), value))
     has_options = any(_is_shown(each) for each in parser._actions if each.option_strings)
     return f"`{' '.join([parser.prog, *(['[OPTION ...]'] if has_options else []), *words])}`"
