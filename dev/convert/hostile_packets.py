@@ -1,4 +1,4 @@
-"""A small mission in C++ that hears packets of a stranger, which end before what they say."""
+"""A small mission in C++ that receives truncated packets from a foreign sender."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Missions of the packages in the folder nodes: launch files with nodes in C++, flown on this computer."""
+"""Missions of the packages in the folder nodes: launch files with nodes in C++, flown on cfepy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The table of rules in docs/how_to/convertor.md: `python -m dev.convert.rules` writes it anew."""
+"""The table of rules in docs/how_to/convertor.md: `python -m dev.convert.rules` rewrites it."""
 
 from __future__ import annotations
 

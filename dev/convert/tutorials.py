@@ -3,7 +3,7 @@
     python -m dev.convert.tutorials SOURCES TREE [--report]
 
 SOURCES has a checkout of github.com/ros/ros_tutorials in ros/ros_tutorials, as `dev.convert.survey` wants it; TREE is
-a mission tree of cFS 7.0.0 (`dev.convert.mission_tree`). `--report` writes the table in docs/how_to/convertor.md anew.
+a mission tree of cFS 7.0.0 (`dev.convert.mission_tree`). `--report` rewrites the table in docs/how_to/convertor.md.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ class Tutorial(NamedTuple):
     """How a node is flown.
 
     Attributes:
-        shows: patterns of what is printed when it does what it is for.
+        shows: patterns that a working node prints.
         beside: the other nodes that it needs, which start before it.
-        after: those that start after it.
-        args: of its command line.
+        after: nodes that start after it.
+        args: arguments of its command line.
     """
 
     shows: Sequence[str]
@@ -77,7 +77,7 @@ TUTORIALS: Mapping[str, Tutorial] = {
 
 
 class Verdict(NamedTuple):
-    """What became of a node: "flies", rules that refuse it, or what it did not show."""
+    """Result of a node: "flies", rules that refuse it, or the patterns that it did not print."""
 
     name: str
     here: str
@@ -99,7 +99,7 @@ def refused(package: Path, scratch: Path) -> dict[str, str]:
 
 
 def missing(name: str, text: str) -> list[str]:
-    """The patterns of a node that are not met by what was printed."""
+    """Return the patterns of a node that its output does not match."""
     wanted = (each.replace("{name}", name) for each in TUTORIALS[name].shows)
     return [each for each in wanted if not re.search(each, text)]
 
@@ -133,7 +133,7 @@ def on_cfe(name: str, mission: MissionTree, apps: Mapping[str, str], folder: Pat
     """Fly a node on NASA's cFE."""
     first, *others = crew(name)
     with mission.booted(folder, [apps[first]], [CI_LAB]) as cfe:
-        for before, each in pairwise([first, *others]):  # each when the one before is there, as somebody would by hand
+        for before, each in pairwise([first, *others]):  # start each when the one before is up, as a user would by hand
             cfe.wait(partial(has_started, cfe, before), f"start of {before}", LIMIT_S)
             mission.start(cfe, apps[each])
         try:
@@ -181,7 +181,7 @@ def table(found: Sequence[Verdict]) -> str:
 
 
 def run(arguments: list[str]) -> None:
-    """Fly, and say what came of it."""
+    """Fly and print the results."""
     parser = argparse.ArgumentParser(prog="python -m dev.convert.tutorials", description=__doc__)
     parser.add_argument("sources", type=Path)
     parser.add_argument("tree", type=Path)

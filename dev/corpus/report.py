@@ -1,4 +1,4 @@
-"""docs/reference/generated/compatibility.md, the page about which public nodes run."""
+"""docs/reference/generated/compatibility.md, the page about the public nodes that run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dev.corpus.scenarios import Corpus
 from dev.corpus.sources import ENVIRONMENT
 from dev.corpus.verdict import Verdict
 
-DRIVE = "drive()"  # the stimulus of a node that nobody has read
+DRIVE = "drive()"  # the stimulus of an unknown node
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "generated" / "compatibility.md"
 _HEAD = """# Compatibility
 

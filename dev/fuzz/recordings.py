@@ -1,4 +1,4 @@
-"""Recordings to damage: the same messages in each format and compression, and where they are in the file."""
+"""Recordings to damage: the same messages in each format and compression, and their positions in the file."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def written(folder: Path, suffix: str, kind: str) -> Path:
 
 
 def converted(source: Path, target: Path, kind: str) -> Path:
-    """Another recording of it, with small chunks, so that damage meets some of them and not all."""
+    """Convert a recording with small chunks, so that damage affects some of them and not all. Returns the new file."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("cfepy.ground.recording.CHUNK_BYTES", 6000)
         patch.setattr("cfepy.ground.mcap_writer.CHUNK_BYTES", 6000)
@@ -92,7 +92,8 @@ def placed_chunks(file: Path) -> list[PlacedChunk]:
 
 
 def placed_messages(file: Path) -> list[tuple[int, Message]]:
-    """The messages of a recording, each with the byte at which it ends, or its chunk if that is packed."""
+    """Return the messages of a recording, each with the byte position where it ends, or where its compressed chunk
+    ends."""
     said, chunks = read(file), placed_chunks(file)
     if file.name.startswith("none."):
         return list(zip(ends(file), said, strict=True))

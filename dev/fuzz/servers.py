@@ -1,7 +1,7 @@
 """A run whose servers get damaged input over real sockets: TCPROS, the slave and master API, rosbridge, Foxglove.
 
-A case is a connection. After each the run has to go on: no node ends, nothing is printed as an error of cfepy's own,
-and no server keeps anything of the connection.
+A case is a connection. After each case the run must continue: no node ends, cfepy prints no error of its own,
+and no server keeps data of the connection.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ LOOPBACK = "127.0.0.1"
 PIECE_NS = 2_000_000
 PIECES = 4  # of the run, while a connection is there
 MOST_PIECES = 2_000  # until nothing of a connection is left
-MOST_CASES = 2_000  # of one run: what a run writes down grows with each message
+MOST_CASES = 2_000  # of one run: its records grow with each message
 TALKER = """
 import rospy
 from std_msgs.msg import String, UInt8MultiArray
@@ -143,7 +143,7 @@ def the_run() -> ServersRun:
 
 @atexit.register
 def end_runs() -> None:
-    """End what is there."""
+    """End the runs that are active."""
     while _runs:
         _runs.pop().close()
 
@@ -175,11 +175,11 @@ def _drain(peer: socket.socket) -> None:
         pass
 
 
-# -- what is sent ------------------------------------------------------------------------------------------------------
+# -- inputs ------------------------------------------------------------------------------------------------------------
 
 
 def tcpros(data: bytes, path: Path) -> None:
-    """A connection header and what comes behind it, at the port of a node."""
+    """Send a connection header and further bytes to the port of a node."""
     run = the_run()
     port = int(run.host.service_uri("/talker").rpartition(":")[2])
     half = len(data) // 2
@@ -211,7 +211,7 @@ def rosbridge(data: bytes, path: Path) -> None:
 
 
 def foxglove(data: bytes, path: Path) -> None:
-    """Messages, one a line; those that do not begin with a bracket are binary."""
+    """Send messages, one per line. Those that do not begin with a bracket are binary."""
     run = the_run()
     lines = [_text(each) if each[:1] in (b"{", b"[") else _frame(2, each) for each in data.split(b"\n")]
     run.send(run.foxglove.place.port, _handshake("Sec-WebSocket-Protocol: foxglove.websocket.v1\r\n"), *lines)
@@ -243,7 +243,7 @@ def _text(data: bytes) -> bytes:
 
 
 def _frame(opcode: int, data: bytes) -> bytes:
-    """A frame of a client, whose mask is 0 (RFC 6455, 5.2)."""
+    """Return a client's frame with mask 0 (RFC 6455, 5.2)."""
     size = len(data)
     if size < 126:
         head = bytes([0x80 | opcode, 0x80 | size])

@@ -1,4 +1,4 @@
-"""The figures of the house: how large its rooms are, what crosses their walls, which names stand for two things."""
+"""Figures of the architecture: sizes of packages, dependencies between them, and names that stand for two things."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ class Room(NamedTuple):
 
 
 def of_cfepy(tree: Tree) -> list[Module]:
-    """The modules of cfepy itself."""
+    """Return the modules of cfepy itself."""
     return [module for name, module in tree.modules.items() if name.partition(".")[0] == "cfepy"]
 
 
 def rooms(tree: Tree) -> list[Room]:
-    """Packages by name; the modules beside them are one room."""
+    """Return the packages by name. The modules beside them count as one package."""
     found: dict[str, list[Module]] = {}
     for module in tree.modules.values():
         is_inside = module.room in tree.modules and tree.modules[module.room].is_package and module.room != "cfepy"
@@ -72,7 +72,7 @@ def faces(tree: Tree) -> Face:
 
 
 def past_faces(tree: Tree) -> Counter[str]:
-    """Modules that are imported past the face of their package, with the number of those that do."""
+    """Count the modules imported directly instead of from their package, by number of importers."""
     found: Counter[str] = Counter()
     for module in of_cfepy(tree):
         for name in (each for each in tree.arrows(module) if each.startswith("cfepy.")):
@@ -93,9 +93,9 @@ def users(tree: Tree) -> dict[str, set[str]]:
 
 
 def with_one_user(tree: Tree) -> list[Module]:
-    """Modules of cfepy that exactly one other imports, one of their own package.
+    """Return the modules of cfepy that exactly one other imports, a module of the same package.
 
-    Packages do not count as modules, and a module that is run as a program belongs to nobody else.
+    Packages do not count as modules, and modules that run as programs are excluded.
     """
     imported = users(tree)
     found = []
@@ -154,7 +154,7 @@ def _strongly_connected(arrows: dict[str, list[str]]) -> Iterator[list[str]]:
 
 
 def by_name(tree: Tree) -> list[tuple[str, str]]:
-    """Arrows that are hidden in a string: modules of cfepy that load one of another package by its name."""
+    """Return dependencies hidden in a string: modules of cfepy that load a module of another package by its name."""
     return sorted(
         (module.name, each.name)
         for module in of_cfepy(tree)
@@ -173,10 +173,10 @@ def names_twice(tree: Tree) -> dict[str, list[str]]:
 
 
 def modules_named_twice(tree: Tree) -> dict[str, list[str]]:
-    """Names that stand for two modules or packages, with where they are.
+    """Return names that stand for two modules or packages, with their locations.
 
-    Left out are `FREE_NAMES`, and three patterns that say what is meant by where they stand: the module of a command,
-    which has its name; the parts of the API in C, which are those of the packages; a package and its central module.
+    Excluded are `FREE_NAMES`, and three patterns whose location makes the meaning clear: the module of a command,
+    which has its name; the parts of the API in C, which are named like the packages; a package and its central module.
     """
     found: dict[str, list[str]] = {}
     for name, module in tree.modules.items():
@@ -206,7 +206,7 @@ def most_complex(tree: Tree, count: int = 10) -> list[tuple[int, str]]:
 
 
 def offered(tree: Tree) -> list[str]:
-    """What `import cfepy` offers: `__all__`, or else the names that its module binds."""
+    """Return the names that `import cfepy` offers: `__all__`, or else the names that its module binds."""
     names: list[str] = []
     for node in tree.modules["cfepy"].tree.body:
         if not isinstance(node, ast.Assign | ast.AnnAssign) or node.value is None:

@@ -1,7 +1,7 @@
-"""The floors of the house, lowest first, and what breaks their order.
+"""The floors (layers) of the house, lowest first, and the violations of their order.
 
-A package imports only from floors below its own. Packages on one floor are peers and do not import each other, but for
-the modules at the bottom, which are one room.
+A package imports only from floors below its own. Packages on one floor are peers and do not import each other, except
+for the modules at the bottom, which count as one package.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("testing",),
     ("cli", "__main__"),
     ("extra", "c", "convert", "exploration", "reports", "debugger", "viewers", "ros_host"),
-    ("__init__",),  # the face of the whole: what a user of the library imports
+    ("__init__",),  # the public API of the library
 )
 LEVEL = {part: level for level, floor in enumerate(FLOORS) for part in floor}
 GROUND_FLOOR = 0

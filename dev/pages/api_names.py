@@ -1,4 +1,4 @@
-"""What the public names of NASA's headers are called here: a rule, and the names that it does not fit.
+"""Names here for the public names of NASA's headers: a rule, and the exceptions from it.
 
 CFE_SB_CreatePipe is `cfe.sb.create_pipe`: an area for the prefix, the rest in snake case. Imports nothing of cfepy.
 """

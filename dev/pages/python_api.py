@@ -1,6 +1,6 @@
 """Write docs/reference/generated/python_api_reference.md from the docstrings of the names that `import cfepy` offers.
 
-`python -m dev.pages.python_api` writes it anew; a test fails when it is stale.
+`python -m dev.pages.python_api` rewrites it; a test fails when it is out of date.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ What `import cfepy` offers, made of the docstrings by `python -m dev.pages.pytho
 [python_api.md](../../how_to/python_api.md). Times are virtual and in seconds, unless a name ends with `_ns`.
 """
 SECTIONS = ("Args", "Attributes", "Returns", "Raises")
-FOREIGN = (tuple, dict, list, Exception, object)  # whose methods are Python's
+FOREIGN = (tuple, dict, list, Exception, object)  # whose methods Python defines
 
 
 def functions() -> list[str]:
@@ -36,7 +36,7 @@ def classes() -> list[str]:
 
 
 def members(kind: type) -> list[tuple[str, Any]]:
-    """Public methods, properties and class methods, those of bases too, in alphabetical order."""
+    """Return public methods, properties and class methods, including those of bases, in alphabetical order."""
     found = {}
     for name in dir(kind):
         value = inspect.getattr_static(kind, name)
@@ -95,7 +95,7 @@ def _first(thing: Any) -> str:
 
 
 def text_of(thing: Any) -> str:
-    """A docstring as Markdown: its sections become lists, and what is indented in it code."""
+    """Return a docstring as Markdown: its sections become lists, and indented parts become code."""
     text = inspect.cleandoc(thing.__doc__ or "")
     return "\n\n".join(filter(None, (_block(block) for block in text.split("\n\n"))))
 

@@ -2,9 +2,8 @@
 
     python -m dev.pages.requirements
 
-The ids are in tests/data/requirement_ids.txt. Which test is evidence for which is read from the tests' sources: a
-test's name says its first id, its decorator `covers` all of them. An id without a test has a reason in
-`not_covered.py`.
+The ids are in tests/data/requirement_ids.txt. The tests' sources name the ids that they cover: a test's name has its
+first id, its decorator `covers` all of them. An id without a test has a reason in `not_covered.py`.
 """
 
 from __future__ import annotations

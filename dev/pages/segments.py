@@ -1,4 +1,4 @@
-"""The segments of NASA's functional tests, and which of them have a test here.
+"""The segments of NASA's functional tests, and those that have a test here.
 
 tests/data/functional_segments.txt has a line for each: "es_cds: Test CDS Name" is the segment of that name in
 es_cds_test.c; the test for it is test_es_cds.py::test_cds_name.

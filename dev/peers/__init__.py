@@ -1,4 +1,5 @@
-"""Public test files of ROS packages, unmodified, on cfepy: which there are, how many pass on ROS, and how many here.
+"""Run public test files of ROS packages unmodified on cfepy: the list of files, and how many tests pass on ROS and
+here.
 
-Their sources are not here: `python -m dev.peers fetch FOLDER` gets them from GitHub.
+The sources are not in this repository. `python -m dev.peers fetch FOLDER` gets them from GitHub.
 """

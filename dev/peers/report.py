@@ -1,4 +1,4 @@
-"""Showing what came of test files: a line each, and docs/reference/generated/peer_tests.md."""
+"""Report results of test files: one line each, and docs/reference/generated/peer_tests.md."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def _or_unknown(count: int | None) -> str:
 
 
 def _reason(verdict: Verdict) -> str:
-    """What did not pass, with its reason where there is one, and what else there is to say."""
+    """Return the failed tests, with their reasons where known, and further remarks."""
     peer = verdict.peer
     names = [f"{name}: {peer.aside[name]}" if name in peer.aside else name for name in verdict.failing]
     return "; ".join(filter(None, [verdict.reason, *names, peer.note]))

@@ -1,4 +1,4 @@
-"""Random messages of any type, as genpy's objects, no longer than the capacities of the strict profile allow."""
+"""Random messages of any type, as genpy's objects, within the capacities of the strict profile."""
 
 from __future__ import annotations
 

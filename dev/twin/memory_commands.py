@@ -1,4 +1,4 @@
-"""Random steps for MM, MD and CS with addresses at which something is: a block of memory that both computers have."""
+"""Random steps for MM, MD and CS with valid addresses: a block of memory that both computers have."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ WAKEUPS = 6
 
 
 def files(address: int) -> dict[str, bytes]:
-    """Definitions of CS's tables, and files for MM to load, with the block at an address; by virtual path."""
+    """Return tables for CS and files for MM to load, by virtual path, with the block at an address."""
     states = (ENABLED, DISABLED, ENABLED, ENABLED)
     memory = b"".join(
         struct.pack("<QHHI", address + at, state, 0, size) for (at, size), state in zip(PIECES, states, strict=True)
@@ -76,7 +76,7 @@ def lookup() -> Step:
 
 
 def preparation() -> list[Step]:
-    """CS lets alone what is not alike: the code of cFE and of the operating system."""
+    """Return steps that keep CS off the parts that differ: the code of cFE and of the operating system."""
     return [Step(CS.name, (command(CS, DISABLE_CORE), command(CS, DISABLE_OS)), PLAIN)]
 
 

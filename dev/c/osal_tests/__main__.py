@@ -1,4 +1,4 @@
-"""`python -m dev.c.osal_tests SOURCES [TEST ...]`: builds and flies OSAL's own tests, and shows a table."""
+"""`python -m dev.c.osal_tests SOURCES [TEST ...]`: builds and flies OSAL's own tests, and prints a table."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def row(result: Result) -> str:
 
 
 def report(results: list[Result]) -> None:
-    """What failed, and the sums."""
+    """Print the failed tests and the totals."""
     for result in results:
         for segment in result.segments:
             for failure in segment.failures:

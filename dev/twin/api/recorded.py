@@ -1,4 +1,4 @@
-"""Answers of a real cFE, kept for machines that have none: tests/data/api_answers/<release>_<seed>_<count>.txt.xz."""
+"""Recorded answers of a real cFE, for machines without one: tests/data/api_answers/<release>_<seed>_<count>.txt.xz."""
 
 from __future__ import annotations
 

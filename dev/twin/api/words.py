@@ -1,6 +1,6 @@
-"""The words of a script and of its answers: numbers, 'texts, xBYTES, #ids, and the slots in which ids are kept.
+"""The words of a script and of its answers: numbers, 'texts, xBYTES, #ids, and the slots that keep ids.
 
-The rules are those of app/api_app.c.
+app/api_app.c has the same rules.
 """
 
 from __future__ import annotations
@@ -45,11 +45,11 @@ def word_of(value: object) -> str:
 
 
 class Line:
-    """The arguments of a call; words count from 1.
+    """The arguments of a call. Words count from 1.
 
     Args:
-        words: as they stand in the script.
-        slots: ids that calls gave.
+        words: the words of the script line.
+        slots: ids that calls returned.
     """
 
     def __init__(self, words: list[str], slots: list[int]) -> None:
