@@ -69,8 +69,7 @@ def recorded(line: str, python: bool) -> Recorded:
     """Parse a line of the recorder. Sequence numbers of a publisher count as in roscpp.
 
     In header.seq, roscpp numbers the messages of a publisher from 0 and rospy from 1. ROS has the same difference. It
-    is
-    the only one that the bytes of both may have.
+    is the only one that the bytes of both may have.
     """
     _, _, time, topic, kind, text = [*line.split(" "), ""][:6]
     data = bytes.fromhex(text)

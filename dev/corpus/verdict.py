@@ -54,9 +54,8 @@ def judge(scenario: Scenario, outcome: Outcome) -> Verdict:
     """Evaluate a scenario's expectations.
 
     They can use N, T, R, rate, rc, out, hout (output of the helpers), `approx(a, b, tolerance)`, and rec with self_exit
-    and
-    files. For driven nodes, they contain digests of the results on ROS (`likeness.py`): of `like(topic)`, of `said`, of
-    `about(remark)`.
+    and files. For driven nodes, they contain digests of the results on ROS (`likeness.py`): of `like(topic)`, of
+    `said`, of `about(remark)`.
     """
     names = {
         "N": outcome.counts,

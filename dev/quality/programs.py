@@ -127,8 +127,7 @@ PROGRAMS = (
         "safe_stack",
         ROS,
         "a stack without locks, of depth 5",
-        RAISED
-        + STUCK,  # a cell with two owners, or a chain that ends nowhere; tasks that pop it retry forever
+        RAISED + STUCK,  # a cell with two owners, or a chain that ends nowhere; tasks that pop it retry forever
         origin="SCTBench: safestack",
         options=POINTS,
         bound="5 preemptions",
