@@ -1,6 +1,6 @@
-"""A compiled application against one in Python that does the same: ratios of the wall time of calls.
+"""A compiled application against an equivalent one in Python: ratios of the wall time of calls.
 
-`compiled_app/fsw/src/bench.c` also runs on NASA's cFE and says there how long it took.
+`compiled_app/fsw/src/bench.c` also runs on NASA's cFE and prints its times there.
 """
 
 from __future__ import annotations

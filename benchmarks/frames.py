@@ -11,8 +11,8 @@ from cfepy.writing.console import Console
 NODES = Path(__file__).parent / "nodes" / "frames"
 REPEATS = 5
 LINE = 100  # lookups for each line that the node prints
-START_S = 1.5  # virtual; a little later the node looks up for the first time
-LOOKING_S = 0.0002  # virtual; looking up takes none, but asking whether to go on does
+START_S = 1.5  # virtual; shortly after it, the node makes its first lookup
+LOOKING_S = 0.0002  # virtual; a lookup takes none, but checking whether to continue does
 
 
 def lookup_us(context: str) -> float:

@@ -1,8 +1,8 @@
 """`python -m benchmarks.library_sizes`: the cost of the interface library for C++, for docs/reference/roscfe.md.
 
-Of each part all object files together, at -Os: what lies in read-only memory (code, constants, tables for exceptions)
-and what takes writable memory (initialised or not), as `size` says it; the arena of a node is not counted. The linker
-leaves out what a node does not use, and adds of the C++ library what it does.
+It adds up all object files of each part, at -Os, as `size` reports them: read-only memory (code, constants, tables for
+exceptions) and writable memory (initialised or not). The arena of a node is not counted. The linker leaves out parts
+that a node does not use, and adds the parts of the C++ library that it does use.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ PROFILES = (Profile.HOST, Profile.POOL, Profile.STRICT)
 
 
 def parts() -> dict[str, list[Path]]:
-    """Sources by part: the core, and the libraries beside it."""
+    """Return the sources by part: the core, and the libraries beside it."""
     folder = library_folder() / "src"
     found: dict[str, list[Path]] = {"core": sorted(folder.glob("*.cpp"))}
     found |= {each.name: sorted(each.glob("*.cpp")) for each in sorted(folder.iterdir()) if each.is_dir()}

@@ -1,4 +1,4 @@
-"""Timing: the best of a few repeats, and what else the machine was doing."""
+"""Timing: the best of a few repeats, and the other load of the machine."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def contexts_here() -> tuple[str, ...]:
 
 
 def machine() -> dict[str, object]:
-    """What the figures were measured on, and the load at the moment."""
+    """Return the machine of the measurement, and its current load."""
     load = os.getloadavg() if hasattr(os, "getloadavg") else (0.0, 0.0, 0.0)
     return {
         "python": platform.python_version(),

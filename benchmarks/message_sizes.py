@@ -1,7 +1,7 @@
-"""`python -m benchmarks.message_sizes`: what messages cost in C++, as the table of docs/reference/roscfe.md.
+"""`python -m benchmarks.message_sizes`: the cost of messages in C++, as the table of docs/reference/roscfe.md.
 
-Code is what the compiler makes of a message's length, writing and reading, at -Os, in an object file of its own: a node
-that has several types shares the parts that are the same. Memory is sizeof.
+Code is the compiled length, write and read functions of a message, at -Os, in a separate object file. A node with
+several types shares the parts that are equal. Memory is sizeof.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def code_size(name: str, includes: Sequence[Path], compiler: Sequence[str], fold
 
 
 def memory_of(types: Sequence[str], includes: Sequence[Path], compiler: Sequence[str]) -> dict[str, int]:
-    """sizeof of each type, which for another computer only its compiler knows."""
+    """Return sizeof of each type. For another computer, only its compiler knows it."""
     lines = [f"#include <{name}.h>" for name in types]
     lines += [
         f'extern "C" {{ char size_{number}[sizeof({name.replace("/", "::")})]; }}' for number, name in enumerate(types)

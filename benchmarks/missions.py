@@ -1,4 +1,4 @@
-"""Whole missions: how many times faster than real time, messages a second from node to node, and the time of a boot."""
+"""Whole missions: the speed relative to real time, messages per second from node to node, and the time of a boot."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ def _whole(mission: str, context: str, seconds: float) -> float:
 
 
 def publish_to_callback(context: str) -> float:
-    """JointState messages a second from a publisher in one node to a callback in another; none is lost."""
+    """Return JointState messages per second from a publisher in one node to a callback in another. No message is
+    lost."""
     return max(_messages_per_second(context) for _ in range(REPEATS))
 
 
@@ -46,7 +47,8 @@ def _messages_per_second(context: str) -> float:
 
 
 def _counts(flight: Mission) -> tuple[int, int]:
-    """Messages delivered so far, and lost; as the nodes start, the publisher may be quicker than the subscriber."""
+    """Return the messages delivered so far, and lost. During the start, the publisher may be ahead of the
+    subscriber."""
     assert flight.ros is not None
     msg_id = next(row.msg_id for row in flight.ros.topics() if row.name == "/joints")
     delivered, _, limited, overflown = flight.cfe.sb.routes[msg_id].totals()

@@ -1,6 +1,6 @@
-"""Exploring: how many schedules of missions/capture a second of CPU time runs, in this process and forked.
+"""Exploring: schedules of missions/capture per second of CPU time, in this process and forked.
 
-CPU time and not wall time, because exploring keeps every CPU busy: so much is run on each.
+It measures CPU time instead of wall time, because exploring keeps every CPU busy: each CPU runs that many.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def forked() -> float:
             return flight.trace.digest()
 
     begin = _cpu_s()
-    with closing(ForkServer(fly, BOOTED)) as server:  # what its processes took is known when it is closed
+    with closing(ForkServer(fly, BOOTED)) as server:  # the CPU time of its processes is known after it is closed
         digests = {server.run(Schedule("random", seed, from_ns=BOOTED.from_ns)) for seed in range(COUNT)}
     seconds = _cpu_s() - begin
     if len(digests) != COUNT:

@@ -1,4 +1,4 @@
-"""What a node's universe costs: its making, its locks and queues against Python's own, and a threaded program."""
+"""The cost of a node's universe: its creation, its locks and queues against Python's own, and a threaded program."""
 
 from __future__ import annotations
 

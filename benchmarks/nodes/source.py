@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Publishes JointStates of seven joints in bursts that fit into a subscriber's queue, as fast as they are taken."""
+"""Publishes JointStates of seven joints in bursts that fit into a subscriber's queue, as fast as the subscriber
+allows."""
 
 import rospy
 from sensor_msgs.msg import JointState
