@@ -1,4 +1,4 @@
-"""What this processor subscribes to, as peers are told, and what they want of it (sbn_subs.c)."""
+"""This processor's subscriptions, as sent to peers, and the subscriptions of the peers (sbn_subs.c)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ OWN = (evs.LONG_EVENT_MSG_MID, pk.CMD_MID, pk.TLM_MID)
 
 
 class SubscribedPeer(Protocol):
-    """A peer that wants messages: who it is, what its messages pass, what it wants, and the pipe for that."""
+    """A subscribing peer: its identity, its filters, its subscriptions, and the pipe for its messages."""
 
     processor_id: int
     spacecraft_id: int
@@ -40,10 +40,10 @@ class Subscriptions:
 
     Args:
         cfe: the app's handle.
-        ident: which source this SBN claims to be built from; peers that say another one are not listened to.
+        ident: the source that this SBN claims to be built from; subscriptions of peers with another ident are ignored.
 
     Attributes:
-        mine: those of this processor, with how many of its applications have each.
+        mine: subscriptions of this processor, with the number of its applications that have each.
         tell: called with the type of a message and its payload, for all peers.
     """
 
@@ -57,7 +57,7 @@ class Subscriptions:
     # -- of this processor -------------------------------------------------------------------------------------------
 
     def open(self) -> None:
-        """Make the pipe to which the Software Bus reports."""
+        """Create the pipe to which the Software Bus reports."""
         sb_api = self._cfe.sb
         self._pipe = sb_api.create_pipe(SUB_PIPE_DEPTH, "SBNSubPipe")
         sb_api.subscribe_local(sb.ALLSUBS_TLM_MID, self._pipe, MAX_ALLSUBS_ON_PIPE)
@@ -91,7 +91,7 @@ class Subscriptions:
             self._remove(report["MsgId"])
 
     def all(self) -> bytes:
-        """The payload that tells a peer all of them."""
+        """Return the payload with all subscriptions for a peer."""
         return pr.pack_subscriptions([each for each, _ in self.mine.values()], self._ident)
 
     def _add(self, new: pr.Sub) -> None:

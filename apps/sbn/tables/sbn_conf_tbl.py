@@ -1,6 +1,6 @@
 """SBN's default configuration, NASA's: three processors of a spacecraft on one computer, by UDP.
 
-After a change: `python -m apps.sbn.tables.sbn_conf_tbl` writes sbn_conf_tbl.tbl anew.
+After a change, `python -m apps.sbn.tables.sbn_conf_tbl` rewrites sbn_conf_tbl.tbl.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """SCH's default messages, NASA's: a housekeeping request to every core service and to SCH itself.
 
-After a change: `python -m apps.sch.tables.sch_def_msgtbl` writes sch_def_msgtbl.tbl anew.
+After a change, `python -m apps.sch.tables.sch_def_msgtbl` rewrites sch_def_msgtbl.tbl.
 """
 
 from __future__ import annotations
