@@ -16,13 +16,13 @@ _AXES = {"X": Vector(1, 0, 0), "Y": Vector(0, 1, 0), "Z": Vector(0, 0, 1)}
 class Joint:
     """A joint with one degree of freedom, or none.
 
-    `Joint(name="NoName", type=Joint.Fixed, scale=1, offset=0, ...)`, or with origin and axis before the type; the name
-    may be left out. Inertia, damping and stiffness are taken and not used. Its motion is `scale * q + offset`.
+    `Joint(name="NoName", type=Joint.Fixed, scale=1, offset=0, ...)`, or with origin and axis before the type. The name
+    may be left out. Inertia, damping and stiffness are accepted but ignored. Its motion is `scale * q + offset`.
     """
 
     RotAxis, RotX, RotY, RotZ, TransAxis, TransX, TransY, TransZ = range(8)
     Fixed: ClassVar[int] = 8
-    # PyKDL has "None", a word of Python's, as the older name of Fixed; getattr(Joint, "None") finds it.
+    # In PyKDL, "None" is the older name of Fixed, but a keyword in Python. getattr(Joint, "None") finds it.
 
     def __init__(self, *args: Any) -> None:
         if len(args) == 1 and isinstance(args[0], Joint):

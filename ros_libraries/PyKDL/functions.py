@@ -38,7 +38,7 @@ def SetToZero(value: Any) -> None:
 
 
 def dot(a: Any, b: Any) -> float:
-    """The scalar product of two vectors; of a Twist and a Wrench, which is power."""
+    """Return the scalar product of two vectors, or of a Twist and a Wrench, which is power."""
     if isinstance(a, Vector):
         return scalar_product(a, b)
     twist, wrench = (a, b) if isinstance(a, Twist) else (b, a)
@@ -55,7 +55,7 @@ def diff(a: Any, b: Any, dt: float = 1) -> Any:
 
 
 def addDelta(a: Any, da: Any, dt: float = 1) -> Any:
-    """Where `a` is after a motion `da` for a time; the reverse of `diff`."""
+    """Return `a` after a motion `da` for a time. This is the reverse of `diff`."""
     if isinstance(a, Rotation):
         return a * Rotation.Rot(a.Inverse(da), da.Norm() * dt)
     if isinstance(a, Frame):

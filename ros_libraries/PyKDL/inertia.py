@@ -1,4 +1,4 @@
-"""`RotationalInertia` and `RigidBodyInertia`: how a body resists being turned and moved."""
+"""`RotationalInertia` and `RigidBodyInertia`: the inertia of rigid bodies."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class RigidBodyInertia:
         return self.m
 
     def getCOG(self) -> Vector:
-        """Centre of mass, in m; the origin if there is no mass."""
+        """Return the centre of mass in m, or the origin if there is no mass."""
         return self.h / self.m if self.m else Vector()
 
     def getRotationalInertia(self) -> RotationalInertia:
@@ -116,6 +116,6 @@ _AXES = (Vector(1, 0, 0), Vector(0, 1, 0), Vector(0, 0, 1))
 
 
 def _of_point(a: Vector, b: Vector) -> RotationalInertia:
-    """(a.b) 1 - b aT: what a mass at a point adds, where b is the point times the mass."""
+    """Return (a.b) 1 - b aT, the inertia of a point mass, where b is the point times the mass."""
     product = scalar_product(a, b)
     return RotationalInertia.of([(product if i == j else 0.0) - b[i] * a[j] for i in range(3) for j in range(3)])

@@ -15,7 +15,7 @@ _SILENCE_IS_FINE = (CommState.WAITING_FOR_GOAL_ACK, CommState.WAITING_FOR_RESULT
 
 
 class CommStateMachine:
-    """Follows one goal by what the server sends.
+    """Follows one goal through the server's messages.
 
     Args:
         action_goal: the *ActionGoal message that was sent.
@@ -62,7 +62,7 @@ class CommStateMachine:
             self.transition_cb(ClientGoalHandle(self))
 
     def update_status(self, status_array: Any) -> None:
-        """Take in the server's list of goals; a goal that is missing there is lost, or not known yet."""
+        """Process the server's list of goals. A goal that is missing there is lost, or not known yet."""
         with self.mutex:
             if self.state == CommState.DONE:
                 return
@@ -88,7 +88,7 @@ class CommStateMachine:
                 self.transition_to(state)
 
     def update_result(self, action_result: Any) -> None:
-        """Take in a result, which may be another goal's."""
+        """Process a result, which may be another goal's."""
         if action_result.status.goal_id.id != self._id:
             return
         with self.mutex:
@@ -103,7 +103,7 @@ class CommStateMachine:
                 self.transition_to(CommState.DONE)
 
     def update_feedback(self, action_feedback: Any) -> None:
-        """Take in feedback, which may be another goal's."""
+        """Process feedback, which may be another goal's."""
         if action_feedback.status.goal_id.id == self._id and self.feedback_cb and self.state != CommState.DONE:
             self.feedback_cb(ClientGoalHandle(self), action_feedback.feedback)
 
@@ -145,7 +145,7 @@ class ClientGoalHandle:
         return int(machine.latest_goal_status.status if machine else GoalStatus.PENDING)
 
     def get_goal_status_text(self) -> str:
-        """What the server said to that status."""
+        """Return the server's text for that status."""
         machine = self._machine("get_goal_status_text")
         if machine is None:
             return "ERROR: Trying to get_goal_status_text on an inactive ClientGoalHandle."
@@ -157,7 +157,7 @@ class ClientGoalHandle:
         return machine.latest_result.result if machine and machine.latest_result else None
 
     def get_terminal_state(self) -> int:
-        """How the goal ended, as a number of `TerminalState`; LOST when it did not."""
+        """Return the final state of the goal as a number of `TerminalState`, or LOST if it has not ended."""
         machine = self._machine("get_terminal_state")
         if machine is None:
             return int(GoalStatus.LOST)

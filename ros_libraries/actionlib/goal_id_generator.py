@@ -1,4 +1,4 @@
-"""Ids for goals that came without one."""
+"""Ids for goals that have none."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ class GoalIDGenerator:
     """Makes goal ids, unique in the node.
 
     Args:
-        name: what they begin with; None takes the node's name.
+        name: prefix of the ids; None takes the node's name.
     """
 
     def __init__(self, name: str | None = None) -> None:
         self.set_name(rospy.get_name() if name is None else name)
 
     def set_name(self, name: str) -> None:
-        """Set what the ids begin with."""
+        """Set the prefix of the ids."""
         self.name = name
 
     def generate_ID(self) -> Any:  # actionlib's name

@@ -1,4 +1,4 @@
-"""What the encodings of sensor_msgs/Image mean: depth, number of channels, and whether they are colours."""
+"""Meaning of the encodings of sensor_msgs/Image: depth, number of channels, and whether they are colours."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ class Encoding(NamedTuple):
 
 
 def parse(name: str) -> Encoding:
-    """What an encoding means.
+    """Return the meaning of an encoding.
 
     Raises:
-        ValueError: there is none such.
+        ValueError: the encoding is unknown.
     """
     if match := _COLOR.fullmatch(name):
         return Encoding(name, f"{match[2]}U", _CHANNELS[match[1]], match[1])

@@ -1,4 +1,4 @@
-"""`Config`: a dict whose items are attributes too, which is what a server's callback gets."""
+"""`Config`: a dict whose items are also attributes. A server's callback gets it."""
 
 from __future__ import annotations
 

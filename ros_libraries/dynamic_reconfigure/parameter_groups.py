@@ -1,4 +1,4 @@
-"""`Group`: parameters that a user sees together, and the groups inside; ParameterGenerator.Group in ROS."""
+"""`Group`: parameters that a user sees together, and nested groups; ParameterGenerator.Group in ROS."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Group:
         type: how it is shown: "", "collapse", "tab", "hide" or "apply".
         state: whether it is open.
         id: its number; 0 is the outermost group.
-        parent: number of the group around it.
+        parent: number of the enclosing group.
     """
 
     def __init__(self, gen: Any, name: str, type: str, state: bool, id: int, parent: int) -> None:

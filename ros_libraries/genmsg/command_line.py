@@ -1,4 +1,4 @@
-"""What generators of code take on their command lines."""
+"""Command line arguments of code generators."""
 
 from __future__ import annotations
 

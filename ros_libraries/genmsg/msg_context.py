@@ -1,4 +1,4 @@
-"""`MsgContext`: the definitions that are known, the files they came from, and what they need; part of msg_loader."""
+"""`MsgContext`: the known definitions, their files, and their dependencies; part of msg_loader."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ class MsgContext:
         return self._dependencies.get(full_msg_type)
 
     def get_all_depends(self, full_msg_type: str) -> list[str]:
-        """The types that a type needs, each followed by those that it needs itself.
+        """Return the types that a type needs, each followed by its own dependencies.
 
         Raises:
-            KeyError: what it needs was not said.
+            KeyError: its dependencies are unknown.
         """
         needed = self._dependencies[full_msg_type]
         return [name for each in needed for name in (each, *self.get_all_depends(each))]

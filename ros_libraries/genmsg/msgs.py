@@ -1,4 +1,4 @@
-"""`MsgSpec` and what it is made of: types, fields and constants."""
+"""`MsgSpec` and its parts: types, fields and constants."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def bare_msg_type(msg_type: Any) -> Any:
 
 
 def resolve_type(msg_type: str, package_context: str) -> str:
-    """The full name of a type, as it is meant in a definition of some package."""
+    """Return the full name of a type, as used in a definition of a package."""
     bare = bare_msg_type(msg_type)
     if bare == HEADER:
         return HEADER_FULL_NAME
@@ -38,10 +38,10 @@ def resolve_type(msg_type: str, package_context: str) -> str:
 
 
 def parse_type(msg_type: str) -> tuple[str, bool, int | None]:
-    """(type without brackets, whether it is an array, length of a fixed array).
+    """Return (type without brackets, whether it is an array, length of a fixed array).
 
     Raises:
-        ValueError: an empty type, more than one dimension, or a length that is no number.
+        ValueError: an empty type, more than one dimension, or a length that is not a number.
     """
     if not msg_type:
         raise ValueError("Invalid empty type")
@@ -125,16 +125,16 @@ class MsgSpec:
     """A message definition.
 
     Args:
-        types: of the fields.
-        names: of the fields.
+        types: types of the fields.
+        names: names of the fields.
         constants: the constants.
         text: the definition.
         full_name: "package/Name".
-        package: of the message; that of the full name by default.
-        short_name: its bare name; that of the full name by default.
+        package: package of the message; by default from the full name.
+        short_name: its bare name; by default from the full name.
 
     Raises:
-        InvalidMsgSpec: two fields have one name, or a type is none.
+        InvalidMsgSpec: two fields have one name, or a type is invalid.
     """
 
     __hash__ = None  # type: ignore[assignment]

@@ -1,4 +1,4 @@
-"""Source text that packs and unpacks by `struct`, and the patterns that were used in it."""
+"""Source text that packs and unpacks by `struct`, and the patterns that it uses."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def get_patterns() -> list[str]:
 
 
 def compute_struct_pattern(types: Sequence[str] | None) -> str | None:
-    """Pattern of several fields; None if there is none, or one that is not simple."""
+    """Return the pattern of several fields, or None if there is no field or one is not simple."""
     codes = [SIMPLE_TYPES_DICT.get(each) for each in types or ()]
     return "".join(map(str, codes)) if codes and None not in codes else None
 

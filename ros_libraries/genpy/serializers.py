@@ -60,12 +60,12 @@ def push_context(context: str) -> None:
 
 
 def pop_context() -> None:
-    """Put in front of fields what was there before."""
+    """Restore the previous prefix of fields."""
     _contexts.pop()
 
 
 def len_serializer_generator(var: str, is_string: bool, serialize: bool) -> Source:
-    """The length of an array; that of a string is written together with it."""
+    """Yield code for the length of an array. A string's length is written together with the string."""
     if not serialize:
         yield "start = end"
         yield "end += 4"
@@ -200,10 +200,10 @@ def _items(msg_context: MsgContext, package: str, type_: str, var: str, serializ
 def complex_serializer_generator(
     msg_context: MsgContext, package: str, type_: str, name: str, serialize: bool, is_numpy: bool
 ) -> Source:
-    """A field whose type is not simple.
+    """Yield code for a field whose type is not simple.
 
     Raises:
-        MsgGenerationException: its type is not known.
+        MsgGenerationException: its type is unknown.
     """
     if parse_type(type_)[1]:
         yield from array_serializer_generator(msg_context, package, type_, name, serialize, is_numpy)
@@ -248,10 +248,10 @@ def simple_serializer_generator(
 
 
 def serializer_generator(msg_context: MsgContext, spec: Any, serialize: bool, is_numpy: bool) -> Source:
-    """All fields of a message.
+    """Yield code for all fields of a message.
 
     Raises:
-        MsgGenerationException: there is no spec, or a field's type is not known.
+        MsgGenerationException: the spec is missing, or a field's type is unknown.
     """
     if spec is None:
         raise MsgGenerationException("spec is none")

@@ -1,4 +1,4 @@
-"""The index of a bag as tools around rosbag see it, with the names that rosbag gives it. Imports rosbag_storage."""
+"""The index of a bag for tools around rosbag, with rosbag's names. Imports rosbag_storage."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .search import Filter
 
 
 class Indexed:
-    """What `Bag` knows of its file; `_connection_indexes_read` says whether that includes where each message is."""
+    """The index of a `Bag`. `_connection_indexes_read` is true if the positions of messages have been read."""
 
     _storage: BagFile
     _connection_indexes_read: bool

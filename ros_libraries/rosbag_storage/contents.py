@@ -1,4 +1,6 @@
-"""What a bag holds, as its index says: connections, chunks, and where each message is. Imports records and errors."""
+"""The content of a bag according to its index: connections, chunks, and positions of messages. Imports records and
+errors.
+"""
 
 from __future__ import annotations
 
@@ -21,15 +23,15 @@ class Entry(NamedTuple):
 
 
 class Connection:
-    """One publisher of a topic, as its connection header tells.
+    """One publisher of a topic, as described by its connection header.
 
     Args:
         id: number in the bag.
         topic: name.
-        header: the connection header; written as it is.
+        header: the connection header; written unchanged.
 
     Raises:
-        ROSBagFormatException: the header lacks what a reader needs.
+        ROSBagFormatException: the header lacks a field that a reader needs.
     """
 
     def __init__(self, id: int, topic: str, header: Mapping[str, bytes | str]) -> None:
@@ -49,7 +51,8 @@ class Connection:
 
 @dataclass
 class Chunk:
-    """A chunk: its position in the file, first and last time in ns, messages per connection; how its data are kept."""
+    """A chunk: its position in the file, first and last time in ns, messages per connection, and its compression and
+    size."""
 
     pos: int
     start: int

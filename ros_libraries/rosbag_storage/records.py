@@ -1,6 +1,6 @@
 """Records of a bag: a header of named fields, and data; both with their length in front, in little endian.
 
-The helpers carry the names under which rosbag's own tools use them, without the underscore. Imports the errors only.
+The helpers have the names of rosbag's own tools, without the underscore. Imports the errors only.
 """
 
 from __future__ import annotations
@@ -83,10 +83,10 @@ def write_record(file: BinaryIO, fields: Fields, data: bytes | str = b"", padded
     """Write a record.
 
     Args:
-        file: where to.
-        fields: of the header.
-        data: what follows it.
-        padded_size: bytes that header and data are to take; the data are filled up with spaces.
+        file: the file to write to.
+        fields: fields of the header.
+        data: data after the header.
+        padded_size: total bytes of header and data; the data are filled up with spaces.
     """
     header = write_header(file, fields)
     content = _bytes(data)
@@ -138,7 +138,7 @@ def skip_record(file: BinaryIO) -> None:
 
 
 def read_record_data(file: BinaryIO) -> bytes:
-    """Read the data of a record whose header was read."""
+    """Read the data of a record after its header."""
     try:
         return read_sized(file)
     except ROSBagException as error:
@@ -149,11 +149,11 @@ def read_header(file: BinaryIO, op: int | None = None) -> dict[str, bytes]:
     """Read a header.
 
     Args:
-        file: where from.
-        op: the kind of record that is expected; None takes any.
+        file: the file to read from.
+        op: the kind of record that is expected; None accepts any.
 
     Raises:
-        ROSBagFormatException: it is no header, or another kind of record.
+        ROSBagFormatException: it is not a header, or another kind of record.
     """
     try:
         header = read_sized(file)
@@ -203,10 +203,10 @@ def peek_op(file: BinaryIO) -> int:
 
 
 def field(fields: Mapping[str, bytes], name: str) -> bytes:
-    """The bytes of a field.
+    """Return the bytes of a field.
 
     Raises:
-        ROSBagFormatException: there is none of that name.
+        ROSBagFormatException: there is no field of that name.
     """
     if name not in fields:
         raise ROSBagFormatException(f'expected "{name}" field in record')

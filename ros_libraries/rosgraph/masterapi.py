@@ -1,4 +1,5 @@
-"""rosgraph.masterapi: the master's methods as functions that give the value or raise (wiki.ros.org/ROS/Master_API)."""
+"""rosgraph.masterapi: the master's methods as functions that return the value or raise
+(wiki.ros.org/ROS/Master_API)."""
 
 from __future__ import annotations
 
@@ -11,7 +12,7 @@ from rosgraph.rosenv import get_master_uri
 
 
 class MasterException(Exception):
-    """The master did not do what was asked."""
+    """The master did not execute the request."""
 
 
 class MasterFailure(MasterException):
@@ -19,7 +20,7 @@ class MasterFailure(MasterException):
 
 
 class MasterError(MasterException):
-    """The master found an error in what was asked."""
+    """The master found an error in the request."""
 
 
 ROSMasterException = MasterException
@@ -28,10 +29,10 @@ Failure = MasterFailure
 
 
 def is_online(master_uri: str | None = None) -> bool:
-    """Whether a master answers.
+    """Return whether a master answers.
 
     Args:
-        master_uri: which one; that of the environment by default.
+        master_uri: the master's URI; by default from the environment.
     """
     return Master("rosgraph", master_uri=master_uri).is_online()
 
@@ -40,11 +41,11 @@ class Master:
     """The master.
 
     Args:
-        caller_id: name of who asks.
-        master_uri: which master; that of the environment by default.
+        caller_id: name of the caller.
+        master_uri: the master's URI; by default from the environment.
 
-    Every method but `is_online` raises `MasterError` or `MasterFailure`, with the master's text, when it does not
-    answer success, and what `xmlrpc.client` raises when nobody answers.
+    Every method except `is_online` raises `MasterError` or `MasterFailure`, with the master's text, if it does not
+    answer success, and the error of `xmlrpc.client` if there is no answer.
     """
 
     def __init__(self, caller_id: str, master_uri: str | None = None) -> None:
@@ -95,7 +96,7 @@ class Master:
         return self._ask("deleteParam", key)
 
     def setParam(self, key: str, value: Any) -> Any:
-        """Set a parameter; a dictionary replaces a namespace."""
+        """Set a parameter. A dictionary replaces a namespace."""
         return self._ask("setParam", key, value)
 
     def getParam(self, key: str) -> Any:
@@ -115,7 +116,7 @@ class Master:
         return self._ask("getParamNames")
 
     def subscribeParam(self, caller_api: str, key: str) -> Any:
-        """The value of a parameter; changes are told to the URI `caller_api`."""
+        """Return the value of a parameter. The master reports changes to the URI `caller_api`."""
         return self._ask("subscribeParam", caller_api, key)
 
     def unsubscribeParam(self, caller_api: str, key: str) -> Any:
@@ -129,23 +130,23 @@ class Master:
         return self._ask("registerService", service, service_api, caller_api)
 
     def unregisterService(self, service: str, service_api: str) -> Any:
-        """Unregister a service; how many."""
+        """Unregister a service. Returns how many were unregistered."""
         return self._ask("unregisterService", service, service_api)
 
     def registerSubscriber(self, topic: str, topic_type: str, caller_api: str) -> Any:
-        """Register a subscriber; the URIs of the publishers."""
+        """Register a subscriber. Returns the URIs of the publishers."""
         return self._ask("registerSubscriber", topic, topic_type, caller_api)
 
     def unregisterSubscriber(self, topic: str, caller_api: str) -> Any:
-        """Unregister a subscriber; how many."""
+        """Unregister a subscriber. Returns how many were unregistered."""
         return self._ask("unregisterSubscriber", topic, caller_api)
 
     def registerPublisher(self, topic: str, topic_type: str, caller_api: str) -> Any:
-        """Register a publisher; the URIs of the subscribers."""
+        """Register a publisher. Returns the URIs of the subscribers."""
         return self._ask("registerPublisher", topic, topic_type, caller_api)
 
     def unregisterPublisher(self, topic: str, caller_api: str) -> Any:
-        """Unregister a publisher; how many."""
+        """Unregister a publisher. Returns how many were unregistered."""
         return self._ask("unregisterPublisher", topic, caller_api)
 
     # -- the graph ---------------------------------------------------------------------------------------------------
@@ -159,7 +160,7 @@ class Master:
         return self._ask("lookupService", service)
 
     def getPublishedTopics(self, subgraph: str) -> Any:
-        """[topic, type] of all topics below a namespace that somebody publishes."""
+        """Return [topic, type] of all published topics below a namespace."""
         return self._ask("getPublishedTopics", subgraph)
 
     def getTopicTypes(self) -> Any:

@@ -1,4 +1,4 @@
-"""A node that was started, as a process to look after (roslaunch.pmon)."""
+"""A node that was started, as a process to monitor (roslaunch.pmon)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class Process:
     """A node that was started.
 
     Args:
-        name: what it is called in texts.
+        name: its name in texts.
         app: the name of its application.
     """
 

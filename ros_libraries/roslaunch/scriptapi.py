@@ -1,4 +1,4 @@
-"""`ROSLaunch`: nodes one by one, from a program (roslaunch.scriptapi)."""
+"""`ROSLaunch`: launches nodes one by one from a program (roslaunch.scriptapi)."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class ROSLaunch:
         self.parent.roslaunch_files.append(f)
 
     def start(self) -> None:
-        """Start what was loaded; nodes can be launched from now on."""
+        """Start the loaded nodes. From now on, nodes can be launched."""
         self.parent.start()
         self.started = True
 

@@ -1,4 +1,4 @@
-"""roslib.message: classes of messages and services by name; the rest is genpy's."""
+"""roslib.message: classes of messages and services by name; the other names are genpy's."""
 
 from __future__ import annotations
 

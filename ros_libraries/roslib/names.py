@@ -1,4 +1,4 @@
-"""roslib.names: names of packages' resources (`std_msgs/String`); those of the graph are rosgraph.names's."""
+"""roslib.names: names of packages' resources (`std_msgs/String`). Graph names are in rosgraph.names."""
 
 from __future__ import annotations
 
@@ -64,12 +64,12 @@ BASE_RESOURCE_NAME_LEGAL_CHARS_P = re.compile(r"^[A-Za-z][\w_]*$")
 
 
 def resource_name(res_pkg_name: str, name: str, my_pkg: str | None = None) -> str:
-    """The full name of a package's resource; only its own name as seen from that package.
+    """Return the full name of a package's resource, or only its own name if seen from that package.
 
     Args:
         res_pkg_name: the package.
         name: the resource.
-        my_pkg: from which package it is seen.
+        my_pkg: the package from which it is seen.
     """
     return name if not res_pkg_name or res_pkg_name == my_pkg else f"{res_pkg_name}{PRN_SEPARATOR}{name}"
 

@@ -1,4 +1,4 @@
-"""roslib.rospack: what the command `rospack` knows of dependencies."""
+"""roslib.rospack: dependencies as in the command `rospack`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import rospkg
 
 
 def rospack_depends_1(pkg: str) -> Sequence[str]:
-    """Names of the packages that a package depends on itself."""
+    """Return the names of a package's direct dependencies."""
     return rospkg.RosPack().get_depends(pkg, implicit=False)
 
 

@@ -1,4 +1,4 @@
-"""roslib.scriptutil: the bare master, for programs that are no nodes."""
+"""roslib.scriptutil: the bare master, for programs that are not nodes."""
 
 from __future__ import annotations
 

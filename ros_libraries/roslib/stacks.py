@@ -1,4 +1,4 @@
-"""roslib.stacks: older names of what rospkg.RosStack has."""
+"""roslib.stacks: older names of rospkg.RosStack."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _stacks(env: Env) -> rospkg.RosStack:
 
 
 def stack_of(pkg: str, env: Env = None) -> str | None:
-    """Name of the stack that a package lies in, or None.
+    """Return the name of the stack that contains a package, or None.
 
     Raises:
         rospkg.ResourceNotFound: there is no such package.

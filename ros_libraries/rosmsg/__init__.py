@@ -89,10 +89,10 @@ def list_srvs(package: str, rospack: Any = None) -> list[str]:
 
 
 def iterate_packages(rospack: Any, mode: str) -> Iterator[tuple[str, str]]:
-    """Packages that have messages or services, each with the folder of them; `""` for one that cfepy brings along.
+    """Yield packages with messages or services, each with their folder, or `""` for a package that cfepy brings along.
 
     Args:
-        rospack: knows where packages lie.
+        rospack: knows the folders of packages.
         mode: MODE_MSG or MODE_SRV.
 
     Raises:
@@ -112,15 +112,15 @@ def rosmsg_search(rospack: Any, mode: str, base_type: str) -> Iterator[str]:
             yield f"{package}/{base_type}"
 
 
-# -- what they are ---------------------------------------------------------------------------------------------------
+# -- definitions -----------------------------------------------------------------------------------------------------
 
 
 def get_msg_text(type_: str, raw: bool = False, rospack: Any = None) -> str:
-    """The definition of a message, with those of its fields indented below them.
+    """Return the definition of a message, with its fields' definitions indented below them.
 
     Args:
         type_: full name.
-        raw: as it was written, without those of its fields.
+        raw: as written, without the definitions of its fields.
         rospack: accepted.
 
     Raises:

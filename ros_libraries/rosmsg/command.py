@@ -33,7 +33,7 @@ def usage(mode: str) -> str:
 
 
 def run(mode: str) -> None:
-    """Run the command line of sys.argv; errors are printed and end the program."""
+    """Run the command line of sys.argv. Errors are printed and end the program."""
     command = COMMANDS.get(sys.argv[1]) if len(sys.argv) > 1 else None
     if command is None:
         print(usage(mode))
@@ -95,7 +95,8 @@ def _show(mode: str, args: list[str]) -> int:
 
 
 def _in_bag(file: str, name: str) -> list[Any]:
-    """The class of a message that a bag has, made of its definition there; empty when it has none of that name.
+    """Return the class of a message in a bag, made from the definition there, or nothing if the bag has no such
+    message.
 
     Raises:
         rosmsg.ROSMsgException: there is no such bag, or it is broken.

@@ -1,4 +1,4 @@
-"""rosnode: which nodes there are, whether they answer, what they publish, and how to end them (wiki.ros.org/rosnode).
+"""rosnode: lists nodes, checks whether they answer, shows their topics, and ends them (wiki.ros.org/rosnode).
 
 It asks the master, and the nodes themselves at their URIs.
 """
@@ -54,10 +54,10 @@ def _state(master: rosgraph.Master) -> Any:
 
 
 def get_api_uri(master: rosgraph.Master, caller_id: str, skip_cache: bool = False) -> str | None:
-    """The URI of a node; None for one that is unknown.
+    """Return the URI of a node, or None if the node is unknown.
 
     Args:
-        master: whom to ask.
+        master: the master to ask.
         caller_id: name of the node.
         skip_cache: ask even if it is known from before.
 
@@ -75,7 +75,7 @@ def get_api_uri(master: rosgraph.Master, caller_id: str, skip_cache: bool = Fals
 
 
 def lookup_uri(master: rosgraph.Master, system_state: Any, topic: str, uri: str) -> str:
-    """A URI together with the name of the node on a topic that has it; the bare URI if there is none."""
+    """Return a URI with the name of the node on a topic that has it, or the bare URI if there is none."""
     for entries in system_state[:2]:
         for name, nodes in entries:
             for node in nodes if name == topic else ():
@@ -136,11 +136,11 @@ def _machines() -> Iterable[tuple[str, str]]:
 
 
 def rosnode_ping(node_name: str, max_count: int | None = None, verbose: bool = False, skip_cache: bool = False) -> bool:
-    """Whether a node answers.
+    """Return whether a node answers.
 
     Args:
-        node_name: of the node.
-        max_count: how often to ask, once a second; None for ever.
+        node_name: name of the node.
+        max_count: how often to ask, once a second; None forever.
         verbose: print each answer.
         skip_cache: ask the master for the URI even if it is known from before.
 
@@ -194,7 +194,7 @@ def rosnode_ping_all(verbose: bool = False, skip_cache: bool = False) -> tuple[l
 
 
 def kill_nodes(node_names: Iterable[str]) -> tuple[list[str], list[str]]:
-    """Ask nodes to shut down; those that were asked, and those that are unknown.
+    """Ask nodes to shut down. Returns the nodes that were asked, and the unknown ones.
 
     Raises:
         ROSNodeIOException: the master does not answer.
@@ -218,7 +218,7 @@ def cleanup_master_blacklist(master: rosgraph.Master, blacklist: Sequence[str]) 
 
 
 def cleanup_master_whitelist(master: rosgraph.Master, whitelist: Sequence[str]) -> None:
-    """Remove all registrations but those of some nodes from the master."""
+    """Remove all registrations from the master, except for those of some nodes."""
     for name in _names(master.getSystemState()):
         if name not in whitelist:
             _unregister(master, name)
@@ -239,11 +239,11 @@ def _unregister(master: rosgraph.Master, node: str) -> None:
             its_master.unregisterService(service, master.lookupService(service))
 
 
-# -- what they do ----------------------------------------------------------------------------------------------------
+# -- connections of nodes --------------------------------------------------------------------------------------------
 
 
 def get_node_info_description(node_name: str) -> str:
-    """A text that lists what a node publishes, subscribes to and offers.
+    """Return a text that lists a node's publications, subscriptions and services.
 
     Raises:
         ROSNodeIOException: the master does not answer.
@@ -264,11 +264,11 @@ def _listed(title: str, lines: Sequence[str]) -> str:
 
 
 def get_node_connection_info_description(node_api: str, master: rosgraph.Master) -> str:
-    """A text that lists a node's connections.
+    """Return a text that lists a node's connections.
 
     Args:
         node_api: the node's URI.
-        master: whom to ask for names.
+        master: the master to ask for names.
 
     Raises:
         ROSNodeIOException: the node does not answer.
@@ -289,10 +289,10 @@ def get_node_connection_info_description(node_api: str, master: rosgraph.Master)
 
 
 def rosnode_info(node_name: str, quiet: bool = False) -> None:
-    """Print what there is to know of a node.
+    """Print all information about a node.
 
     Args:
-        node_name: of the node.
+        node_name: name of the node.
         quiet: ask the master only.
     """
     master = rosgraph.Master(ID)
@@ -356,5 +356,5 @@ def rosnodemain(argv: Sequence[str] | None = None) -> None:
 
 
 def __getattr__(name: str) -> Any:
-    """The commands one by one, under the names by which tests and tools call them: `_rosnode_cmd_list(argv)`."""
+    """Return a command by the name that tests and tools use: `_rosnode_cmd_list(argv)`."""
     return command_of("rosnode", name)

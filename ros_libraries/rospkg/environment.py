@@ -32,20 +32,20 @@ def get_ros_package_path(env: Env = None) -> str | None:
 
 
 def get_ros_paths(env: Env = None) -> list[str]:
-    """The folders in which packages are looked for, the first one counts."""
+    """Return the folders to search for packages; the first match counts."""
     path = get_ros_package_path(env) or ""
     return [each for each in (get_ros_root(env), *path.split(os.pathsep)) if each and each.strip()]
 
 
 def on_ros_path(p: str, env: Env = None) -> bool:
-    """Whether a folder is one of those, or below one."""
+    """Return whether a folder is one of the searched folders, or below one."""
     place = os.path.realpath(os.path.expanduser(p))
     roots = (os.path.realpath(os.path.expanduser(path)) for path in get_ros_paths(env))
     return any(place == root or place.startswith(root + os.sep) for root in roots)
 
 
 def get_ros_home(env: Env = None) -> str:
-    """The folder of what ROS keeps for a user."""
+    """Return the folder of a user's ROS data."""
     return _environment(env).get(ROS_HOME) or os.path.join(os.path.expanduser("~"), ".ros")
 
 

@@ -34,7 +34,7 @@ def print_usage() -> NoReturn:
 
 
 def run(argv: list[str]) -> None:
-    """Run a command line; errors are printed and end the program."""
+    """Run a command line. Errors are printed and end the program."""
     argv = rospy.myargv(argv)
     command, args = (argv[1] if len(argv) > 1 else ""), argv[2:]
     try:

@@ -14,12 +14,12 @@ Filter = Callable[[Any], Iterable[str]]
 
 
 def msgevalgen(pattern: str) -> Callable[[Any], Any] | None:
-    """A function that gives a field of a message; None when the path is empty or has a mistake.
+    """Return a function that returns a field of a message, or None if the path is empty or has a mistake.
 
     Args:
         pattern: such as `/pose/position/x`, `/points[0]/x`, `/points[1:3]/x`.
 
-    The function prints on stderr what is wrong and gives None, when a message has no such field.
+    If a message has no such field, the function prints the error on stderr and returns None.
     """
     steps: list[tuple[str, Any]] = []
     for part in filter(None, pattern.split("/")):
@@ -78,11 +78,11 @@ def _str_plot(
     fixed_numeric_width: int | None = None,
     value_transform: Any = None,
 ) -> str:
-    """A line: the time in ns, then all plain values in a message.
+    """Return a line: the time in ns, then all plain values in a message.
 
     Args:
         val: the message.
-        time_offset: taken off all times.
+        time_offset: subtracted from all times.
         current_time: the line's time; None for the header's, or now.
         field_filter: which fields count.
         type_information: accepted.

@@ -35,11 +35,11 @@ def read_points(
     skip_nans: bool = False,
     uvs: Iterable[tuple[int, int]] = (),
 ) -> Iterator[tuple[Any, ...]]:
-    """The points of a cloud, row by row.
+    """Yield the points of a cloud, row by row.
 
     Args:
         cloud: the PointCloud2.
-        field_names: fields to read; all by default. They come in the order in which they lie in the cloud.
+        field_names: fields to read; all by default. They are returned in their order in the cloud.
         skip_nans: leave out points with a NaN in a field that is read.
         uvs: (column, row) of the points to read; all by default.
 
@@ -48,7 +48,7 @@ def read_points(
 
     Raises:
         AssertionError: `cloud` is something else.
-        struct.error: its data are shorter than it says.
+        struct.error: its data are shorter than its header claims.
     """
     _check(cloud)
     unpack = struct.Struct(_get_struct_fmt(cloud.is_bigendian, cloud.fields, field_names)).unpack_from
@@ -70,7 +70,8 @@ def read_points_list(
     skip_nans: bool = False,
     uvs: Iterable[tuple[int, int]] = (),
 ) -> list[Any]:
-    """As `read_points`, a list of named tuples; their names are the field names in the order given."""
+    """Return the points as `read_points`, as a list of named tuples. Their names are the field names in the order
+    given."""
     _check(cloud)
     names = [field.name for field in cloud.fields] if field_names is None else field_names
     kind: Any = namedtuple("Point", names)  # type: ignore[misc]  # the names are known at run time only

@@ -50,8 +50,9 @@ def xyzw_to_mat44(ori: Any) -> Any:
 class TransformerROS(Transformer):
     """A `Transformer` that also transforms messages.
 
-    Each `transform...` takes a frame's name and a stamped message, and returns a new one as seen from that frame, with
-    the stamp of the old; errors as `lookupTransform`.
+    Each `transform...` takes a frame's name and a stamped message. It returns a new message as seen from that frame,
+    with
+    the old stamp. Errors are those of `lookupTransform`.
     """
 
     def asMatrix(self, target_frame: str, hdr: Any) -> Any:
@@ -88,7 +89,7 @@ class TransformerROS(Transformer):
         return _stamped(PoseStamped(pose=pose), target_frame, ps)
 
     def transformPointCloud(self, target_frame: str, point_cloud: Any) -> Any:
-        """A sensor_msgs/PointCloud; its points become geometry_msgs/Point, as in tf."""
+        """Transform a sensor_msgs/PointCloud. Its points become geometry_msgs/Point, as in tf."""
         matrix = self.asMatrix(target_frame, point_cloud.header)
         points = [_moved(matrix, point, Point) for point in point_cloud.points]
         return _stamped(PointCloud(points=points, channels=point_cloud.channels), target_frame, point_cloud)
@@ -111,7 +112,7 @@ def _stamped(found: Any, frame: str, original: Any) -> Any:
 
 
 class TransformListener(TransformerROS):
-    """A `TransformerROS` that listens to /tf and /tf_static; arguments as `Transformer`."""
+    """A `TransformerROS` that listens to /tf and /tf_static. The arguments are those of `Transformer`."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)

@@ -1,4 +1,4 @@
-"""Transforming messages of geometry_msgs (tf2_geometry_msgs), without PyKDL but with its arithmetic.
+"""Transforms messages of geometry_msgs (tf2_geometry_msgs), without PyKDL but with its arithmetic.
 
 Each function takes a stamped message and a geometry_msgs/TransformStamped, and returns a new message with the header
 of the transform. Imports geometry_msgs and tf2_ros.

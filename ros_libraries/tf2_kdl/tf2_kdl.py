@@ -1,4 +1,4 @@
-"""The conversions that `tf2_kdl` registers. What is transformed carries a header, as `tf2_ros.Stamped` makes it."""
+"""The conversions that `tf2_kdl` registers. The objects have a header, as `tf2_ros.Stamped` makes it."""
 
 from __future__ import annotations
 
@@ -17,22 +17,23 @@ def _moved(value: Any, transform: Any) -> Any:
 
 
 def do_transform_vector(vector: PyKDL.Vector, transform: Any) -> Any:
-    """A vector seen from another frame; it gets the header of `transform`, a geometry_msgs/TransformStamped."""
+    """Return a vector as seen from another frame. It gets the header of `transform`, a
+    geometry_msgs/TransformStamped."""
     return _moved(vector, transform)
 
 
 def do_transform_frame(frame: PyKDL.Frame, transform: Any) -> Any:
-    """A frame seen from another one; see `do_transform_vector`."""
+    """Return a frame as seen from another one; see `do_transform_vector`."""
     return _moved(frame, transform)
 
 
 def do_transform_twist(twist: PyKDL.Twist, transform: Any) -> Any:
-    """A twist seen from another frame; see `do_transform_vector`."""
+    """Return a twist as seen from another frame; see `do_transform_vector`."""
     return _moved(twist, transform)
 
 
 def do_transform_wrench(wrench: PyKDL.Wrench, transform: Any) -> Any:
-    """A wrench seen from another frame; see `do_transform_vector`."""
+    """Return a wrench as seen from another frame; see `do_transform_vector`."""
     return _moved(wrench, transform)
 
 

@@ -1,4 +1,4 @@
-"""`BufferCore`: what tf2's C++ core offers to Python, with its argument names, results and error texts.
+"""`BufferCore`: the Python interface of tf2's C++ core, with its argument names, results and error texts.
 
 Nothing here waits, so no lock is needed. Imports tf2_py only.
 """
@@ -51,11 +51,11 @@ class BufferCore:
     # -- filling -----------------------------------------------------------------------------------------------------
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Take in a transform at its stamp; one that makes no sense is reported and left out.
+        """Add a transform at its stamp. An invalid one is reported and left out.
 
         Args:
             transform: a geometry_msgs/TransformStamped.
-            authority: who says so.
+            authority: name of the sender.
 
         Raises:
             TypeError: `transform` lacks a part.
@@ -63,7 +63,7 @@ class BufferCore:
         self._set(transform, authority, TimeCache(self._keep_ns))
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Take in a transform that holds at all times; arguments as `set_transform`."""
+        """Add a transform that is valid at all times. The arguments are those of `set_transform`."""
         self._set(transform, authority, StaticCache())
 
     def _set(self, message: Any, authority: str, cache: TimeCache | StaticCache) -> None:
@@ -87,7 +87,7 @@ class BufferCore:
             self._authorities[child] = authority
 
     def clear(self) -> None:
-        """Forget all samples that are not static; the frames stay known."""
+        """Remove all samples that are not static. The frames stay known."""
         for cache in self._tree.caches.values():
             if cache is not None:
                 cache.clear()
@@ -95,7 +95,7 @@ class BufferCore:
     # -- looking up --------------------------------------------------------------------------------------------------
 
     def lookup_transform_core(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """The transform that takes coordinates in the source frame to the target frame.
+        """Return the transform that takes coordinates in the source frame to the target frame.
 
         Args:
             target_frame: name of a frame.
@@ -106,8 +106,8 @@ class BufferCore:
             a geometry_msgs/TransformStamped.
 
         Raises:
-            LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: it is not to be
-                had.
+            LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: it is not
+                available.
         """
         return message_of(target_frame, source_frame, *self._lookup(target_frame, source_frame, to_ns(time)))
 
@@ -187,7 +187,7 @@ class BufferCore:
         return self._try(fixed_frame, source_frame, at_source) if possible else (0, problem)
 
     def _unknown(self, frames: dict[str, str]) -> str | None:
-        """What is wrong with the names of frames; an ill-formed one is reported on the console and has no text."""
+        """Return the error in the names of frames. An ill-formed name is reported on the console and has no text."""
         for role, name in frames.items():
             problem = name_problem(f"canTransform argument {role}", name)
             if problem:
@@ -204,11 +204,11 @@ class BufferCore:
         return 1, ""
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Any:
-        """The latest time that all frames on the way between two have in common, a rospy.Time.
+        """Return the latest time that all frames between two have in common, a rospy.Time.
 
         Raises:
             InvalidArgumentException, LookupException: a frame is unknown.
-            TransformException: there is no way between them.
+            TransformException: the frames are not connected.
         """
         self._validate("get_latest_common_time", target_frame)
         self._validate("get_latest_common_time", source_frame)

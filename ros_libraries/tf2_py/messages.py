@@ -1,6 +1,8 @@
-"""Between messages and plain numbers: times in ns, transforms as seven floats. Imports rospy, geometry_msgs and tf2_py.
+"""Conversion between messages and numbers: times in ns, transforms as seven floats. Imports rospy, geometry_msgs and
+tf2_py.
 
-Times come in by way of a float of seconds, as in tf2's Python module, so a stamp loses what a float cannot hold.
+Times are converted through a float of seconds, as in tf2's Python module, so a stamp loses the precision that a float
+cannot hold.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a buffer holds, as text: YAML for tf2's tools, a graph for dot. Imports tf2_py only."""
+"""The content of a buffer as text: YAML for tf2's tools, a graph for dot. Imports tf2_py only."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def rows(tree: Tree, authorities: Mapping[str, str]) -> Iterator[Row]:
 
 
 def as_yaml(tree: Tree, authorities: Mapping[str, str]) -> str:
-    """A mapping from each frame to what is known of it (BufferCore::allFramesAsYAML)."""
+    """Return a mapping from each frame to its data (BufferCore::allFramesAsYAML)."""
     if not tree.caches:
         return "{}"
     return "".join(
@@ -49,11 +49,11 @@ def as_yaml(tree: Tree, authorities: Mapping[str, str]) -> str:
 
 
 def as_dot(tree: Tree, authorities: Mapping[str, str], now: int) -> str:
-    """A graph in dot's language (BufferCore::_allFramesAsDot).
+    """Return a graph in dot's language (BufferCore::_allFramesAsDot).
 
     Args:
         tree: the frames.
-        authorities: who last gave each frame's transform.
+        authorities: name of the last sender of each frame's transform.
         now: present time in ns, for the ages; 0 leaves them out.
     """
     lines = ["digraph G {"] if tree.caches else ['digraph G {\n"no tf data recieved"']

@@ -1,7 +1,7 @@
 """Arithmetic on rigid transforms as plain floats, in the order of operations of tf2's LinearMath.
 
 A transform is `(x, y, z, qx, qy, qz, qw)`: a translation, then a rotation as a quaternion. Everything is written out,
-since a lookup spends its time here. Imports nothing.
+because a lookup spends its time here. Imports nothing.
 """
 
 from __future__ import annotations
@@ -58,11 +58,12 @@ def inverse(transform: Rigid) -> Rigid:
 
 
 def between(older: Sample, newer: Sample, ratio: float) -> Sample:
-    """The sample at a point between two: translation linearly, rotation along the shortest arc at constant speed.
+    """Return the sample at a point between two: translation linearly, rotation along the shortest arc at constant
+    speed.
 
     Args:
-        older: where `ratio` is 0.
-        newer: where `ratio` is 1; its parent does not count.
+        older: the sample for `ratio` 0.
+        newer: the sample for `ratio` 1; its parent does not count.
         ratio: the point.
     """
     parent, ax, ay, az, x, y, z, w = older
@@ -90,7 +91,7 @@ def between(older: Sample, newer: Sample, ratio: float) -> Sample:
 
 
 def matrix_of(q: Quaternion) -> Matrix:
-    """The rotation matrix of a quaternion, row by row; the quaternion's length does not count."""
+    """Return the rotation matrix of a quaternion, row by row. The quaternion's length does not matter."""
     x, y, z, w = q
     s = 2.0 / (x * x + y * y + z * z + w * w)
     xs, ys, zs = x * s, y * s, z * s
@@ -101,7 +102,7 @@ def matrix_of(q: Quaternion) -> Matrix:
 
 
 def quaternion_of(matrix: Matrix) -> Quaternion:
-    """The quaternion of a rotation matrix, with whichever sign keeps most digits."""
+    """Return the quaternion of a rotation matrix, with the sign that keeps most digits."""
     rows = matrix[0:3], matrix[3:6], matrix[6:9]
     trace = matrix[0] + matrix[4] + matrix[8]
     if trace > 0.0:

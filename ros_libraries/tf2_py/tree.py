@@ -1,4 +1,4 @@
-"""The tree of frames, and the way through it from one frame to another (the walks of tf2::BufferCore).
+"""The tree of frames, and the path through it from one frame to another (the walks of tf2::BufferCore).
 
 Imports tf2_py only.
 """
@@ -15,10 +15,11 @@ FOREVER = 1 << 63
 
 
 class Path:
-    """The way from a source frame up to a common ancestor and down to the target frame.
+    """The path from a source frame up to a common ancestor and down to the target frame.
 
-    `up` and `down` are the samples from source and target to the frame where they meet; `time` is the time that was
-    asked for, or the latest common one, in ns.
+    `up` and `down` are the samples from source and target to the frame where they meet. `time` is the requested time,
+    or the
+    latest common one, in ns.
     """
 
     __slots__ = ("down", "time", "up")
@@ -30,7 +31,7 @@ class Path:
 
 
 class Tree:
-    """Frames by name, in the order in which they were first heard of; a frame without a parent has no cache."""
+    """Frames by name, in the order of their first appearance. A frame without a parent has no cache."""
 
     __slots__ = ("caches",)
 
@@ -38,16 +39,16 @@ class Tree:
         self.caches: dict[str, Cache | None] = {}
 
     def path(self, target: str, source: str, time: int) -> Path:
-        """The way between two known frames.
+        """Return the path between two known frames.
 
         Args:
-            target: where it leads.
-            source: where it begins.
-            time: in ns; 0 for the latest time that all frames on the way have in common.
+            target: its end.
+            source: its beginning.
+            time: in ns; 0 for the latest time that all frames on the path have in common.
 
         Raises:
-            ConnectivityException: there is none.
-            ExtrapolationException: a frame on the way has no sample at that time.
+            ConnectivityException: there is no path.
+            ExtrapolationException: a frame on the path has no sample at that time.
             LookupException: the tree has a loop.
         """
         if source == target:
@@ -74,7 +75,7 @@ class Tree:
         """Walk towards the root, collecting samples, until `wanted`, `top` or the end.
 
         Returns:
-            the frame where it ended, and what was wrong if that one has no sample at the time.
+            the frame where it ended, and the error if that one has no sample at the time.
         """
         caches = self.caches
         while frame != wanted and frame != top:
@@ -91,10 +92,10 @@ class Tree:
         return frame, None
 
     def latest_common_time(self, target: str, source: str) -> int:
-        """The latest time at which the way between two known frames is covered, in ns; 0 for any time.
+        """Return the latest time at which the path between two known frames is covered, in ns; 0 for any time.
 
         Raises:
-            ConnectivityException: there is no way.
+            ConnectivityException: there is no path.
             LookupException: the tree has a loop.
         """
         if source == target:
@@ -150,7 +151,7 @@ class Tree:
 
 
 def _earliest(latest: list[tuple[int, str]]) -> int:
-    """The earliest of the newest stamps, static ones aside; 0 when all are static."""
+    """Return the earliest of the newest stamps, ignoring static ones, or 0 if all are static."""
     return min((stamp for stamp, _ in latest if stamp), default=0)
 
 

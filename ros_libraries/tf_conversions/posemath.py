@@ -46,10 +46,10 @@ def toMatrix(f: Frame) -> Any:
 
 
 def fromCameraParams(cv: Any, rvec: Any, tvec: Any) -> Frame:
-    """Frame of what OpenCV finds as a camera's extrinsic parameters.
+    """Return the frame of OpenCV's extrinsic camera parameters.
 
     Args:
-        cv: the OpenCV module, which has Rodrigues or, long ago, Rodrigues2.
+        cv: the OpenCV module, which has Rodrigues or, in old versions, Rodrigues2.
         rvec: rotation vector, 3x1.
         tvec: translation, 3x1, in m.
     """

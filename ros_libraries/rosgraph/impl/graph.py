@@ -1,6 +1,6 @@
 """rosgraph.impl.graph: a picture of the ROS graph, nodes and topics with the edges between them, kept up to date.
 
-In the picture a topic is a node whose name begins with a space, so that it cannot be confused with a node of that name.
+In the picture, a topic is a node whose name begins with a space, to distinguish it from a node of that name.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ class BadNode:
     """A node that does not answer.
 
     Args:
-        name: of the node.
-        type: DEAD, or WONKY when it has been asked again.
-        reason: what went wrong.
+        name: name of the node.
+        type: DEAD, or WONKY if it has been asked again.
+        reason: the error.
     """
 
     DEAD = 0
@@ -97,7 +97,7 @@ class EdgeList:
         return edge in self
 
     def add(self, edge: Edge) -> bool:
-        """Add an edge; whether it is new."""
+        """Add an edge. Returns whether it is new."""
         starting = self.edges_by_start.setdefault(edge.key, [])
         if edge in starting:
             return False
@@ -106,7 +106,7 @@ class EdgeList:
         return True
 
     def add_edges(self, start: str | None, dest: str | None, direction: str, label: str = "") -> bool:
-        """Add the edges between two names; whether any is new. None stands for a name that is unknown."""
+        """Add the edges between two names. Returns whether any is new. None stands for an unknown name."""
         if not start or not dest:
             return False
         return sum(self.add(Edge(*args)) for args in edge_args(start, dest, direction, label)) > 0
@@ -124,7 +124,7 @@ class EdgeList:
 
 
 class Graph:
-    """The picture; `update` looks at the master and the nodes again.
+    """The picture; `update` asks the master and the nodes again.
 
     Args:
         node_ns: only nodes whose names begin so.
@@ -158,7 +158,7 @@ class Graph:
         self.node_stale = stale_secs
 
     def update(self) -> bool:
-        """Ask the master and the nodes whose answers are stale; whether anything has changed."""
+        """Ask the master and the nodes whose answers are old. Returns whether anything has changed."""
         updated = False
         if time.time() > self.last_master_refresh + self.master_stale:
             updated = self._refresh_master()
@@ -166,7 +166,7 @@ class Graph:
         return self._refresh_nodes(sorted(self.nn_nodes - self.bad_nodes.keys())) or updated
 
     def bad_update(self) -> bool:
-        """Ask the nodes that did not answer; whether anything has changed."""
+        """Ask the nodes that did not answer. Returns whether anything has changed."""
         return self._refresh_nodes(sorted(self.bad_nodes))
 
     def _refresh_nodes(self, names: Iterable[str]) -> bool:

@@ -14,7 +14,8 @@ Angles = tuple[float, float, float]
 
 
 class Matrix3x3:
-    """A matrix: nine numbers row by row, or of a quaternion; the identity without arguments. Rows by index."""
+    """A matrix from nine numbers row by row, or from a quaternion; the identity without arguments. An index gives a
+    row."""
 
     __slots__ = ("m_el",)
     __hash__ = None  # type: ignore[assignment]  # it can change
@@ -47,7 +48,7 @@ class Matrix3x3:
     # -- parts -------------------------------------------------------------------------------------------------------
 
     def getRow(self, i: int) -> Vector3:
-        """A row; changing it changes the matrix."""
+        """Return a row. Changing it changes the matrix."""
         return self.m_el[i]
 
     def getColumn(self, i: int) -> Vector3:
@@ -122,7 +123,7 @@ class Matrix3x3:
         self.setEulerYPR(yaw, pitch, roll)
 
     def getEulerYPR(self, solution_number: int = 1) -> Angles:
-        """Yaw, pitch and roll of this rotation in rad; there are two solutions."""
+        """Return yaw, pitch and roll of this rotation in rad. There are two solutions."""
         m = self.m_el
         sine = m[2][0]
         if abs(sine) >= 1.0:  # gimbal lock: only the difference of the other two angles counts
@@ -137,7 +138,7 @@ class Matrix3x3:
     getEulerZYX = getEulerYPR
 
     def getRPY(self, solution_number: int = 1) -> Angles:
-        """Roll, pitch and yaw of this rotation in rad; there are two solutions."""
+        """Return roll, pitch and yaw of this rotation in rad. There are two solutions."""
         yaw, pitch, roll = self.getEulerYPR(solution_number)
         return roll, pitch, yaw
 
@@ -208,21 +209,21 @@ class Matrix3x3:
         return Matrix3x3(*(self.cofac(b, c, d, e) for c, e in others for b, d in others))
 
     def inverse(self) -> Matrix3x3:
-        """The inverse.
+        """Return the inverse.
 
         Raises:
-            ZeroDivisionError: there is none.
+            ZeroDivisionError: the matrix is singular.
         """
         s = 1.0 / self.determinant()
         return Matrix3x3(*(cell * s for row in self.adjoint() for cell in row))
 
     def diagonalize(self, rot: Matrix3x3, threshold: float, maxSteps: int) -> None:
-        """Become diagonal, by Jacobi's method; the matrix has to be symmetric.
+        """Diagonalize this matrix by Jacobi's method. The matrix must be symmetric.
 
         Args:
             rot: becomes the rotation R for which the old matrix is R * new * transposed R.
-            threshold: how large elements off the diagonal may remain, in parts of the diagonal's sum.
-            maxSteps: how often to turn.
+            threshold: maximum size of the remaining elements off the diagonal, as a fraction of the diagonal's sum.
+            maxSteps: maximum number of rotations.
         """
         rot.setIdentity()
         diagonalize(self.m_el, rot.m_el, threshold, maxSteps)

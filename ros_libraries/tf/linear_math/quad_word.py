@@ -1,4 +1,4 @@
-"""QuadWord.h: four numbers, what Quaternion and Vector3 are stored in. Imports tf.linear_math.min_max."""
+"""QuadWord.h: four numbers, the storage of Quaternion and Vector3. Imports tf.linear_math.min_max."""
 
 from __future__ import annotations
 

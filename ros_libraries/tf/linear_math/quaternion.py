@@ -15,7 +15,7 @@ Halves = tuple[float, float, float, float, float, float]
 class Quaternion(QuadWord):
     """A rotation, `Quaternion(x, y, z, w)` or `Quaternion(axis, angle)`; the identity without arguments.
 
-    Three numbers are yaw, pitch, roll as of `setEuler`.
+    Three numbers are yaw, pitch, roll as in `setEuler`.
     """
 
     __slots__ = ()
@@ -64,7 +64,7 @@ class Quaternion(QuadWord):
         )
 
     def setEulerZYX(self, yaw: float, pitch: float, roll: float) -> None:
-        """The old name of `setRPY`, the other way round."""
+        """Set as `setRPY`, whose old name this is, with the arguments in the other order."""
         self.setRPY(roll, pitch, yaw)
 
     # -- arithmetic --------------------------------------------------------------------------------------------------
@@ -150,7 +150,7 @@ class Quaternion(QuadWord):
         return 2.0 * tfAcos(abs(self[3]))
 
     def getAxis(self) -> Vector3:
-        """The axis of the rotation; X when it does not turn."""
+        """Return the axis of the rotation, or X without rotation."""
         sine2 = 1.0 - self[3] * self[3]
         if sine2 < 10.0 * TFSIMD_EPSILON:
             return Vector3(1.0, 0.0, 0.0)
@@ -185,7 +185,7 @@ class Quaternion(QuadWord):
 
 
 def _halves(yaw: float, pitch: float, roll: float) -> Halves:
-    """Cosine and sine of half of each angle."""
+    """Return cosine and sine of half of each angle."""
     y, p, r = yaw * 0.5, pitch * 0.5, roll * 0.5
     return cos(y), sin(y), cos(p), sin(p), cos(r), sin(r)
 
@@ -197,7 +197,7 @@ def _made(numbers: object) -> Quaternion:
 
 
 def _product(a: QuadWord, b: QuadWord) -> Quaternion:
-    """The product; a vector counts as a quaternion whose w is 0."""
+    """Return the product. A vector counts as a quaternion whose w is 0."""
     ax, ay, az, aw = a.m_floats
     bx, by, bz, bw = b.m_floats
     return Quaternion(
@@ -255,5 +255,5 @@ def shortestArcQuat(v0: Vector3, v1: Vector3) -> Quaternion:
 
 
 def shortestArcQuatNormalize2(v0: Vector3, v1: Vector3) -> Quaternion:
-    """The rotation that turns one vector to another; both get length 1."""
+    """Return the rotation that turns one vector to another. Both are scaled to length 1."""
     return shortestArcQuat(v0.normalize(), v1.normalize())

@@ -30,12 +30,12 @@ tfFmod = math.fmod
 
 
 def tfAcos(x: float) -> float:
-    """Arc cosine; a value beyond -1 or 1 counts as that."""
+    """Return the arc cosine. The argument is clamped to -1 and 1."""
     return math.acos(min(max(x, -1.0), 1.0))
 
 
 def tfAsin(x: float) -> float:
-    """Arc sine; a value beyond -1 or 1 counts as that."""
+    """Return the arc sine. The argument is clamped to -1 and 1."""
     return math.asin(min(max(x, -1.0), 1.0))
 
 
@@ -114,7 +114,7 @@ def tfSwapEndianFloat(d: float) -> int:
 
 
 def tfUnswapEndianFloat(a: int) -> float:
-    """The single whose reversed bytes are an unsigned number."""
+    """Return the single precision number whose reversed bytes are an unsigned number."""
     found: float = struct.unpack("<f", a.to_bytes(4, "big"))[0]
     return found
 

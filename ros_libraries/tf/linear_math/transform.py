@@ -15,7 +15,7 @@ class Transform:
 
     Args:
         rotation: a matrix, which is copied, or a quaternion.
-        origin: where the origin goes, which is copied.
+        origin: translation of the origin, which is copied.
     """
 
     __slots__ = ("m_basis", "m_origin")
@@ -40,11 +40,11 @@ class Transform:
     # -- parts -------------------------------------------------------------------------------------------------------
 
     def getBasis(self) -> Matrix3x3:
-        """The rotation; changing it changes the transform."""
+        """Return the rotation. Changing it changes the transform."""
         return self.m_basis
 
     def getOrigin(self) -> Vector3:
-        """The translation; changing it changes the transform."""
+        """Return the translation. Changing it changes the transform."""
         return self.m_origin
 
     def getRotation(self) -> Quaternion:

@@ -1,4 +1,4 @@
-"""Turning things with a mouse: a ball under the pointer (Shoemake's Arcball). Imports NumPy."""
+"""Rotates objects with a mouse: a ball under the pointer (Shoemake's Arcball). Imports NumPy."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Arcball:
     """A ball in a window.
 
     Args:
-        initial: how it is turned: a quaternion (x, y, z, w) or a 4x4 matrix; None for not at all.
+        initial: initial rotation: a quaternion (x, y, z, w) or a 4x4 matrix; None for no rotation.
 
     Raises:
         ValueError: `initial` is neither.
@@ -43,7 +43,7 @@ class Arcball:
         self._center = (center[0], center[1])
 
     def setaxes(self, *axes: Any) -> None:
-        """Set the axes that turning may be held to."""
+        """Set the axes that can constrain the rotation."""
         self._axes = [unit_vector(axis) for axis in axes]
 
     def setconstrain(self, constrain: Any) -> None:
@@ -95,7 +95,7 @@ def _turned(initial: Any) -> Any:
 
 
 def arcball_map_to_sphere(point: Sequence[float], center: Sequence[float], radius: float) -> Any:
-    """The point of the unit sphere under a point of the window; beside the ball its nearest edge."""
+    """Return the point of the unit sphere under a point of the window; outside of the ball, the nearest edge point."""
     x, y = (point[0] - center[0]) / radius, (center[1] - point[1]) / radius
     beyond = x * x + y * y
     if beyond > 1.0:
@@ -117,6 +117,6 @@ def arcball_constrain_to_axis(point: Any, axis: Any) -> Any:
 
 
 def arcball_nearest_axis(point: Any, axes: Iterable[Any]) -> Any:
-    """The axis whose arc on the ball is nearest to a point; None without axes."""
+    """Return the axis whose arc on the ball is nearest to a point, or None without axes."""
     at = np.asarray(point, dtype=np.float64)
     return max(axes, key=lambda axis: float(np.dot(arcball_constrain_to_axis(at, axis), at)), default=None)

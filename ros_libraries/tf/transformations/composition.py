@@ -1,4 +1,4 @@
-"""Matrices put together of several steps, taken apart into them, or fitted to points. Imports NumPy."""
+"""Matrices composed of several steps, decomposed into them, or fitted to points. Imports NumPy."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ Parts = tuple[Any, list[Any], list[float], Any, Any]
 
 
 def decompose_matrix(matrix: Any) -> Parts:
-    """The steps that a homogeneous matrix consists of, as `compose_matrix` takes them.
+    """Return the steps of a homogeneous matrix, as `compose_matrix` takes them.
 
     Returns:
         scale factors for x, y, z; shear factors for x-y, x-z, y-z; angles in rad about the fixed axes x, y, z;
         translation; perspective, the last row.
 
     Raises:
-        ValueError: it cannot be taken apart.
+        ValueError: the matrix cannot be decomposed.
     """
     m = np.array(matrix, dtype=np.float64).T
     if abs(m[3, 3]) < EPS:

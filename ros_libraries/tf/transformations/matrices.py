@@ -1,4 +1,4 @@
-"""Elementary homogeneous matrices: made from what they do, and taken apart again. Imports NumPy."""
+"""Elementary homogeneous matrices: made from their parameters, and decomposed again. Imports NumPy."""
 
 from __future__ import annotations
 
@@ -55,11 +55,11 @@ def reflection_from_matrix(matrix: Any) -> tuple[Any, Any]:
 
 
 def rotation_matrix(angle: float, direction: Any, point: Any = None) -> Any:
-    """The matrix that turns about an axis.
+    """Return the matrix of a rotation about an axis.
 
     Args:
         angle: in rad.
-        direction: of the axis, of any length.
+        direction: direction of the axis, of any length.
         point: on the axis; None for the origin.
     """
     x, y, z = unit_vector(direction[:3]).tolist()
@@ -100,12 +100,12 @@ def rotation_from_matrix(matrix: Any) -> tuple[float, Any, Any]:
 
 
 def scale_matrix(factor: float, origin: Any = None, direction: Any = None) -> Any:
-    """The matrix that scales.
+    """Return the matrix that scales.
 
     Args:
-        factor: by how much.
+        factor: scale factor.
         origin: the point that stays; None for the origin.
-        direction: in which it scales; None for all directions.
+        direction: direction of scaling; None for all directions.
     """
     found = np.identity(4)
     if direction is None:
@@ -136,11 +136,11 @@ def scale_from_matrix(matrix: Any) -> tuple[float, Any, Any]:
 
 
 def shear_matrix(angle: float, direction: Any, point: Any, normal: Any) -> Any:
-    """The matrix that shears along a plane.
+    """Return the matrix that shears along a plane.
 
     Args:
-        angle: of the shear, in rad.
-        direction: in which points move, in the plane.
+        angle: angle of the shear, in rad.
+        direction: direction of the movement, in the plane.
         point: on the plane.
         normal: orthogonal to it.
 

@@ -12,14 +12,14 @@ from tf.transformations.vectors import EPS, eigenvectors, unit_vector, vector_no
 def projection_matrix(
     point: Any, normal: Any, direction: Any = None, perspective: Any = None, pseudo: bool = False
 ) -> Any:
-    """The matrix that projects onto a plane.
+    """Return the matrix that projects onto a plane.
 
     Args:
         point: on the plane.
         normal: orthogonal to it.
-        direction: of a parallel projection; None for the normal's.
+        direction: direction of a parallel projection; None for the normal's.
         perspective: the centre of a perspective projection; None for a parallel one.
-        pseudo: of a perspective projection, keep relative depths.
+        pseudo: in a perspective projection, keep relative depths.
     """
     at = np.array(point[:3], dtype=np.float64)
     n = unit_vector(normal[:3])

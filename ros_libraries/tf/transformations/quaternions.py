@@ -71,7 +71,7 @@ def quaternion_multiply(quaternion1: Any, quaternion0: Any) -> Any:
 
 
 def quaternion_conjugate(quaternion: Any) -> Any:
-    """The quaternion with its vector part negated; for one of length 1 the rotation back."""
+    """Return the quaternion with its vector part negated. For length 1, it is the inverse rotation."""
     x, y, z, w = quaternion[:4]
     return np.array((-x, -y, -z, w), dtype=np.float64)
 
@@ -106,7 +106,7 @@ def quaternion_slerp(quat0: Any, quat1: Any, fraction: float, spin: int = 0, sho
 
 
 def random_quaternion(rand: Any = None) -> Any:
-    """A rotation at random, all equally likely.
+    """Return a random rotation with uniform distribution.
 
     Args:
         rand: three random numbers from 0 to 1; None to draw them.

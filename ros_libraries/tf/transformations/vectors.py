@@ -54,7 +54,7 @@ def unit_vector(data: Any, axis: int | None = None, out: Any = None) -> Any:
 
 
 def random_vector(size: Any) -> Any:
-    """Random numbers from 0 up to 1, as many as `size` says."""
+    """Return `size` random numbers from 0 up to 1."""
     return np.random.random(size)
 
 
@@ -66,7 +66,7 @@ def eigenvectors(matrix: Any, value: float, tolerance: float = _EIGEN_TOLERANCE)
 
 
 def fixed_point(matrix: Any, problem: str = "no unit eigenvector corresponding to eigenvalue 1") -> Any:
-    """A point (x, y, z, 1) that a homogeneous matrix leaves where it is.
+    """Return a point (x, y, z, 1) that a homogeneous matrix does not move.
 
     Raises:
         ValueError: there is none; `problem` is the text.
