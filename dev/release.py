@@ -175,7 +175,7 @@ def committed(root: Path) -> str:
 
 
 def tools(work: Path) -> Path:
-    """The Python of an environment that has `build` and `twine`."""
+    """Return the Python of an environment that has `build` and `twine`."""
     home = work / "tools"
     if not home.exists():
         say("tools")
@@ -185,7 +185,7 @@ def tools(work: Path) -> Path:
 
 
 def python_of(home: Path) -> Path:
-    """The interpreter of a virtual environment."""
+    """Return the interpreter of a virtual environment."""
     return home / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
 
@@ -227,7 +227,7 @@ def hashes_of(wheel: Path) -> dict[str, str]:
 
 
 def wanted_in(kind: str, tracked: Sequence[str]) -> set[str]:
-    """The files that a distribution is to have, but for its metadata.
+    """Return the files that a distribution is to have, but for its metadata.
 
     Args:
         kind: "whl" or "gz".
@@ -298,7 +298,7 @@ def check_installed(home: Path, file: Path, version: str, digest: str) -> None:
 
 
 def demo_of(command: Sequence[str], folder: Path, more: Mapping[str, str]) -> str:
-    """The digest of the demonstration."""
+    """Return the digest of the demonstration."""
     return output([*command, *DEMO], folder, more).splitlines()[-1].removeprefix("trace: ")
 
 

@@ -26,12 +26,12 @@ def pages() -> dict[str, str]:
 
 
 def slug(title: str, separator: str = "-") -> str:
-    """The anchor of a heading, as GitHub makes it."""
+    """Return the anchor of a heading, as GitHub makes it."""
     return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", separator)
 
 
 def linked(text: str, source: str) -> str:
-    """The text of a page with links for its place on the site.
+    """Return the text of a page with links for its place on the site.
 
     Args:
         text: Markdown.

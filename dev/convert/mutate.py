@@ -275,7 +275,7 @@ class Damaging:
         return Outcome(kind, of_folder, not clean, "clean, but it does not compile" if wrong else "")
 
     def _headers(self, profile: Profile) -> Path:
-        """The headers of all messages that the nodes of the folder and the library include, as far as known."""
+        """Return the headers of all messages that the nodes of the folder and the library include, as far as known."""
         if profile not in self._messages:
             made = self._messages[profile] = self._folder / f"messages_{profile.name}"
             made.mkdir()
@@ -287,7 +287,7 @@ class Damaging:
         return self._messages[profile]
 
     def _compiles(self, file: Path, includes: list[Path], profile: Profile) -> bool:
-        """The compiler's word, asked in the plainest way."""
+        """Return whether the plain compiler accepts a file."""
         folders = [f"-I{each}" for each in (*includes, *library_includes())]
         command = ["g++", LANGUAGE[0], *profile_flags(profile), "-w", "-fsyntax-only", *folders, str(file)]
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)

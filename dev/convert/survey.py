@@ -82,7 +82,7 @@ def code_digest() -> str:
 
 
 def listed() -> list[Node]:
-    """All nodes of the list."""
+    """Return all nodes of the list."""
     with LIST.open(encoding="utf-8") as stream:
         return [Node(**row) for row in csv.DictReader(stream, delimiter="\t")]
 
@@ -140,7 +140,7 @@ def missing(verdicts: Iterable[Verdict]) -> Iterator[str]:
 
 
 def table(verdicts: list[Verdict]) -> str:
-    """The counts as a part of docs/how_to/convertor.md."""
+    """Return the counts as a part of docs/how_to/convertor.md."""
     total = len(verdicts)
     lines = [f"{total} nodes of {len({each.repository for each in verdicts})} public repositories, by commit:", ""]
     lines += ["| profile | convert | refused |", "|---|---|---|"]
@@ -168,7 +168,7 @@ def write_report(verdicts: list[Verdict]) -> None:
 
 
 def between(text: str, begin: str, end: str, part: str) -> str:
-    """A text with another part between two marks."""
+    """Return a text with another part between two marks."""
     before, _, rest = text.partition(begin)
     _, _, after = rest.partition(end)
     return f"{before}{begin}\n\n{part}\n\n{end}{after}"

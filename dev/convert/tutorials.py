@@ -105,14 +105,14 @@ def missing(name: str, text: str) -> list[str]:
 
 
 def launch_file(names: Iterable[str], file: Path) -> Path:
-    """A launch file with nodes."""
+    """Return a launch file with nodes."""
     lines = (f'<node pkg="{PACKAGE}" type="{each}" name="{each}" args="{TUTORIALS[each].args}"/>' for each in names)
     file.write_text("\n".join(["<launch>", *lines, "</launch>", ""]), encoding="utf-8")
     return file
 
 
 def crew(name: str) -> list[str]:
-    """A node with those that it is flown with, in their order."""
+    """Return a node with those that it is flown with, in their order."""
     node = TUTORIALS[name]
     return [*node.beside, name, *node.after]
 
@@ -125,7 +125,7 @@ def on_cfepy(name: str, scratch: Path) -> str:
 
 
 def has_started(cfe: RealCfe, name: str) -> bool:
-    """Whether the event of a node's start is on the console."""
+    """Return whether the event of a node's start is on the console."""
     return f"/{name} started" in said(cfe)
 
 
@@ -170,7 +170,7 @@ def fly(sources: Path, tree: Path, scratch: Path) -> list[Verdict]:
 
 
 def table(found: Sequence[Verdict]) -> str:
-    """The table for the document."""
+    """Return the table for the document."""
     both = sum(each.here == each.there == FLIES for each in found)
     lines = [f"{both} of the {len(found)} nodes of {PACKAGE} fly on both:", ""]
     lines += ["| node | beside | cfepy | NASA's cFE 7.0.0 |", "|---|---|---|---|"]

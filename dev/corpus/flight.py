@@ -154,7 +154,7 @@ class Flight:
 
 
 def _graph(mission: Mission) -> RosRuntime:
-    """The mission's ROS, which is there once its nodes are."""
+    """Return the mission's ROS, which is there once its nodes are."""
     assert mission.ros is not None
     return mission.ros
 

@@ -43,7 +43,7 @@ python -m dev.corpus run --sources ~/corpus --jobs 2
 
 
 def page(corpus: Corpus, verdicts: Sequence[Verdict]) -> str:
-    """The page's text."""
+    """Return the page's text."""
     passed = sum(verdict.passed for verdict in verdicts)
     driven = [scenario for scenario in corpus.scenarios.values() if scenario.stimulus == DRIVE]
     silent = sum(

@@ -35,11 +35,12 @@ class Sources:
         self.root = folder.absolute()
 
     def folder(self, repo: str) -> Path:
-        """Where a repository is."""
+        """Return where a repository is."""
         return self.root / repo.replace("/", "+")
 
     def script(self, program: Program) -> tuple[Path, str]:
-        """The folder of a program's package, or its repository when it is in none, and the script's path in it."""
+        """Return the folder of a program's package, or its repository when it is in none, and the script's path in
+        it."""
         root = self.folder(program.repo)
         script = root / program.path
         inside = [folder for folder in script.parents if folder.is_relative_to(root)]
@@ -100,7 +101,7 @@ def _download(url: str, commit: str, bare: Path) -> None:
 
 
 def _files(bare: Path, commit: str) -> Iterator[tuple[str, bytes]]:
-    """Name and content of the files of a commit that a program may need."""
+    """Yield the name and content of the files of a commit that a program may need."""
     entries = _git(bare, "ls-tree", "-r", "-z", "--format=%(objecttype) %(objectname) %(path)", commit).decode()
     names = [entry.split(" ", 2)[1:] for entry in entries.split("\0") if entry.startswith("blob ")]
     wanted = [(blob, name) for blob, name in names if not name.lower().endswith(_LEFT_OUT)]

@@ -26,7 +26,7 @@ def run(folder: Path, words: Sequence[str]) -> None:
 
 
 def dear(costs: dict[str, float]) -> list[str]:
-    """The files with tests that the quick loop would leave out."""
+    """Return the files with tests that the quick loop would leave out."""
     return sorted({file_of(test) for test, cost in costs.items() if cost >= DEAR_S})
 
 

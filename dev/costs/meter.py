@@ -21,7 +21,7 @@ FOLDER = "CFEPY_COSTS"
 
 
 def cpu_time() -> float:
-    """The CPU time of this process and of the children that it waited for, in seconds."""
+    """Return the CPU time of this process and of the children that it waited for, in seconds."""
     children = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + children.ru_utime + children.ru_stime  # os.times counts in steps of 10 ms
 
@@ -61,7 +61,7 @@ class Meter:
 
 
 def uses(item: pytest.Item, fixture: pytest.FixtureDef[object], scope: pytest.Item | pytest.Collector) -> bool:
-    """Whether a test gets the fixture that was made for a module, class, package or session."""
+    """Return whether a test gets the fixture that was made for a module, class, package or session."""
     return fixture.argname in getattr(item, "fixturenames", ()) and scope in item.listchain()
 
 

@@ -20,12 +20,12 @@ SLOW_S = 0.25  # of CPU time: such a test is a slow one
 
 
 def file_of(test: str) -> str:
-    """The file of a test, relative to the root of the checkout."""
+    """Return the file of a test, relative to the root of the checkout."""
     return test.partition("::")[0]
 
 
 def function_of(test: str) -> str:
-    """A test without its case."""
+    """Return a test without its case."""
     return test.partition("[")[0]
 
 
@@ -38,7 +38,7 @@ class Table:
 
     @classmethod
     def read(cls, path: Path = PATH) -> Table:
-        """The table of a file."""
+        """Return the table of a file."""
         rows = (line.split("\t") for line in path.read_text(encoding="utf-8").splitlines())
         return cls({name: int(cost) / 1000 for cost, name in rows})
 
@@ -48,7 +48,7 @@ class Table:
         path.write_text("".join(rows), encoding="utf-8")
 
     def __contains__(self, test: object) -> bool:
-        """Whether a test is a dear one, by its id (or a whole file, by its path)."""
+        """Return whether a test is a dear one, by its id (or a whole file, by its path)."""
         return isinstance(test, str) and not self.costs.keys().isdisjoint((test, function_of(test), file_of(test)))
 
     def is_slow(self, test: str) -> bool:

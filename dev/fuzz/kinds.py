@@ -86,7 +86,7 @@ class Kind(NamedTuple):
 
 @cache
 def spec() -> MissionSpec:
-    """A mission with nodes and applications."""
+    """Return a mission with nodes and applications."""
     return read_mission("capture")
 
 
@@ -430,7 +430,7 @@ def cds_image(data: bytes, path: Path) -> None:
 
 
 def journals() -> list[bytes]:
-    """The journal of a short run, with files of its mission."""
+    """Return the journal of a short run, with files of its mission."""
     from dev.fuzz.sample_journal import sample
 
     return [sample()]
@@ -455,7 +455,7 @@ def packets() -> list[bytes]:
 
 
 def messages() -> list[bytes]:
-    """Messages of some types, with something in them."""
+    """Return messages of some types, with something in them."""
     found = []
     for number, name in enumerate(TYPES):
         buffer = io.BytesIO()

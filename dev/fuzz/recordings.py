@@ -24,7 +24,7 @@ Message = tuple[str, bytes, int]
 
 @cache
 def written(folder: Path, suffix: str, kind: str) -> Path:
-    """A recording in five chunks or so: COUNT messages on each of two topics."""
+    """Return a recording in five chunks or so: COUNT messages on each of two topics."""
     bag = folder / "made.bag"
     about = message_class("std_msgs/String")
     header = {"type": "std_msgs/String", "md5sum": about._md5sum, "message_definition": about._full_text}
@@ -52,13 +52,13 @@ def converted(source: Path, target: Path, kind: str) -> Path:
 
 
 def read(file: Path) -> list[Message]:
-    """The messages, by time."""
+    """Return the messages, by time."""
     with BagReader(str(file)) as reader:
         return [(each.topic, each.data, each.stamp_ns or 0) for each in reader.messages()]
 
 
 def ends(file: Path) -> list[int]:
-    """Where the messages of a file end that is not packed."""
+    """Return where the messages of a file end that is not packed."""
     whole, at, found = file.read_bytes(), 0, []
     for message in read(file):
         at = whole.index(message[1], at) + len(message[1])
@@ -74,7 +74,7 @@ class PlacedChunk(NamedTuple):
 
 
 def placed_chunks(file: Path) -> list[PlacedChunk]:
-    """The chunks of a recording, as the libraries rosbags and mcap know them."""
+    """Return the chunks of a recording, as the libraries rosbags and mcap know them."""
     data, counts = file.read_bytes(), []
     if file.suffix == ".mcap":
         with file.open("rb") as stream:

@@ -42,7 +42,7 @@ def paths(folder: Path) -> str:
 
 @cache
 def sample() -> bytes:
-    """Its bytes."""
+    """Return its bytes."""
     with TemporaryDirectory() as folder:
         path = Path(folder, "run.cfepy")
         record(RunPlan((paths(Path(folder)),), seconds=1, schedule=Schedule.parse("random:3")), path)

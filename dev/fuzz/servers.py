@@ -133,7 +133,7 @@ _runs: list[ServersRun] = []
 
 
 def the_run() -> ServersRun:
-    """The run that is there, or a new one in place of one that is used up."""
+    """Return the current run, or a new one if it is used up."""
     if _runs and _runs[0].is_used_up:
         _runs.pop().close()
     if not _runs:
@@ -374,7 +374,7 @@ FOXGLOVE = b"""{"op": "subscribe", "subscriptions": [{"id": 0, "channelId": 1}, 
 
 
 def foxglove_samples() -> list[bytes]:
-    """Messages of viewers."""
+    """Return messages of viewers."""
     lines = FOXGLOVE.split(b"\n")
     return [b"\n".join(lines[at : at + 3]) for at in range(0, len(lines), 2)]
 

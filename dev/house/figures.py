@@ -57,7 +57,7 @@ def rooms(tree: Tree) -> list[Room]:
 
 
 def faces(tree: Tree) -> Face:
-    """How many pairs of modules of cfepy meet past the face of a package, and how many through it."""
+    """Return how many pairs of modules of cfepy meet past the face of a package, and how many through it."""
     past = through = 0
     for module in of_cfepy(tree):
         for name in tree.arrows(module):
@@ -84,7 +84,7 @@ def past_faces(tree: Tree) -> Counter[str]:
 
 
 def users(tree: Tree) -> dict[str, set[str]]:
-    """Each module with those that import it."""
+    """Return each module with those that import it."""
     found: dict[str, set[str]] = {name: set() for name in tree.modules}
     for module in tree.modules.values():
         for name in tree.arrows(module):
@@ -191,12 +191,12 @@ def modules_named_twice(tree: Tree) -> dict[str, list[str]]:
 
 
 def class_names(tree: Tree) -> int:
-    """How many names of public classes there are."""
+    """Return how many names of public classes there are."""
     return len({name for module in tree.modules.values() for name in module.classes})
 
 
 def most_complex(tree: Tree, count: int = 10) -> list[tuple[int, str]]:
-    """The functions of highest complexity, with where they are."""
+    """Return the functions of highest complexity, with where they are."""
     found = [
         (function.complexity, f"{module.where}:{function.name}")
         for module in tree.modules.values()
@@ -220,7 +220,7 @@ def offered(tree: Tree) -> list[str]:
 
 
 def entries(tree: Tree) -> list[str]:
-    """The modules and packages right below `cfepy/`."""
+    """Return the modules and packages right below `cfepy/`."""
     return sorted({name.split(".")[1] for name in tree.modules if name.startswith("cfepy.")})
 
 
@@ -240,13 +240,13 @@ def sentences_about_imports(tree: Tree) -> list[str]:
 
 
 def table(rows: Iterable[tuple[object, ...]], *titles: str) -> str:
-    """A table in Markdown."""
+    """Return a table in Markdown."""
     lines = [titles, *(("---",) * len(titles),), *rows]
     return "".join(f"| {' | '.join(str(cell) for cell in line)} |\n" for line in lines)
 
 
 def report(tree: Tree) -> str:
-    """All figures as Markdown."""
+    """Return all figures as Markdown."""
     modules = of_cfepy(tree)
     lines = sum(module.lines for module in modules)
     head = sum(module.head for module in modules)

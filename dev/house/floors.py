@@ -64,7 +64,7 @@ class Arrow(NamedTuple):
 
 
 def allowed(source: str, target: str) -> bool:
-    """Whether a part may import another."""
+    """Return whether a part may import another."""
     if source == target or (source, target) in PEERS_THAT_MEET:
         return True
     top = LEVEL[APPS_STAND_ON] if source == "apps" else LEVEL[source]

@@ -102,7 +102,7 @@ WAY = (
 
 
 def house(tree: Tree) -> str:
-    """The floors with their rooms, and how many imports go down through each ceiling."""
+    """Return the floors with their rooms, and how many imports go down through each ceiling."""
     rows: list[str] = []
     y = MARGIN
     crossing = _crossings(tree)
@@ -126,7 +126,7 @@ def house(tree: Tree) -> str:
 
 
 def message(tree: Tree) -> str:
-    """The way of a message from a node's publisher to a subscriber's callback."""
+    """Return the way of a message from a node's publisher to a subscriber's callback."""
     rows: list[str] = []
     y = MARGIN
     for index, station in enumerate(WAY):
@@ -145,7 +145,7 @@ def message(tree: Tree) -> str:
 
 
 def draw(tree: Tree) -> dict[Path, str]:
-    """All pictures, by their path from the root of the tree."""
+    """Return all pictures, by their path from the root of the tree."""
     return {HOUSE: house(tree), MESSAGE: message(tree)}
 
 

@@ -154,7 +154,7 @@ class Tree:
 
 @functools.cache
 def the_tree(root: Path = ROOT) -> Tree:
-    """The tree of a checkout, read once in a process."""
+    """Return the tree of a checkout, read once in a process."""
     return Tree(root)
 
 
@@ -220,7 +220,7 @@ class _Imports:
                 self._add(node.value, node.lineno, "by name")
 
     def _text(self, node: ast.expr) -> str | None:
-        """A text that can be read off: a constant, a named one, or one put together from such."""
+        """Return a text that can be read off: a constant, a named one, or one put together from such."""
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             return node.value
         if isinstance(node, ast.Name):

@@ -67,7 +67,7 @@ class Difference(NamedTuple):
     reason: str
 
     def mentions(self, name: str) -> bool:
-        """Whether the row is about a name."""
+        """Return whether the row is about a name."""
         return any(fnmatchcase(name, pattern) for pattern in self.names)
 
 
@@ -115,7 +115,7 @@ def listed(module: str) -> Iterator[tuple[str, str, bool]]:
 
 
 def differences() -> list[Difference]:
-    """The rows of docs/reference/differences.md that mention names."""
+    """Return the rows of docs/reference/differences.md that mention names."""
     found, section = [], ""
     for line in DIFFERENCES.read_text(encoding="utf-8").splitlines():
         if line.startswith("## "):
@@ -140,7 +140,7 @@ def resolve(dotted: str, cfe: Any) -> Any:
 
 
 def entries(module: str, cfe: Any) -> list[Entry]:
-    """All that a module's headers declare, as it stands here."""
+    """Return all that a module's headers declare, as it stands here."""
     rows, functions = differences(), function_names()
     return [
         Entry(
@@ -165,7 +165,7 @@ def _in_c(name: str, is_inside: bool, functions: set[str]) -> str:
 
 
 def booted() -> Mission:
-    """A mission of core services alone, after its boot."""
+    """Return a mission of core services alone, after its boot."""
     with TemporaryDirectory() as folder:
         Path(folder, "startup.scr").write_text("! nothing\n", encoding="utf-8")
         mission = Mission(folder, console=Console(quiet=True))
@@ -174,7 +174,7 @@ def booted() -> Mission:
 
 
 def page(cfe: Any) -> str:
-    """The text of docs/reference/generated/api_map.md."""
+    """Return the text of docs/reference/generated/api_map.md."""
     sections = {TITLES.get(module, module): entries(module, cfe) for module in MODULES}
     lines = [HEAD, "| module | names | same | differ | absent | called in C |", "|---|---|---|---|---|---|"]
     lines += [f"| [{title}](#{_anchor(title)}) | {_counts(rows)} |" for title, rows in sections.items()]

@@ -20,7 +20,7 @@ VARIES = (
 
 
 def executed(folder: str) -> Any:
-    """The notebook after a new kernel has executed it, in an empty folder."""
+    """Return the notebook after a new kernel has executed it, in an empty folder."""
     import nbformat
     from nbclient import NotebookClient
     from traitlets.config import Config

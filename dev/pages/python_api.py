@@ -26,12 +26,12 @@ FOREIGN = (tuple, dict, list, Exception, object)  # whose methods Python defines
 
 
 def functions() -> list[str]:
-    """Names of the functions that it offers, sorted."""
+    """Return the names of the functions that it offers, sorted."""
     return [name for name in sorted(cfepy.__all__) if inspect.isfunction(getattr(cfepy, name))]
 
 
 def classes() -> list[str]:
-    """Names of the classes, sorted."""
+    """Return the names of the classes, sorted."""
     return [name for name in sorted(cfepy.__all__) if inspect.isclass(getattr(cfepy, name))]
 
 
@@ -52,7 +52,7 @@ def _is_ours(kind: type, name: str) -> bool:
 
 
 def page() -> str:
-    """The page."""
+    """Return the page."""
     parts = [HEAD, "## Functions\n"]
     parts += [_function(f"cfepy.{name}", getattr(cfepy, name), 3) for name in functions()]
     parts.append("## Classes\n")
@@ -75,7 +75,7 @@ def _function(name: str, function: Any, level: int) -> str:
 
 
 def signature(function: Any) -> str:
-    """Its arguments, without `self` and without the modules of types."""
+    """Return its arguments, without `self` and without the modules of types."""
     arguments = [each for each in inspect.signature(function).parameters.values() if each.name not in ("self", "cls")]
     parts, is_starred = [], False
     for each in arguments:

@@ -27,7 +27,7 @@ def import_file(path: str) -> ModuleType:
 
 
 def tests_of(module: ModuleType) -> unittest.TestSuite:
-    """All tests of a module, each class in the order of its names, plain functions last."""
+    """Return all tests of a module, each class in the order of its names, plain functions last."""
     suite = unittest.TestSuite()
     for name, value in list(vars(module).items()):
         if inspect.isclass(value) and issubclass(value, unittest.TestCase):
@@ -41,7 +41,7 @@ def tests_of(module: ModuleType) -> unittest.TestSuite:
 
 
 def plain(kind: type, method: str) -> unittest.FunctionTestCase:
-    """A method of a class that is not derived from TestCase, on an object of its own."""
+    """Return a method of a class that is not derived from TestCase, on an object of its own."""
     holder = kind()
     set_up, tear_down = (getattr(holder, name, None) for name in ("setup_method", "teardown_method"))
     return unittest.FunctionTestCase(getattr(holder, method), set_up, tear_down, f"{kind.__name__}.{method}")
@@ -80,14 +80,14 @@ class Results(unittest.TestResult):
 
 
 def name_of(test: unittest.TestCase) -> str:
-    """The name of a test without its module's."""
+    """Return the name of a test without its module's."""
     if isinstance(test, unittest.FunctionTestCase):
         return test.shortDescription() or test.id()
     return ".".join(test.id().split(".")[-2:])
 
 
 def text_of(error: object) -> str:
-    """An error with its traceback."""
+    """Return an error with its traceback."""
     return "".join(traceback.format_exception(*error))  # type: ignore[misc]
 
 

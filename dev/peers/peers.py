@@ -48,7 +48,8 @@ class Peer:
         return tuple(dict.fromkeys([self.repo, *(each.partition(":")[0] for each in self.packages)]))
 
     def enough(self, passed: int) -> bool:
-        """Whether that many are as many as pass on ROS, but for a twentieth and for those that are not counted."""
+        """Return whether that many are as many as pass on ROS, but for a twentieth and for those that are not
+        counted."""
         return passed >= ((self.passed or 0) - len(self.aside)) * SHARE
 
 

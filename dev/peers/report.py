@@ -41,14 +41,14 @@ _LEFT_OUT = """
 
 
 def row(verdict: Verdict) -> str:
-    """A line of text."""
+    """Return a line of text."""
     peer = verdict.peer
     counts = f"{_or_unknown(peer.passed):>3} on ROS {verdict.passed:3} here"
     return f"{'ok  ' if verdict.good else 'FAIL'} {counts} {verdict.wall_s:5.1f} s  {peer.name}  {_reason(verdict)}"
 
 
 def page(peers: Peers, verdicts: Sequence[Verdict]) -> str:
-    """The page's text."""
+    """Return the page's text."""
     known = [verdict for verdict in verdicts if verdict.peer.passed is not None]
     good = sum(verdict.good for verdict in known)
     head = _HEAD.format(total=len(verdicts), known=len(known), good=good)

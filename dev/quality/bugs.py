@@ -119,5 +119,5 @@ def reference_trial(folder: Path, tasks: str = "greenlet") -> Trial:
 
 
 def by_name(name: str) -> Bug:
-    """The bug of a name."""
+    """Return the bug with a name."""
     return next(bug for bug in BUGS if bug.name == name)

@@ -53,7 +53,7 @@ class Edit(NamedTuple):
 
 
 def edits_of(folder: Path) -> Iterator[Edit]:
-    """All that are tried with a mission.
+    """Yield all that are tried with a mission.
 
     Args:
         folder: of the mission.

@@ -54,7 +54,7 @@ class Median:
         return str(self.schedules) if self.found else f"> {self.schedules}"
 
     def could_go_on(self, most: int) -> bool:
-        """Whether it is worth measuring again with so many schedules."""
+        """Return whether it is worth measuring again with so many schedules."""
         return not (self.found or self.exhausted) and self.schedules < longest(most, self.trials)
 
     def to_dict(self) -> dict[str, Any]:

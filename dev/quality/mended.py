@@ -70,7 +70,7 @@ def pieces(measured: Measured, names: list[str], most: int) -> list[tuple[str, i
 
 
 def flown_of(known: dict[str, list[str] | int]) -> int:
-    """How many schedules of a mission were flown."""
+    """Return how many schedules of a mission were flown."""
     flown = known.get("flown", 0)
     assert isinstance(flown, int)
     return flown

@@ -93,7 +93,7 @@ def tells_race(program: Program) -> bool:
 
 
 def complete(measured: Measured) -> bool:
-    """Whether every cell has been measured."""
+    """Return whether every cell has been measured."""
     return all(set(measured.get(program.name, {})) == {FOUND, MEDIAN, RACES} for program in PROGRAMS)
 
 
@@ -103,7 +103,7 @@ def missed(measured: Measured) -> list[Program]:
 
 
 def page(measured: Measured) -> str:
-    """The page of documentation."""
+    """Return the page of documentation."""
     heads = ["program", "in", "written after", "shows as", "needs", "first", "median", "`--races`", "published"]
     lines = ["|".join(["", *heads, ""]), "|".join(["", *["---"] * len(heads), ""])]
     lines += [_row(measured[program.name], program) for program in PROGRAMS]

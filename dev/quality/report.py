@@ -125,7 +125,7 @@ def _text(column: str, found: dict[str, Any]) -> str:
 
 
 def complete(measured: Measured) -> bool:
-    """Whether every cell has been measured."""
+    """Return whether every cell has been measured."""
     return all(bug.name in measured and set(measured[bug.name]) == {*POLICIES, SHRUNK} for bug in BUGS)
 
 
@@ -135,7 +135,7 @@ def medians(measured: Measured, name: str) -> dict[str, Median]:
 
 
 def best(measured: Measured, name: str) -> tuple[str, Median]:
-    """The policy that finds a bug first, and how soon."""
+    """Return the policy that finds a bug first, and how soon."""
     return min(medians(measured, name).items(), key=lambda each: (not each[1].found, each[1].schedules))
 
 
@@ -148,7 +148,7 @@ def median_of_default(measured: Measured) -> float:
 
 
 def page(measured: Measured) -> str:
-    """The page of documentation."""
+    """Return the page of documentation."""
     heads = ["bug", "in", "shows as", *(HEADINGS.get(each, each) for each in POLICIES), "preemptions"]
     lines = ["|".join(["", *heads, ""]), "|".join(["", *["---"] * len(heads), ""])]
     lines += [_row(measured, bug) for bug in BUGS]

@@ -30,7 +30,7 @@ class Story(NamedTuple):
 
 
 def read() -> dict[str, Story]:
-    """The stories by the names of the bugs."""
+    """Return the stories by the names of the bugs."""
     lines = [line for line in STORIES.read_text(encoding="utf-8").splitlines() if line]
     found = {}
     for head, cause in zip(lines[::2], lines[1::2], strict=True):
@@ -49,7 +49,7 @@ def told(bug: Bug, schedule: str) -> Told | None:
 
 
 def by_moves(bug: Bug, schedule: str) -> str:
-    """The same schedule with its moves by name, which other versions of Python make as well."""
+    """Return the same schedule with its moves by name, which other versions of Python make as well."""
     parsed = Schedule.parse(schedule)
     policy = MoveNotingPolicy(parsed.policy() or Policy())
     reference_trial(bug.folder).fly(parsed, policy=policy)

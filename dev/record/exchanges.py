@@ -71,7 +71,7 @@ COMPRESSED = ("png", "cbor")
 
 
 def topic_of(kind: str) -> str:
-    """The part of a topic's name that is made of a type."""
+    """Return the part of a topic's name that is made of a type."""
     return kind.partition("/")[2].lower()
 
 

@@ -49,7 +49,7 @@ TARGETS = {"here": HERE, "powerpc": POWERPC, "arm": ARM, "mips": MIPS}
 
 
 def target_named(name: str) -> Target:
-    """A kind of computer for a test, which is skipped where its compiler or its emulator is not there."""
+    """Return a kind of computer for a test, which is skipped where its compiler or its emulator is not there."""
     lacking = TARGETS[name].lacking
     if lacking is not None:
         pytest.skip(f"there is no {lacking} (Debian: qemu-user, g++-arm-linux-gnueabihf, ...)")

@@ -89,7 +89,7 @@ def probe_first(lines: Iterable[str]) -> list[str]:
 
 
 def marked(lines: Iterable[str]) -> Iterator[str]:
-    """The lines that count, from the mark on."""
+    """Yield the lines that count, from the mark on."""
     for line in lines:
         before, mark, rest = line.partition(MARK)
         if mark and not before.startswith("EVS"):  # warnings are events, too

@@ -174,7 +174,7 @@ def frames_of(full_name: str, count: int, seed: int = 0) -> list[bytes]:
 
 
 def hash_of(text: str) -> int:
-    """A number that a text has in each run."""
+    """Return a number that a text has in each run."""
     return int.from_bytes(text.encode()[-8:], "big")
 
 

@@ -101,7 +101,7 @@ class AppsCommander:
         return bytes(msg.command(app.wakeup_mid, 0, payload))
 
     def _uplink(self) -> Iterator[Step]:
-        """A file on its way up to CF, and wake-ups between its PDUs."""
+        """Yield a file on its way up to CF, and wake-ups between its PDUs."""
         self._transfers += 1
         for pdu in cfdp_pdus.transfer(self._random, self._transfers):
             yield Step(CF.name, (bytes(msg.command(PDUS_UP, 0, pdu)),), PLAIN)

@@ -109,7 +109,7 @@ def differences(ours: Observed, theirs: Observed) -> list[str]:
 
 
 def _without_times(observed: Observed) -> Observed:
-    """Names of files without the time in them."""
+    """Return the names of files without the time in them."""
     files = {_without_time(path.encode()).decode(): data for path, data in observed.files.items()}
     return observed._replace(files=files)
 
@@ -132,7 +132,7 @@ def tables() -> dict[str, bytes]:
 
 
 def command(app: FlightApp, code: int, payload: bytes = b"") -> Step:
-    """A step of one command."""
+    """Return a step of one command."""
     return Step(app.name, (bytes(msg.command(app.commands_mid, code, payload)),), PLAIN)
 
 
@@ -200,7 +200,7 @@ def simulated(
 def real(
     built: Path, more: Mapping[str, bytes] | None = None, steps: Sequence[Step] = ()
 ) -> AbstractContextManager[Real]:
-    """The same in NASA's cFE."""
+    """Return the same in NASA's cFE."""
     heard = ",".join(map(hex, TELEMETRY_HEARD))
     link = compiled_app(built.parents[2], LINK_APP, f"-DMORE_WATCHED={heard},")
     files = {**tables(), STARTUP_PATH: STARTUP.encode(), "/cf/link.so": link, **(more or {})}

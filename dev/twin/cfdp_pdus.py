@@ -15,7 +15,7 @@ MODULAR = 0
 
 
 def pdu(body: bytes, number: int, *, is_data: bool = False, acknowledged: bool = False, to: int = CRAFT) -> bytes:
-    """A PDU to the receiver of a file, with ids of one byte."""
+    """Return a PDU to the receiver of a file, with ids of one byte."""
     flags = 0x20 | 0x10 * is_data | 0x04 * (not acknowledged)
     return struct.pack(">BHBBBB", flags, len(body), 0, GROUND, number & 0xFF, to) + body
 

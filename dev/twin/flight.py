@@ -237,12 +237,12 @@ def _after(steps: Iterable[Step], computer: Flyer) -> Flyer:
 
 
 def simulated(release: str) -> AbstractContextManager[Simulated]:
-    """The mission of the lab applications in cfepy, prepared, on a release of cFE such as "7.0.0"."""
+    """Return the mission of the lab applications in cfepy, prepared, on a release of cFE such as "7.0.0"."""
     return prepared_simulation(mission.files(), preparation(), release=release)
 
 
 def real(built: Path) -> AbstractContextManager[Real]:
-    """The same in NASA's cFE, prepared."""
+    """Return the same in NASA's cFE, prepared."""
     return prepared_real(built, mission.files(), preparation())
 
 

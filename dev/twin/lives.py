@@ -34,7 +34,7 @@ def request(letter: str, slot: int = 0, size: int = 0, byte: int = 0, name: str 
 
 
 def through_ci_lab(packet: bytes) -> bytes:
-    """A datagram that LINK sends on to CI_LAB's port."""
+    """Return a datagram that LINK sends on to CI_LAB's port."""
     return bytes(msg.command(REQUEST_MID, 0, b"U" + packet))
 
 

@@ -101,13 +101,13 @@ def _blanked(data: bytes, at: int, size: int) -> bytes:
 
 
 def simulated(release: str) -> AbstractContextManager[Simulated]:
-    """The mission in cfepy, prepared, on a release of cFE such as "7.0.0"."""
+    """Return the mission in cfepy, prepared, on a release of cFE such as "7.0.0"."""
     files = {**mission.files(), STARTUP_PATH: STARTUP.encode(), "/cf/link.py": LINK_APP.with_suffix(".py").read_bytes()}
     return prepared_simulation(files, preparation(), lambda flown: Simulated(flown, LINE), release)
 
 
 def real(built: Path) -> AbstractContextManager[Real]:
-    """The mission in NASA's cFE, prepared."""
+    """Return the mission in NASA's cFE, prepared."""
     link = compiled_app(built.parents[2], LINK_APP)
     files = {**mission.files(), STARTUP_PATH: STARTUP.encode(), "/cf/link.so": link}
     return prepared_real(built, files, preparation(), line=LINE)

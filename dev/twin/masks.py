@@ -141,7 +141,7 @@ def _declared() -> dict[int, Telemetry]:
 
 
 def is_event(packet: bytes) -> bool:
-    """Whether a packet is an event, long or short."""
+    """Return whether a packet is an event, long or short."""
     return msg.get_msg_id(packet) in (evs.LONG_EVENT_MSG_MID, evs.SHORT_EVENT_MSG_MID)
 
 
@@ -203,7 +203,7 @@ def fields_that_differ(ours: bytes, theirs: bytes) -> str:
 
 
 def _subscriptions(packet: bytes) -> bytes:
-    """The entries that are in use, in any order: applications subscribe as they come up."""
+    """Return the entries that are in use, in any order: applications subscribe as they come up."""
     fields = sb.ALLSUBS_TLM.read(packet)
     used = sorted(each["MsgId"] for each in fields["Entry"][: fields["Entries"]])
     return repr((fields["PktSegment"], fields["TotalSegments"], fields["Entries"], used)).encode()
@@ -241,7 +241,7 @@ def of_file(data: bytes) -> bytes:
 
 
 def log_lines(text: bytes) -> list[bytes]:
-    """The lines of a system log, without the times at their beginning."""
+    """Return the lines of a system log, without the times at their beginning."""
     lines = (STAMP.sub(b"", line) for line in text.rstrip(b"\0").split(b"\n"))
     return [NOT_ALIKE.sub(rb"\1", line) for line in lines]
 
@@ -269,5 +269,5 @@ def same_log(ours: bytes, theirs: bytes) -> bool:
 
 
 def is_log(data: bytes) -> bool:
-    """Whether a file is an event log."""
+    """Return whether a file is an event log."""
     return len(data) > HEADER_SIZE and int.from_bytes(data[4:8], "big") == header.SUBTYPE_EVS_EVENTLOG

@@ -66,12 +66,12 @@ def _load(offset: int, data: bytes, kind: int, symbol: str = SYMBOL, flaw: int =
 
 
 def command(app: FlightApp, code: int, layout: str = "", *values: int | bytes) -> bytes:
-    """A command with a payload in the letters of `struct`, without gaps but those that it names."""
+    """Return a command with a payload in the letters of `struct`, without gaps but those that it names."""
     return bytes(msg.command(app.commands_mid, code, struct.pack("<" + layout, *values)))
 
 
 def lookup() -> Step:
-    """The question where the block is."""
+    """Return the request for the address of the block."""
     return Step(MM.name, (command(MM, LOOKUP, "64s", SYMBOL.encode()),), PLAIN)
 
 
@@ -102,7 +102,7 @@ class MemoryCommander:
             yield Step(app.name, (*wakeups, bytes(msg.command(app.housekeeping_mid, 0))), PLAIN)
 
     def _where(self, room: int, align: int = 1) -> bytes:
-        """A symbolic address of so many bytes, mostly a good one."""
+        """Return a symbolic address for a number of bytes, mostly a valid one."""
         offset = self._random.randrange(0, WORKED_ON - room, align)
         symbol, offset = self._random.choice(((SYMBOL, offset), ("", self._address + offset), ("nothing", offset)))
         if self._random.random() < 0.1:

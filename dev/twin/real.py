@@ -143,15 +143,15 @@ class RealCfe:
             os.kill(int(child), signal.SIGKILL)
 
     def console(self) -> bytes:
-        """All that was printed since the start."""
+        """Return the output since the start."""
         return self._log.read_bytes()
 
     def boots(self) -> int:
-        """How often it has come up."""
+        """Return how often it has booted."""
         return self.console().count(OPERATIONAL)
 
     def release(self) -> str:
-        """The release of cFE according to its first events, such as "7.0.0"."""
+        """Return the release of cFE according to its first events, such as "7.0.0"."""
         found = re.search(rb"cFE ES Initialized: CFE_ES v(\d+\.\d+\.\d+)", self.console())
         return found[1].decode() if found else ""
 

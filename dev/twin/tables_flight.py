@@ -219,7 +219,7 @@ def _msg_id(packet: bytes) -> int:
 
 
 def packets_of(packets: list[bytes]) -> Answer:
-    """The events and packets of Table Services."""
+    """Return the events and packets of Table Services."""
     return [text for text in map(_packet, packets) if text]
 
 
@@ -281,6 +281,6 @@ def dump_of(file: bytes) -> str:
 
 
 def registry_of(file: bytes) -> Answer:
-    """The records of a registry dump."""
+    """Return the records of a registry dump."""
     size = pk.REGISTRY_RECORD.size
     return [_fields(pk.REGISTRY_RECORD.unpack(file, at)) for at in range(64, len(file) - size + 1, size)]

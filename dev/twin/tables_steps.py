@@ -92,7 +92,7 @@ class Steps:
         return bytes([first, *(self._random.randrange(256) for _ in range(size - 1))])
 
     def _odd_file(self) -> bytes:
-        """A table file with an extent of its own, and often with something wrong."""
+        """Return a table file with an extent of its own, and often with something wrong."""
         roll = self._random
         name = roll.choice(NAMES)
         size = number = SIZES[name]

@@ -48,7 +48,7 @@ def report(results: list[Result]) -> int:
 
 
 def row(segment: Segment, nasa: tuple[int, int, int] | None) -> str:
-    """A line of the table, with NASA's counts where they are others."""
+    """Return a line of the table, with NASA's counts where they are others."""
     ours = segment.passed, segment.by_hand, segment.left_out
     others = "the same" if nasa == ours else "-" if nasa is None else ", ".join(map(str, nasa))
     name = f"{segment.number} {segment.name}"

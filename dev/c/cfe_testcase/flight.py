@@ -86,7 +86,7 @@ def fly(mission: str, tasks: str) -> Result:
 
 
 def read(log: str) -> list[Segment]:
-    """The segments in a log of cfe_assert, without the sums at its end."""
+    """Return the segments in a log of cfe_assert, without the sums at its end."""
     segments = []
     aborted = left_out = 0
     for line in log.splitlines():

@@ -43,7 +43,7 @@ def fly_all(sources: Path, folder: Path, names: list[str], tasks: str, shows: bo
 
 
 def row(result: Result) -> str:
-    """A line of the table."""
+    """Return a line of the table."""
     good = sum(segment.passes for segment in result.segments)
     counts = " | ".join(str(result.count(kind)) for kind in ("PASS", "FAIL", "MIR"))
     ended = "" if result.is_complete else " (not to its end)"

@@ -36,7 +36,7 @@ class Builder:
         self._write_osconfig()
 
     def tests(self) -> list[Path]:
-        """The folders of all tests."""
+        """Return the folders of all tests."""
         return sorted(
             folder for each in SETS for folder in (self.sources / each).iterdir() if folder.name.endswith("-test")
         )

@@ -53,12 +53,12 @@ class Result:
     lines: list[str]
 
     def count(self, kind: str) -> int:
-        """How many lines of a kind there are, such as PASS."""
+        """Return how many lines of a kind there are, such as PASS."""
         return sum(segment.counts[kind] for segment in self.segments)
 
 
 def read(name: str, lines: list[str]) -> Result:
-    """The result that a console shows."""
+    """Return the result that a console shows."""
     segments: list[Segment] = []
     is_complete = False
     for line in lines:

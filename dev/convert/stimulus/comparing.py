@@ -46,7 +46,7 @@ class Part(NamedTuple):
 
 
 def compared(first: Outcome, second: Outcome, ours: Outcome) -> list[Part]:
-    """The parts of three runs.
+    """Return the parts of three runs.
 
     Args:
         first, second: with roscpp.
@@ -141,7 +141,7 @@ def short(run: Sequence[Any]) -> list[Any]:
 
 
 def as_often(one: Sequence[Any], other: Sequence[Any]) -> bool:
-    """Whether both came at about the same rate: a node may have been seen for a second longer."""
+    """Return whether both came at about the same rate: a node may have been seen for a second longer."""
     fewer, more = sorted((len(one), len(other)))
     return more <= MOST_LONGER * fewer + 2
 
@@ -150,7 +150,7 @@ def as_often(one: Sequence[Any], other: Sequence[Any]) -> bool:
 
 
 def alike(one: Any, other: Any) -> bool:
-    """Whether two plain values are the same, numbers nearly."""
+    """Return whether two plain values are the same, numbers nearly."""
     return next(different_places(one, other), None) is None
 
 

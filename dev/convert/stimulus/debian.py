@@ -179,7 +179,7 @@ class RoscppNode:
         return folder
 
     def _with_nested(self, types: list[str]) -> Iterator[str]:
-        """The packages of types, and of all that their packages' types are made of."""
+        """Yield the packages of types, and of all that their packages' types are made of."""
         waiting, known = [each.partition("/")[0] for each in types], set()
         for package in waiting:
             if package in known:
@@ -248,7 +248,7 @@ def library_file(name: str) -> Path | None:
 
 
 def environment(more: Path | None = None) -> dict[str, str]:
-    """The environment of programs of Debian's ROS."""
+    """Return the environment of programs of Debian's ROS."""
     paths = [*([more] if more else []), *(root / "lib/python3/dist-packages" for root in ROOTS[1:])]
     libraries = [root / "lib" / TRIPLET / inner for root in ROOTS[1:] for inner in ("", "blas", "lapack")]
     return {

@@ -80,7 +80,7 @@ def outcome_of(
 
 
 def of_bytes(library: Library, kind: str, data: str) -> Message:
-    """A message of its bytes."""
+    """Return a message from its bytes."""
     made = library.message_class(kind)()
     made.deserialize(bytes.fromhex(data))
     return made

@@ -106,7 +106,7 @@ def write(results: Iterable[Mapping[str, Any]]) -> list[Row]:
 
 
 def table(made: list[Row]) -> str:
-    """The counts as a part of docs/how_to/convertor.md."""
+    """Return the counts as a part of docs/how_to/convertor.md."""
     counts = Counter(row.verdict for row in made)
     there = [row for row in made if row.verdict in ("equal", "explained", "different")]
     lines = [
@@ -124,7 +124,7 @@ def table(made: list[Row]) -> str:
 
 
 def read(file: Path, verdicts: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """The results in a file of `--json`.
+    """Return the results in a file of `--json`.
 
     Args:
         file: that one.

@@ -87,7 +87,7 @@ class Stimulus(Source):
         self._wild = False
 
     def data(self, full_name: str) -> bytes:
-        """The bytes of a message."""
+        """Return the bytes of a message."""
         self._wild = self._random.random() < self._scene.wild
         made = self._transforms() if full_name == TF else self.message(full_name)
         buffer = BytesIO()
@@ -104,7 +104,7 @@ class Stimulus(Source):
         return made
 
     def _transforms(self) -> Any:
-        """The whole tree of frames."""
+        """Return the whole tree of frames."""
         self._wild = False
         made = self._library.message_class(TF)()
         for parent, child in self._scene.frames:

@@ -65,7 +65,7 @@ class Ids:
 
 
 def differences(script: list[str], real: list[str], ours: list[str]) -> list[str]:
-    """Each difference as a text of some lines."""
+    """Return each difference as a text of some lines."""
     found = []
     theirs, mine = _blocks(real), _blocks(ours)
     real_ids, own_ids = Ids(), Ids()

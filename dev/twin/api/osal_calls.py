@@ -52,7 +52,7 @@ PATHS = {
 
 
 def status_of(call: Callable[..., object], *arguments: object) -> int:
-    """The status of a call among others."""
+    """Return the status of a call among others."""
     try:
         call(*arguments)
     except CfeError as error:

@@ -25,12 +25,12 @@ def installed() -> Path | None:
 
 
 def release(built: Path) -> str:
-    """Which release of cFE it is: "7.0.0"."""
+    """Return which release of cFE it is: "7.0.0"."""
     return "7.0.1" if b"v7.0.1+dev" in (built / real.EXECUTABLE).read_bytes() else "7.0.0"
 
 
 def play(built: Path, script: list[str]) -> list[str]:
-    """The answers of the real cFE to a script.
+    """Return the answers of the real cFE to a script.
 
     Raises:
         subprocess.TimeoutExpired: it did not end.

@@ -62,7 +62,7 @@ class Writer:
         return self.random.choice(choices)
 
     def num(self) -> int:
-        """A number, rather an edge."""
+        """Return a number, preferably an edge case."""
         return self.one(NUMBERS) if self.random.random() < 0.7 else self.random.getrandbits(32)
 
     def id(self, kind: str) -> str:
@@ -73,15 +73,15 @@ class Writer:
         return str(self.one(WRONG)) if self.random.random() < 0.07 else f"${self.one(SLOT_OF[kind])}"
 
     def slot(self, kind: str) -> str:
-        """Where to keep an id."""
+        """Return a slot for an id."""
         return f"@{self.one(SLOT_OF[kind])}"
 
     def name(self) -> str:
-        """A name."""
+        """Return a random name."""
         return quote(self.one(NAMES))
 
     def bytes(self, size: int) -> str:
-        """Some bytes."""
+        """Return random bytes."""
         return "x" + self.random.randbytes(size).hex()
 
     def task(self) -> str:
@@ -492,7 +492,7 @@ GROUPS = (es_calls, es_calls, evs_calls, sb_calls, sb_calls, tbl_calls, time_cal
 
 
 def write_script(seed: int, count: int) -> list[str]:
-    """A script of so many calls."""
+    """Return a script of `count` calls."""
     w = Writer(seed)
     while len(w.lines) < count:
         w.one(GROUPS)(w)

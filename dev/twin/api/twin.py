@@ -144,7 +144,7 @@ WITHOUT_STATUS = ("PSP_PortRead", "PSP_Eeprom", "ResourceId")
 
 
 def play(script: list[str], release: str = "7.0.0") -> list[str]:
-    """The answers of cfepy to a script, on a release of cFE."""
+    """Return the answers of cfepy to a script, on a release of cFE."""
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "startup.scr").write_text(dedent(STARTUP), encoding="utf-8")
         Path(folder, "mission.yaml").write_text(dedent(LIMITS.format(release=release)), encoding="utf-8")
