@@ -29,7 +29,7 @@ Figures = dict[str, float]
 
 
 def root_of(python: str) -> Path:
-    """The checkout that is installed for a Python."""
+    """Return the checkout that is installed for a Python."""
     with tempfile.TemporaryDirectory() as elsewhere:
         done = subprocess.run([python, "-c", ROOT], cwd=elsewhere, capture_output=True, text=True, check=True)
     return Path(done.stdout.strip())
@@ -46,7 +46,7 @@ def figures(python: str, root: Path, names: Sequence[str]) -> Figures:
 
 
 def gain(figure: str, before: float, after: float) -> float:
-    """How many times better a figure is after."""
+    """Return the improvement factor of a figure."""
     return before / after if figure.endswith(SECONDS) else after / before
 
 

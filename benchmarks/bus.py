@@ -36,7 +36,7 @@ def make_bus(context: str, config: PlatformConfig | None = None) -> SoftwareBus:
 
 
 def packet(msg_id: int) -> bytes:
-    """A telemetry packet of 64 bytes."""
+    """Return a telemetry packet of 64 bytes."""
     return bytes(telemetry(msg_id, bytes(PACKET_BYTES - 16)))
 
 
@@ -65,7 +65,8 @@ def one_task(context: str, count: int = 300_000) -> int:
 
 
 def ping_pong(context: str, count: int = 100_000) -> int:
-    """Two tasks of one priority send each other a packet. A round trip is two messages and two task switches."""
+    """Measure two tasks of one priority that send each other a packet. A round trip is two messages and two task
+    switches."""
     bus = make_bus(context)
     there, back = bus.create_pipe(10, "THERE"), bus.create_pipe(10, "BACK")
     bus.subscribe(0x0881, there)

@@ -73,7 +73,7 @@ def _microseconds(call: Callable[[], object]) -> float:
 
 
 def _decode(base: str, data: bytes, at: int) -> tuple[Any, int]:
-    """The plain decoder, the mirror of `reference.encode`."""
+    """Return the plain decoder, the mirror of `reference.encode`."""
     if base in PRIMITIVES:
         code = "<" + PRIMITIVES[base]
         return struct.unpack_from(code, data, at)[0], at + struct.calcsize(code)

@@ -35,5 +35,5 @@ def _looked(flight: Mission) -> int:
 
 
 def frames(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Times in us of a lookup, by context."""
+    """Return times in us of a lookup, by context."""
     return {f"lookup_us.{context}": lookup_us(context) for context in contexts}

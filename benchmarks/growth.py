@@ -65,7 +65,7 @@ def ring(nodes: int, hz: int, context: str) -> Iterator[Mission]:
 
 
 def _delivered(flight: Mission) -> int:
-    """Messages of the ring that have arrived so far.
+    """Return messages of the ring that have arrived so far.
 
     Raises:
         RuntimeError: one was lost.
@@ -91,7 +91,7 @@ def nodes(size: int, context: str) -> Row:
 
 
 def hours(size: int, context: str) -> Row:
-    """Two nodes that send each other 10 messages a virtual second: the cost in each of so many virtual hours."""
+    """Return the cost in each virtual hour of two nodes that send each other 10 messages per virtual second."""
     with ring(2, SLOW_HZ, context) as flight:
         return {hour: _us_a_message(flight, HOUR_S) for hour in range(1, size + 1)}
 

@@ -35,7 +35,7 @@ def parts() -> dict[str, list[Path]]:
 
 
 def sizes(sources: Sequence[Path], profile: Profile, compiler: Sequence[str], folder: Path) -> tuple[int, int]:
-    """Bytes of read-only and of writable memory that sources take together."""
+    """Return bytes of read-only and of writable memory that sources take together."""
     messages = folder / "messages"
     write_headers(message_types(collect(sources, library_includes()).missing, shipped()), messages, profile, shipped())
     include = [f"-I{each}" for each in (messages, *library_includes())] + ["-isystem", str(headers_folder())]
@@ -52,7 +52,7 @@ def sizes(sources: Sequence[Path], profile: Profile, compiler: Sequence[str], fo
 
 
 def table() -> str:
-    """The table, a part in a row."""
+    """Return the table, a part in a row."""
     columns = [(target, profile) for target in COMPILERS for profile in PROFILES]
     lines = ["| part | " + " | ".join(f"{target}, {profile}" for target, profile in columns) + " |"]
     lines.append("|---" * (len(columns) + 1) + "|")

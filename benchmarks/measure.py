@@ -14,7 +14,7 @@ REPEATS = 5
 
 
 def rate(run: Callable[[], int], repeats: int = REPEATS) -> float:
-    """The highest rate seen.
+    """Return the highest rate seen.
 
     Args:
         run: does something and returns how often it did it.
@@ -32,7 +32,7 @@ def rate(run: Callable[[], int], repeats: int = REPEATS) -> float:
 
 
 def contexts_here() -> tuple[str, ...]:
-    """The task contexts of this installation."""
+    """Return the task contexts of this installation."""
     return (THREAD, GREENLET) if has_greenlets() else (THREAD,)
 
 

@@ -40,7 +40,7 @@ def _calls(flight: Mission) -> int:
 
 
 def services(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Times in us of a call, by context and kind of proxy."""
+    """Return times in us of a call, by context and kind of proxy."""
     figures = {}
     for context in contexts:
         figures[f"call_us.{context}"] = call_us(context, persistent=False)

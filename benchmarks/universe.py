@@ -121,7 +121,7 @@ def _run(context: str) -> None:
 
 
 def _best(function: Callable[[], object], rounds: int = _ROUNDS) -> int:
-    """The shortest of several rounds in ns."""
+    """Return the shortest of several rounds in ns."""
     best = 1 << 62
     for _ in range(rounds):
         start = perf_counter_ns()
