@@ -48,7 +48,7 @@ class CopyEntry(NamedTuple):
 
 
 def read_entries(table: bytes | memoryview) -> list[CopyEntry]:
-    """All entries of a copy table, unused ones included."""
+    """Return all entries of a copy table, unused ones included."""
     return [CopyEntry(*row.values()) for row in COPY_TABLE.unpack(table)]
 
 

@@ -154,5 +154,5 @@ class SampleApp:
 
 
 def check_table(image: memoryview) -> int:
-    """Whether a table image is good: 0, or a negative number. cFE asks before the image is ever used."""
+    """Return whether a table image is good: 0, or a negative number. cFE asks before the image is ever used."""
     return 0 if pk.find_fault(image) is None else pk.TABLE_OUT_OF_RANGE

@@ -153,7 +153,7 @@ class SbnCommands:
         return None
 
     def _time(self, name: str, time: OsTime) -> dict[str, int]:
-        """A local time as two fields."""
+        """Return a local time as two fields."""
         os = self._cfe.os
         return {
             f"{name}Seconds": os.time_get_total_seconds(time),

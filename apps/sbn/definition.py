@@ -48,7 +48,7 @@ def peer(
 
 
 def configuration(peers: Sequence[dict[str, Any]]) -> TableImage:
-    """The configuration table, with the module UDP and the filter Remap.
+    """Return the configuration table, with the module UDP and the filter Remap.
 
     Args:
         peers: at most 16 entries of `peer`.

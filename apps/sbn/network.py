@@ -118,7 +118,7 @@ class Net:
     recv_task: int = 0
 
     def peer(self, processor_id: int, spacecraft_id: int) -> Peer | None:
-        """The peer with these ids (SBN_GetPeer)."""
+        """Return the peer with these ids (SBN_GetPeer)."""
         for peer in self.peers:
             if (peer.processor_id, peer.spacecraft_id) == (processor_id, spacecraft_id):
                 return peer

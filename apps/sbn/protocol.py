@@ -60,7 +60,7 @@ class Sub(NamedTuple):
 
 
 def pack(message: NetMsg) -> bytes:
-    """A message as bytes (SBN_PackMsg)."""
+    """Return a message as bytes (SBN_PackMsg)."""
     kind, processor_id, spacecraft_id, payload = message
     return _HEADER.pack(len(payload), kind, processor_id, spacecraft_id) + payload
 
@@ -86,7 +86,7 @@ def unpack(data: bytes, longest: int) -> NetMsg:
 
 
 def pack_subscriptions(subscriptions: Sequence[Sub], ident: str) -> bytes:
-    """The payload of SUB_MSG and UNSUB_MSG.
+    """Return the payload of SUB_MSG and UNSUB_MSG.
 
     Args:
         subscriptions: at most 256.
@@ -97,7 +97,7 @@ def pack_subscriptions(subscriptions: Sequence[Sub], ident: str) -> bytes:
 
 
 def unpack_subscriptions(payload: bytes) -> tuple[str, list[Sub]]:
-    """The other way round: ident, up to its first NUL, and subscriptions.
+    """Parse that payload. Returns the ident, up to its first NUL, and the subscriptions.
 
     Raises:
         Malformed: it ends too early.

@@ -166,12 +166,12 @@ class Subscriptions:
 
 
 def _subscription(entry: Mapping[str, Any]) -> pr.Sub:
-    """A subscription out of a report of the Software Bus."""
+    """Return a subscription out of a report of the Software Bus."""
     return pr.Sub(entry["MsgId"], entry["Qos"]["Priority"], entry["Qos"]["Reliability"])
 
 
 def _wanted(peer: SubscribedPeer, msg_id: int) -> int:
-    """The MsgId on this processor's bus that becomes one that a peer subscribes to."""
+    """Return the MsgId on this processor's bus that becomes one that a peer subscribes to."""
     for each in peer.filters:
         msg_id = each.wanted(msg_id, peer.processor_id, peer.spacecraft_id)
     return msg_id

@@ -97,13 +97,13 @@ class Frames:
     # -- frames ----------------------------------------------------------------------------------------------------
 
     def current_slot(self) -> int:
-        """The slot that it is."""
+        """Return the current slot."""
         if self.sync_to_met == NOT_SYNCHRONIZED:
             return self.since_tone
         return (self.met_slot() - self.last_sync_met_slot) % SLOTS
 
     def met_slot(self) -> int:
-        """The slot of the mission elapsed time."""
+        """Return the slot of the mission elapsed time."""
         time = self._cfe.time
         return slot_of_us(time.sub2micro_secs(time.get_met_subsecs()), SLOT_US)
 

@@ -52,7 +52,7 @@ def due(current: int, following: int, behind_before: int) -> Due:
 
 
 def is_due(second: int, frequency: int, remainder: int) -> bool:
-    """Whether an activity happens in this pass of the table."""
+    """Return whether an activity happens in this pass of the table."""
     return second % frequency == remainder
 
 

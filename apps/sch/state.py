@@ -142,15 +142,15 @@ class Tables:
         return self._schedule[_offset(slot, entry)]
 
     def is_enabled(self, slot: int, entry: int) -> bool:
-        """Whether an entry is enabled."""
+        """Return whether an entry is enabled."""
         return self.state(slot, entry) == pk.ENABLED
 
     def entry(self, slot: int, entry: int) -> dict[str, int]:
-        """The fields of an entry."""
+        """Return the fields of an entry."""
         return pk.SCHEDULE_ENTRY.unpack(self._schedule, _offset(slot, entry))
 
     def message(self, index: int) -> memoryview:
-        """The memory of a message."""
+        """Return the memory of a message."""
         at = index * pk.MAX_MESSAGE_SIZE
         return self._messages[at : at + pk.MAX_MESSAGE_SIZE]
 
@@ -171,7 +171,7 @@ class Tables:
         self._cfe.tbl.modified(self._schedule_handle)
 
     def diagnostics(self) -> bytes:
-        """The payload of the diagnostic packet."""
+        """Return the payload of the diagnostic packet."""
         words = [0] * pk.STATE_WORDS
         msg_ids = []
         for number, place in enumerate(_places()):

@@ -65,7 +65,7 @@ class ScheduleEntry:
 
 
 def read(table: bytes | memoryview) -> tuple[int, list[ScheduleEntry]]:
-    """The tick rate of a schedule table and its entries that are in use, in table order."""
+    """Return the tick rate of a schedule table and its entries that are in use, in table order."""
     values = TABLE.unpack(table)
     rows = [row for row in values["Config"] if row["PacketRate"]]
     return values["TickRate"], [ScheduleEntry(_message(row), row["PacketRate"]) for row in rows]

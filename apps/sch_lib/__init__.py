@@ -14,7 +14,7 @@ SEMAPHORE = "SCH_LIB"
 
 
 def SCH_LibInit(cfe: Cfe) -> int:
-    """The init function that the startup script names: the schedule is not held."""
+    """Return the init function that the startup script names: the schedule is not held."""
     cfe.os.count_sem_create(SEMAPHORE, 0)
     return CFE_SUCCESS
 

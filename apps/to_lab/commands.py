@@ -143,7 +143,7 @@ class ToLabCommands:
 
 
 def read(command: Command, packet: bytes) -> dict[str, Any]:
-    """The fields of a command, zeros where it is too short."""
+    """Return the fields of a command, zeros where it is too short."""
     return command.read(packet.ljust(command.length, b"\0"))
 
 

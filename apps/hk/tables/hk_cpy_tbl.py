@@ -28,7 +28,7 @@ ROWS = [
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return COPY_TABLE.image(ROWS)
 
 

@@ -11,7 +11,7 @@ from ..packets import TABLE
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return TABLE.image({"Int1": 1, "Int2": 2})
 
 

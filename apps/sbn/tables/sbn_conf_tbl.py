@@ -13,7 +13,7 @@ SPACECRAFT = 0x42
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return configuration([peer(number, f"127.0.0.1:{2233 + number}", SPACECRAFT) for number in (1, 2, 3)])
 
 

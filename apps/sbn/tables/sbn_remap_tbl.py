@@ -11,7 +11,7 @@ from ..definition import remapping
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return remapping([(3, 0x0882, 0x0883)])
 
 

@@ -18,7 +18,7 @@ REQUESTS = {ES_HK: 0x1808, EVS_HK: 0x1809, SB_HK: 0x180B, TIME_HK: 0x180D, TBL_H
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return message_image({index: init(msg_id, CMD_HEADER_SIZE) for index, msg_id in REQUESTS.items()})
 
 

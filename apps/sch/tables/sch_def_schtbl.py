@@ -26,7 +26,7 @@ SLOTS = {
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return schedule_image(SLOTS)
 
 

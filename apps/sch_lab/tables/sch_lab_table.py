@@ -23,7 +23,7 @@ ROWS: list[tuple[int, int, int, bytes]] = [
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return schedule.image(TICKS_PER_SECOND, ROWS)
 
 

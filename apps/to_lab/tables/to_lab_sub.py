@@ -30,7 +30,7 @@ ROWS = [
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return SUBSCRIPTIONS.image([{"Stream": msg_id, "BufLimit": limit} for msg_id, limit in ROWS])
 
 
