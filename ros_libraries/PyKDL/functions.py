@@ -12,7 +12,7 @@ from .vector import EPSILON, Vector, near, scalar_product
 
 
 def Equal(a: Any, b: Any, eps: float = EPSILON) -> bool:
-    """Whether two of a kind differ by less than `eps` in each number."""
+    """Return whether two of a kind differ by less than `eps` in each number."""
     return near(_numbers(a), _numbers(b), eps)
 
 
@@ -46,7 +46,7 @@ def dot(a: Any, b: Any) -> float:
 
 
 def diff(a: Any, b: Any, dt: float = 1) -> Any:
-    """The motion that takes `a` to `b` in a time: a Vector for Vectors and Rotations, a Twist for Frames."""
+    """Return the motion that takes `a` to `b` in a time: a Vector for Vectors and Rotations, a Twist for Frames."""
     if isinstance(a, Rotation):
         return a * (a.Inverse() * b).GetRot() / dt
     if isinstance(a, Frame):

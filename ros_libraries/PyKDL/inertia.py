@@ -90,7 +90,7 @@ class RigidBodyInertia:
         return self.I
 
     def RefPoint(self, p: Vector) -> RigidBodyInertia:
-        """The same inertia with the origin at another point."""
+        """Return the same inertia with the origin at another point."""
         moved = self.h - p * self.m
         inertia = self.I + -1.0 * _of_point(p, self.h) + -1.0 * _of_point(moved, p)
         return self._of(self.m, moved, inertia)
@@ -99,7 +99,7 @@ class RigidBodyInertia:
         return self._of(self.m + other.m, self.h + other.h, self.I + other.I)
 
     def __mul__(self, twist: Twist) -> Wrench:
-        """The momentum of a motion."""
+        """Return the momentum of a motion."""
         return Wrench(twist.vel * self.m - self.h * twist.rot, self.I * twist.rot + self.h * twist.vel)
 
     def __rmul__(self, other: Any) -> RigidBodyInertia:

@@ -27,7 +27,7 @@ class Rotation:
 
     @staticmethod
     def Identity() -> Rotation:
-        """No rotation."""
+        """Return no rotation."""
         return Rotation()
 
     @staticmethod
@@ -151,7 +151,7 @@ class Rotation:
         return Vector(*(largest if i == at else (m[3 * at + i] + m[3 * i + at]) / (4 * largest) for i in range(3)))
 
     def GetRot(self) -> Vector:
-        """The axis, with the angle in rad as its length."""
+        """Return the axis, with the angle in rad as its length."""
         angle, axis = self.GetRotAngle()
         return Vector(axis * angle)
 

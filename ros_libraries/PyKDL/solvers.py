@@ -35,7 +35,7 @@ class SolverI:
         return self.error
 
     def strError(self, error: int) -> str:
-        """An outcome in words."""
+        """Return the text of an error number."""
         return _WORDS.get(error, "UNKNOWN ERROR")
 
     def updateInternalDataStructures(self) -> None:
@@ -140,7 +140,7 @@ class ChainIkSolverVel_pinv(SolverI):
         self._jacobian = ChainJntToJacSolver(chain)
 
     def CartToJnt(self, q_in: JntArray, v_in: Twist, qdot_out: JntArray) -> int:
-        """The least velocities that come nearest to a twist at the chain's end.
+        """Return the least velocities that come nearest to a twist at the chain's end.
 
         Args:
             q_in: positions of the joints.
@@ -232,7 +232,7 @@ class ChainIkSolverPos_NR_JL(ChainIkSolverPos_NR):
 
 
 def _frames(chain: Chain, q: JntArray, count: int) -> list[Frame]:
-    """Where the tips of the first segments are."""
+    """Return where the tips of the first segments are."""
     found: list[Frame] = []
     joint, here = 0, Frame()
     for segment in chain.segments[:count]:

@@ -37,11 +37,11 @@ class Tree:
         )
 
     def getNrOfJoints(self) -> int:
-        """How many joints move."""
+        """Return how many joints move."""
         return sum(segment.moves() for segment in self.segments.values())
 
     def getNrOfSegments(self) -> int:
-        """How many segments there are."""
+        """Return how many segments there are."""
         return len(self.segments)
 
     def getChain(self, chain_root: str, chain_tip: str) -> Chain:
@@ -75,7 +75,7 @@ class Tree:
 
 
 def _turned_round(segment: Segment) -> Segment:
-    """A segment that leads from its tip to its root."""
+    """Return a segment that leads from its tip to its root."""
     back, joint = segment.getFrameToTip().Inverse(), segment.getJoint()
     if segment.moves():
         kind = Joint.RotAxis if joint.getType() < Joint.TransAxis else Joint.TransAxis

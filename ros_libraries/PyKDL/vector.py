@@ -16,7 +16,7 @@ def columns(values: Iterable[float]) -> str:
 
 
 def near(a: Iterable[float], b: Iterable[float], eps: float = EPSILON) -> bool:
-    """Whether numbers are pairwise less than `eps` apart."""
+    """Return whether numbers are pairwise less than `eps` apart."""
     return all(abs(one - other) < eps for one, other in zip(a, b, strict=True))
 
 
@@ -129,7 +129,7 @@ class Vector:
 
 
 def scalar_product(a: Vector, b: Vector) -> float:
-    """The sum of the products of components."""
+    """Return the sum of the products of components."""
     return sum(one * other for one, other in zip(a.v, b.v, strict=True))
 
 

@@ -135,7 +135,7 @@ class ClientGoalHandle:
             machine.transition_to(CommState.WAITING_FOR_CANCEL_ACK)
 
     def get_comm_state(self) -> int:
-        """The goal's `CommState`."""
+        """Return the goal's `CommState`."""
         machine = self._machine("get_comm_state")
         return machine.state if machine else CommState.LOST
 
@@ -152,7 +152,7 @@ class ClientGoalHandle:
         return str(machine.latest_goal_status.text)
 
     def get_result(self) -> Any:
-        """The *Result message, or None when none has come."""
+        """Return the *Result message, or None when none has come."""
         machine = self._machine("get_result")
         return machine.latest_result.result if machine and machine.latest_result else None
 

@@ -26,6 +26,6 @@ class GoalIDGenerator:
         self.name = name
 
     def generate_ID(self) -> Any:  # actionlib's name
-        """A new GoalID, stamped now."""
+        """Return a new GoalID, stamped now."""
         now = rospy.Time.now()
         return GoalID(id=f"{self.name}-{next(_goal_numbers)}-{now.secs}.{now.nsecs}", stamp=now)

@@ -100,15 +100,15 @@ class ServerGoalHandle:
     # -- properties ----------------------------------------------------------------------------------------------
 
     def get_default_result(self) -> Any:
-        """An empty *Result message."""
+        """Return an empty *Result message."""
         return self.action_server.ActionResultType()
 
     def get_goal(self) -> Any:
-        """The *Goal message, or None."""
+        """Return the *Goal message, or None."""
         return self.goal.goal if self.goal is not None else None
 
     def get_goal_id(self) -> Any:
-        """The goal's GoalID."""
+        """Return the goal's GoalID."""
         if self.goal is None:
             rospy.logerr("Attempt to get a goal id on an uninitialized ServerGoalHandle")
             return GoalID()
@@ -116,7 +116,7 @@ class ServerGoalHandle:
             return self.status_tracker.status.goal_id
 
     def get_goal_status(self) -> Any:
-        """The goal's GoalStatus, as it is published."""
+        """Return the goal's GoalStatus, as it is published."""
         if self.goal is None:
             rospy.logerr("Attempt to get goal status on an uninitialized ServerGoalHandle")
             return GoalStatus()

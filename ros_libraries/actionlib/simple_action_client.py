@@ -49,7 +49,7 @@ class SimpleActionClient:
         self.feedback_cb: Callable[[Any], object] | None = None
 
     def wait_for_server(self, timeout: Any = rospy.Duration()) -> bool:  # noqa: B008
-        """As `ActionClient.wait_for_server`."""
+        """Wait as `ActionClient.wait_for_server` does."""
         return self.action_client.wait_for_server(timeout)
 
     def send_goal(
@@ -120,7 +120,7 @@ class SimpleActionClient:
         return self.simple_state == SimpleGoalState.DONE
 
     def get_result(self) -> Any:
-        """The *Result message of the goal, or None."""
+        """Return the *Result message of the goal, or None."""
         if not self.gh:
             rospy.logerr("Called get_result when no goal is running")
             return None

@@ -96,15 +96,15 @@ class SimpleActionServer:
             return self.current_goal.get_goal()
 
     def is_new_goal_available(self) -> bool:
-        """Whether a goal waits to be accepted."""
+        """Return whether a goal waits to be accepted."""
         return self.new_goal
 
     def is_preempt_requested(self) -> bool:
-        """Whether the goal is to be given up, for a newer one or because a client wants it."""
+        """Return whether the goal is to be given up, for a newer one or because a client wants it."""
         return self.preempt_request
 
     def is_active(self) -> bool:
-        """Whether there is a goal under way."""
+        """Return whether there is a goal under way."""
         if self.current_goal.get_goal() is None:
             return False
         return self.current_goal.get_goal_status().status in (GoalStatus.ACTIVE, GoalStatus.PREEMPTING)
@@ -114,7 +114,7 @@ class SimpleActionServer:
         self.current_goal.publish_feedback(feedback)
 
     def get_default_result(self) -> Any:
-        """An empty *Result message."""
+        """Return an empty *Result message."""
         return self.action_server.ActionResultType()
 
     def set_succeeded(self, result: Any = None, text: str = "") -> None:

@@ -40,7 +40,7 @@ TERMINAL_STATES = frozenset(value for name, value in vars(TerminalState).items()
 
 
 def get_name_of_constant(cls: type, value: int) -> str:
-    """Name of the constant of a class that has a value, e.g. "ACTIVE"."""
+    """Return the name of the constant of a class that has a value, e.g. "ACTIVE"."""
     for name, constant in vars(cls).items():
         if name.isupper() and constant == value:
             return name

@@ -24,7 +24,7 @@ _LOOK_UP_S = 0.1  # a waiting thread checks at this interval whether the node is
 
 
 def as_ros_duration(d: Any) -> Any:
-    """A rospy.Duration of one, or of seconds."""
+    """Return a rospy.Duration of one, or of seconds."""
     return d if isinstance(d, rospy.Duration) else rospy.Duration.from_sec(d)
 
 
@@ -34,7 +34,7 @@ def as_float_duration(d: Any) -> Any:
 
 
 def _timeout(event: str) -> Any:
-    """A property that holds a time, in s or as a rospy.Duration, and makes the timer that raises an event."""
+    """Return a property that holds a time, in s or as a rospy.Duration, and makes the timer that raises an event."""
 
     def read(self: Bond) -> Any:
         return self._times[event]
@@ -116,7 +116,7 @@ class Bond:
         self.disconnect_timeout = dur
 
     def get_heartbeat_period(self) -> float:
-        """Time between heartbeats, in s."""
+        """Return the time between heartbeats, in s."""
         return self.heartbeat_period
 
     def set_heartbeat_period(self, per: Any) -> None:
@@ -165,7 +165,7 @@ class Bond:
             self.condition.wait(left)
 
     def is_broken(self) -> bool:
-        """Whether the bond is broken."""
+        """Return whether the bond is broken."""
         with self.lock:
             return self.state == DEAD
 

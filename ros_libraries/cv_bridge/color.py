@@ -26,7 +26,7 @@ def opencv(what: str) -> Any:
 
 
 def cvtColor2(img: Any, encoding_in: str, encoding_out: str) -> Any:
-    """An image in another encoding.
+    """Return an image in another encoding.
 
     Args:
         img: rows x columns, or rows x columns x channels.

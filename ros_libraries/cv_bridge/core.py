@@ -22,7 +22,7 @@ class CvBridge:
     """Converts images."""
 
     def dtype_with_channels_to_cvtype2(self, dtype: Any, n_channels: int) -> str:
-        """The encoding of an array, e.g. "8UC3"."""
+        """Return the encoding of an array, e.g. "8UC3"."""
         return name_of(np.dtype(dtype).name, n_channels)
 
     def cvtype2_to_dtype_with_channels(self, cvtype: Any) -> tuple[str, int]:

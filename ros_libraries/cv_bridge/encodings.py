@@ -61,7 +61,7 @@ def parse(name: str) -> Encoding:
 
 
 def name_of(dtype: str, channels: int) -> str:
-    """The encoding of plain numbers, e.g. "8UC3".
+    """Return the encoding of plain numbers, e.g. "8UC3".
 
     Raises:
         KeyError: OpenCV has no such numbers.
@@ -71,7 +71,7 @@ def name_of(dtype: str, channels: int) -> str:
 
 
 def name_of_number(cv_type: int) -> str:
-    """The encoding of plain numbers by OpenCV's number for it."""
+    """Return the encoding of plain numbers by OpenCV's number for it."""
     return f"{list(_DEPTHS)[cv_type % 8]}C{cv_type // 8 + 1}"
 
 

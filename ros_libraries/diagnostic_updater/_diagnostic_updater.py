@@ -29,7 +29,7 @@ class DiagnosticTask:
         self.name = name
 
     def getName(self) -> str:
-        """The task's name."""
+        """Return the task's name."""
         return self.name
 
     def run(self, stat: Any) -> Any:

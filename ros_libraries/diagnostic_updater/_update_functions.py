@@ -168,6 +168,6 @@ class Heartbeat(DiagnosticTask):
         super().__init__("Heartbeat")
 
     def run(self, stat: Any) -> Any:
-        """All is well."""
+        """Report that all is well."""
         stat.summary(OK, "Alive")
         return stat

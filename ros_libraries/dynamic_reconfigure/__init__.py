@@ -22,7 +22,7 @@ class DynamicReconfigureCallbackException(DynamicReconfigureException):
 
 
 def find_reconfigure_services() -> list[str]:
-    """Names of the servers that can be reconfigured, sorted."""
+    """Return the names of the servers that can be reconfigured, sorted."""
     import rosservice
 
     ending = "/set_parameters"
@@ -30,5 +30,5 @@ def find_reconfigure_services() -> list[str]:
 
 
 def get_parameter_names(descr: Any) -> Any:
-    """Names of the parameters of a `...Config` module."""
+    """Return the names of the parameters of a `...Config` module."""
     return descr.defaults.keys()

@@ -108,7 +108,7 @@ class Client:
         return decode_config(msg, self.group_description)
 
     def update_groups(self, changes: dict[str, Any]) -> Any:
-        """The tree of groups with new states.
+        """Return the tree of groups with new states.
 
         Args:
             changes: states by group name.
@@ -164,7 +164,7 @@ class Client:
             raise DynamicReconfigureParameterException(problem) from None
 
     def _constants(self, name: str) -> dict[str, Any]:
-        """Values of a parameter's enum by lower-case name."""
+        """Return values of a parameter's enum by lower-case name."""
         method = next(each["edit_method"] for each in self.param_description if each["name"] == name)
         listed = ast.literal_eval(method)["enum"] if method else []
         return {each["name"].lower(): self._param_type_from_string(each["type"])(each["value"]) for each in listed}

@@ -16,7 +16,7 @@ class Config(dict[str, Any]):
         self[name] = value
 
     def copy(self) -> Config:
-        """A flat copy."""
+        """Return a flat copy."""
         return Config(self)
 
     def __deepcopy__(self, memo: Any) -> Config:

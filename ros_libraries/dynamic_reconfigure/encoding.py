@@ -77,7 +77,7 @@ def _below(group: Any) -> Iterator[Any]:
 
 
 def group_dict(group: Any) -> Config:
-    """A group as a dict, from a Group or a GroupState message."""
+    """Return a group as a dict, from a Group or a GroupState message."""
     return Config(
         id=group.id,
         parent=group.parent,
@@ -193,7 +193,7 @@ def extract_params(group: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def get_parents(group: Mapping[str, Any], descriptions: Mapping[str, Any]) -> list[Any]:
-    """The groups around a group, outermost first, out of the list `descriptions["group"]`."""
+    """Return the groups around a group, outermost first, out of the list `descriptions["group"]`."""
     found: list[Any] = []
     for each in descriptions["group"]:
         if each["id"] == group["parent"] and each is not group:

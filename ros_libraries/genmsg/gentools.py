@@ -14,7 +14,7 @@ _SEPARATOR = "=" * 80 + "\n"
 
 
 def compute_md5_text(msg_context: MsgContext, spec: MsgSpec) -> str:
-    """The text that is hashed: constants, then fields, nested messages as their md5sums."""
+    """Return the text that is hashed: constants, then fields, nested messages as their md5sums."""
     lines = [f"{constant.type} {constant.name}={constant.val_text}" for constant in spec.constants]
     for kind, name in spec.fields():
         bare = bare_msg_type(kind)

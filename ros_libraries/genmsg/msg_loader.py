@@ -85,7 +85,7 @@ def get_msg_file(package: str, base_type: str, search_path: SearchPath, ext: str
 
 
 def get_srv_file(package: str, base_type: str, search_path: SearchPath) -> str:
-    """Path of a service's definition; see `get_msg_file`."""
+    """Return the path of a service's definition; see `get_msg_file`."""
     return get_msg_file(package, base_type, search_path, EXT_SRV)
 
 
@@ -221,7 +221,7 @@ def load_msg_depends(msg_context: MsgContext, spec: MsgSpec, search_path: Search
 
 
 def load_depends(msg_context: MsgContext, spec: Any, msg_search_path: SearchPath) -> list[str]:
-    """As `load_msg_depends`, for a service too.
+    """Load dependencies as `load_msg_depends` does, also for a service.
 
     Raises:
         ValueError: `spec` is neither.

@@ -25,7 +25,7 @@ _BRACKETS = re.compile(r"(\[\d*\])*")
 
 
 def bare_msg_type(msg_type: Any) -> Any:
-    """A type without its brackets."""
+    """Return a type without its brackets."""
     return None if msg_type is None else msg_type.partition("[")[0]
 
 
@@ -57,7 +57,7 @@ def parse_type(msg_type: str) -> tuple[str, bool, int | None]:
 
 
 def is_valid_msg_type(x: str) -> bool:
-    """Whether a type, with its brackets, is written as one can be."""
+    """Return whether a type, with its brackets, is written as one can be."""
     if not x or x != x.strip():
         return False
     base = bare_msg_type(x)
@@ -65,22 +65,22 @@ def is_valid_msg_type(x: str) -> bool:
 
 
 def is_valid_constant_type(x: str) -> bool:
-    """Whether there can be constants of a type."""
+    """Return whether there can be constants of a type."""
     return x in PRIMITIVE_TYPES
 
 
 def is_valid_msg_field_name(x: str) -> bool:
-    """Whether a field can have a name."""
+    """Return whether a field can have a name."""
     return is_legal_resource_base_name(x)
 
 
 def is_builtin(msg_type_name: str) -> bool:
-    """Whether a type belongs to the language."""
+    """Return whether a type belongs to the language."""
     return msg_type_name in BUILTIN_TYPES
 
 
 def is_header_type(msg_type: str) -> bool:
-    """Whether a type is the header, under any of its names."""
+    """Return whether a type is the header, under any of its names."""
     return msg_type in (HEADER, HEADER_FULL_NAME, "roslib/Header")
 
 
@@ -166,11 +166,11 @@ class MsgSpec:
         return list(zip(self.types, self.names, strict=True))
 
     def parsed_fields(self) -> list[Field]:
-        """The fields."""
+        """Return the fields."""
         return self._parsed_fields
 
     def has_header(self) -> bool:
-        """Whether the first field is `Header header`."""
+        """Return whether the first field is `Header header`."""
         return self.header_present
 
     def _parts(self) -> tuple[Any, ...]:

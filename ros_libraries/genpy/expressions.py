@@ -34,7 +34,7 @@ _SPECIAL = {
 
 
 def is_special(type_: str) -> bool:
-    """Whether a type is a header, a time or a duration."""
+    """Return whether a type is a header, a time or a duration."""
     return type_ in _SPECIAL
 
 
@@ -132,7 +132,7 @@ def compute_import(msg_context: MsgContext, package: str, type_: str) -> list[st
 
 
 def compute_full_text_escaped(msg_context: MsgContext, spec: MsgSpec) -> str:
-    """The full text, fit for triple quotes."""
+    """Return the full text, fit for triple quotes."""
     return genmsg.compute_full_text(msg_context, spec).replace('"""', r"\"\"\"")
 
 

@@ -21,7 +21,7 @@ def clear_patterns() -> None:
 
 
 def get_patterns() -> list[str]:
-    """The patterns used since `clear_patterns`."""
+    """Return the patterns used since `clear_patterns`."""
     return list(_patterns)
 
 
@@ -32,7 +32,7 @@ def compute_struct_pattern(types: Sequence[str] | None) -> str | None:
 
 
 def reduce_pattern(pattern: str) -> str:
-    """A pattern with counts in place of repetitions."""
+    """Return a pattern with counts in place of repetitions."""
     if not pattern or "%" in pattern:
         return pattern
     runs = [(char, len(list(run))) for char, run in itertools.groupby(pattern)]

@@ -44,7 +44,7 @@ Source = Iterator[str]
 
 
 def next_var() -> str:
-    """A name for a local variable that was not used yet."""
+    """Return a name for a local variable that was not used yet."""
     _variables[0] += 1
     return f"_v{_variables[0]}"
 
@@ -77,7 +77,7 @@ def len_serializer_generator(var: str, is_string: bool, serialize: bool) -> Sour
 
 
 def string_serializer_generator(package: str, type_: str, name: str, serialize: bool) -> Source:
-    """A string, or an array of uint8."""
+    """Return a string, or an array of uint8."""
     base, _, length = parse_type(type_)
     octets = base in ("uint8", "char")
     var = _contexts[-1] + name
@@ -120,7 +120,7 @@ def _read_string(var: str, octets: bool, length: int | None) -> Source:
 def array_serializer_generator(
     msg_context: MsgContext, package: str, type_: str, name: str, serialize: bool, is_numpy: bool
 ) -> Source:
-    """An array.
+    """Return an array.
 
     Raises:
         MsgGenerationException: the type is none.
@@ -171,7 +171,7 @@ def _read_numbers(var: str, base: str, length: int | None, is_numpy: bool) -> So
 
 
 def _items(msg_context: MsgContext, package: str, type_: str, var: str, serialize: bool, is_numpy: bool) -> Source:
-    """An array of strings or messages."""
+    """Return an array of strings or messages."""
     base, _, length = parse_type(type_)
     item = f"val{len(_contexts) - 1}"
     push_context("" if base == "string" else f"{item}.")

@@ -19,7 +19,7 @@ WAIT_S = 60.0
 
 
 def plain(value: Any) -> Any:
-    """A message as dictionaries, lists, numbers and texts."""
+    """Return a message as dictionaries, lists, numbers and texts."""
     names = getattr(value, "__slots__", None)
     if names is not None:
         return {name: plain(getattr(value, name)) for name in names}

@@ -57,7 +57,7 @@ def echo(source: str, target: str, rate_hz: str, count: str = "") -> None:
 
 
 def _text(found: Any) -> str:
-    """A transform as tf_echo shows it."""
+    """Return a transform as tf_echo shows it."""
     moved, turned = found.transform.translation, found.transform.rotation
     angles = Matrix3x3(Quaternion(turned.x, turned.y, turned.z, turned.w)).getRPY()
     return "\n".join(

@@ -53,16 +53,16 @@ class Cache(SimpleFilter):
         return [msg for stamp, msg in self._pairs() if from_stamp <= stamp <= to_stamp]
 
     def getElemAfterTime(self, stamp: Any) -> Any:
-        """The first message that came with this stamp or a later one, or None."""
+        """Return the first message that came with this stamp or a later one, or None."""
         return next((msg for time, msg in self._pairs() if time >= stamp), None)
 
     def getElemBeforeTime(self, stamp: Any) -> Any:
-        """The last message that came with this stamp or an earlier one, or None."""
+        """Return the last message that came with this stamp or an earlier one, or None."""
         older = [msg for time, msg in self._pairs() if time <= stamp]
         return older[-1] if older else None
 
     def getLatestTime(self) -> Any:
-        """Stamp of the message that came last, or None."""
+        """Return the stamp of the message that came last, or None."""
         return self.cache_times[-1] if self.cache_times else None
 
     getLastestTime = getLatestTime  # the misspelt name is part of ROS's interface
@@ -72,6 +72,6 @@ class Cache(SimpleFilter):
         return self.cache_times[0] if self.cache_times else None
 
     def getLast(self) -> Any:
-        """The first message that came with the last stamp, or None."""
+        """Return the first message that came with the last stamp, or None."""
         latest = self.getLatestTime()
         return None if latest is None else self.getElemAfterTime(latest)

@@ -17,7 +17,7 @@ _rospack: Any = None
 
 
 def get_rospack() -> Any:
-    """The node's rospkg.RosPack."""
+    """Return the node's rospkg.RosPack."""
     global _rospack
     if _rospack is None:
         _rospack = rospkg.RosPack()

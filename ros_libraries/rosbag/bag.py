@@ -200,7 +200,7 @@ class Bag(Indexed):
         return info.text_of(self)
 
     def get_message_count(self, topic_filters: str | list[str] | None = None) -> int:
-        """How many messages there are, on some topics or on all."""
+        """Return how many messages there are, on some topics or on all."""
         if topic_filters is not None:
             topics = self.get_type_and_topic_info(topic_filters).topics
             return sum(topic.message_count for topic in topics.values())
@@ -266,7 +266,7 @@ class Bag(Indexed):
     def _read_message(
         self, position: tuple[int, int], raw: bool = False, return_connection_header: bool = False
     ) -> Any:
-        """The message at the position of an index entry."""
+        """Return the message at the position of an index entry."""
         self.flush()
         return self._message_at(position, raw, return_connection_header)
 

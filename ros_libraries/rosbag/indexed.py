@@ -22,7 +22,7 @@ class Indexed:
         raise NotImplementedError
 
     def _index(self) -> Contents:
-        """The contents, with the entries."""
+        """Return the contents, with the entries."""
         self.flush()
         if not self._connection_indexes_read:
             self._connection_indexes_read = True
@@ -30,7 +30,7 @@ class Indexed:
         return self._storage.contents
 
     def _all_chunks(self) -> list[Chunk]:
-        """The chunks, with the one that is being written."""
+        """Return the chunks, with the one that is being written."""
         return self._storage.all_chunks()
 
     @property

@@ -48,7 +48,7 @@ def check_options(kind: Any, chunk_threshold: int) -> None:
 
 
 def seconds(ns: int) -> float:
-    """A time in s, with the rounding of `Time.to_sec`."""
+    """Return a time in s, with the rounding of `Time.to_sec`."""
     return ns // NS_PER_S + (ns % NS_PER_S) / 1e9
 
 
@@ -64,7 +64,7 @@ def times_of(chunks: list[Chunk]) -> tuple[float, float]:
 
 
 def count(chunks: list[Chunk], connections: Iterable[Connection]) -> int:
-    """How many messages connections have."""
+    """Return how many messages connections have."""
     return sum(chunk.connection_counts.get(each.id, 0) for each in connections for chunk in chunks)
 
 
@@ -76,7 +76,7 @@ def compression_of(chunks: list[Chunk], default: str) -> CompressionTuple:
 
 
 def _uses(chunks: list[Chunk]) -> list[tuple[int, str]]:
-    """How many chunks are compressed how, the most first."""
+    """Return how many chunks are compressed how, the most first."""
     kinds = [chunk.compression for chunk in chunks]
     return sorted(((kinds.count(kind), kind) for kind in dict.fromkeys(kinds)), reverse=True)
 
@@ -216,7 +216,7 @@ def _topic_texts(topics: dict[str, TopicTuple], type_width: int) -> list[str]:
 
 
 def human_size(size: float) -> str:
-    """Bytes as KB, MB, ..."""
+    """Return bytes as KB, MB, ..."""
     for unit in ("KB", "MB", "GB", "TB", "PB", "EB", "ZB", "YB"):
         size /= 1024.0
         if size < 1024.0:

@@ -160,7 +160,7 @@ class Player:
 
 
 def options_of(argv: Sequence[str]) -> argparse.Namespace:
-    """The options of `rosbag play`."""
+    """Return the options of `rosbag play`."""
     parser = PlayParser(prog=os.path.basename(argv[0]), description="Play bags back.")
     return parser.parse_play(rospy.myargv(argv)[1:])
 

@@ -37,7 +37,7 @@ def _canonical(topic: str) -> str:
 
 
 def entries(bag: Indexed, chosen: Iterable[Connection] | None, start: Any, end: Any) -> Iterator[Entry]:
-    """The entries of connections (None: of all) from one time to another, both included, None without limit."""
+    """Yield the entries of connections (None: of all) from one time to another, both included, None without limit."""
     contents = bag._index()
     first = start.to_nsec() if start else None
     last_ns = end.to_nsec() if end else None

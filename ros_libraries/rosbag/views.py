@@ -76,15 +76,15 @@ class ChunkInfo(NamedTuple):
 
 
 def ros_time(ns: int) -> Any:
-    """A `rospy.Time` of so many ns."""
+    """Return a `rospy.Time` of so many ns."""
     return rospy.Time(ns // 1_000_000_000, ns % 1_000_000_000)
 
 
 def entry_view(entry: Entry) -> IndexEntry:
-    """An entry with a ROS time."""
+    """Return an entry with a ROS time."""
     return IndexEntry(ros_time(entry.time), entry.chunk_pos, entry.offset)
 
 
 def chunk_view(chunk: Chunk) -> ChunkInfo:
-    """A chunk with ROS times."""
+    """Return a chunk with ROS times."""
     return ChunkInfo(chunk.pos, ros_time(chunk.start), ros_time(chunk.end), chunk.connection_counts)

@@ -197,7 +197,7 @@ class BagFile:
         return 0 if self._open is None else self._open.data.tell()
 
     def all_chunks(self) -> list[Chunk]:
-        """The chunks in the file, and the one that is about to be."""
+        """Return the chunks in the file, and the one that is about to be."""
         made = None if self._open is None else self._open.chunk
         return self.contents.chunks if made is None else [*self.contents.chunks, made]
 

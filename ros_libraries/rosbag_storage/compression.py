@@ -87,7 +87,7 @@ def _of_zstd(data: bytes) -> bytes:
 
 
 def zstd() -> Any:
-    """The package zstandard.
+    """Return the package zstandard.
 
     Raises:
         ImportError: it is not installed.

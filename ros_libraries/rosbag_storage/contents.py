@@ -79,7 +79,7 @@ class Contents:
     indexes: dict[int, list[Entry]] = field(default_factory=dict)
 
     def entries(self, connections: Iterable[Connection]) -> Iterator[Entry]:
-        """The entries of some connections, by time."""
+        """Return the entries of some connections, by time."""
         return heapq.merge(*(self.indexes.get(each.id, []) for each in connections), key=attrgetter("time"))
 
     def settle(self) -> None:

@@ -61,7 +61,7 @@ def read_entries(file: BinaryIO, contents: Contents) -> None:
 
 
 def read_connection(file: BinaryIO) -> Connection:
-    """A connection's record."""
+    """Return a connection's record."""
     fields = records.read_header(file, records.OP_CONNECTION)
     header = records.read_header(file)
     return Connection(records.uint32_field(fields, "conn"), records.text_field(fields, "topic"), header)
@@ -91,7 +91,7 @@ def read_chunk_header(file: BinaryIO, chunk: Chunk) -> None:
 
 
 def read_chunk_entries(file: BinaryIO, chunk_pos: int) -> tuple[int, list[Entry]]:
-    """Number of a connection, and where its messages are in a chunk.
+    """Return the number of a connection, and where its messages are in a chunk.
 
     The length of the data is not looked at: ROS's first writers got it wrong.
     """

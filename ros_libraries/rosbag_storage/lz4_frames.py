@@ -34,7 +34,7 @@ class LZ4Compressor:
         return self._begin() + bytes(self._frame.compress(data))
 
     def flush(self) -> bytes:
-        """The rest of the frame."""
+        """Return the rest of the frame."""
         return self._begin() + bytes(self._frame.flush())
 
     def _begin(self) -> bytes:
@@ -60,7 +60,7 @@ class LZ4Decompressor:
 
 
 def compress(data: bytes) -> bytes:
-    """A frame with all the data."""
+    """Return a frame with all the data."""
     compressor = LZ4Compressor()
     return compressor.compress(data) + compressor.flush()
 

@@ -147,7 +147,7 @@ class McapFile(BagFile):
     # -- operations that an MCAP file does not support ---------------------------------------------------------------
 
     def reindex(self) -> Iterator[int]:
-        """An MCAP file needs none: see `cfepy bag recover`."""
+        """Refuse: an MCAP file needs no index, see `cfepy bag recover`."""
         _only_read()
 
     def create(self) -> None:

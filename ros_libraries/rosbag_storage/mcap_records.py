@@ -104,7 +104,7 @@ class Body:
         self.at = 0
 
     def wrong(self, what: str) -> ROSBagFormatException:
-        """The error that something is wrong here."""
+        """Return an error with this position."""
         return ROSBagFormatException(f"{what} at byte {self.place + self.at:,}")
 
     def take(self, size: int) -> bytes:
@@ -120,19 +120,19 @@ class Body:
         return int(layout.unpack(self.take(layout.size))[0])
 
     def uint16(self) -> int:
-        """A number of two bytes."""
+        """Return a number of two bytes."""
         return self._number(_uint16)
 
     def uint32(self) -> int:
-        """A number of four bytes."""
+        """Return a number of four bytes."""
         return self._number(_uint32)
 
     def uint64(self) -> int:
-        """A number of eight bytes."""
+        """Return a number of eight bytes."""
         return self._number(_uint64)
 
     def text(self) -> str:
-        """A text."""
+        """Return a text."""
         data = self.take(self.uint32())
         try:
             return data.decode()
@@ -140,7 +140,7 @@ class Body:
             raise self.wrong("a text is not UTF-8") from None
 
     def texts(self) -> dict[str, str]:
-        """A map of texts."""
+        """Return a map of texts."""
         end = self.uint32() + self.at
         found: dict[str, str] = {}
         while self.at < end:
@@ -152,13 +152,13 @@ class Body:
 
 
 def schema_of(body: Body) -> tuple[int, McapSchema]:
-    """Number and content of a record SCHEMA."""
+    """Return the number and content of a record SCHEMA."""
     number, name, encoding = body.uint16(), body.text(), body.text()
     return number, McapSchema(name, encoding, body.take(body.uint32()))
 
 
 def channel_of(body: Body, schemas: Mapping[int, McapSchema]) -> RecordedChannel:
-    """A record CHANNEL.
+    """Return a record CHANNEL.
 
     Args:
         body: of the record.
@@ -205,7 +205,7 @@ def channel_of_connection(connection: Connection) -> RecordedChannel:
 
 
 def chunk_of(body: Body) -> ChunkRecord:
-    """The head of a record CHUNK.
+    """Return the head of a record CHUNK.
 
     Raises:
         ROSBagFormatException: it is none, or compressed in a way that is not known.
@@ -219,7 +219,7 @@ def chunk_of(body: Body) -> ChunkRecord:
 
 
 def unpacked(chunk: ChunkRecord, stored: bytes, place: int) -> bytes:
-    """The records of a chunk.
+    """Return the records of a chunk.
 
     Raises:
         ROSBagFormatException: they are damaged.

@@ -20,7 +20,7 @@ _AT_THE_TOP = frozenset((*range(mcap.HEADER, mcap.DATA_END + 1), *range(0x80, 0x
 
 
 def _is_text(schema: mcap.McapSchema | None) -> bool:
-    """Whether there is a schema, and its definition can be read."""
+    """Return whether there is a schema, and its definition can be read."""
     try:
         return schema is not None and schema.data.decode() is not None
     except UnicodeDecodeError:
@@ -231,7 +231,7 @@ class McapSalvage(Salvage):
         return bool(size < _LONGEST) or (op == mcap.MESSAGE and self._is_of_channel(data, at + mcap.PREFIX.size, end))
 
     def _begins(self, data: Bytes, at: int, end: int, kinds: frozenset[int]) -> bool:
-        """Whether a record of some kinds begins at a byte, and is neither cut off nor damaged."""
+        """Return whether a record of some kinds begins at a byte, and is neither cut off nor damaged."""
         return end - at >= mcap.PREFIX.size and data[at] in kinds and self._follows(data, at, end, kinds)
 
     @staticmethod

@@ -52,12 +52,12 @@ _uint64 = struct.Struct("<Q")
 
 
 def pack_time(ns: int) -> bytes:
-    """A time in ns as seconds and nanoseconds."""
+    """Return a time in ns as seconds and nanoseconds."""
     return _pack_time(ns // NS_PER_S, ns % NS_PER_S)
 
 
 def pack_header(fields: Fields) -> bytes:
-    """A header without its length: each field as length, name, "=" and value."""
+    """Return a header without its length: each field as length, name, "=" and value."""
     parts = []
     for name, value in fields.items():
         content = (name if isinstance(name, bytes) else name.encode()) + b"=" + _bytes(value)
@@ -168,7 +168,7 @@ def read_header(file: BinaryIO, op: int | None = None) -> dict[str, bytes]:
 
 
 def split_header(header: bytes) -> dict[str, bytes]:
-    """The fields of a header, in its order.
+    """Return the fields of a header, in its order.
 
     Raises:
         ROSBagFormatException: a field has no name, or is longer than the header.
@@ -192,7 +192,7 @@ def split_header(header: bytes) -> dict[str, bytes]:
 
 
 def peek_op(file: BinaryIO) -> int:
-    """The kind of the record that comes next."""
+    """Return the kind of the record that comes next."""
     at = file.tell()
     fields = read_header(file)
     file.seek(at)
@@ -221,27 +221,27 @@ def _number(fields: Mapping[str, bytes], name: str, layout: struct.Struct) -> in
 
 
 def uint8_field(fields: Mapping[str, bytes], name: str) -> int:
-    """A number of one byte."""
+    """Return a number of one byte."""
     return _number(fields, name, _uint8)
 
 
 def uint32_field(fields: Mapping[str, bytes], name: str) -> int:
-    """A number of four bytes."""
+    """Return a number of four bytes."""
     return _number(fields, name, _uint32)
 
 
 def uint64_field(fields: Mapping[str, bytes], name: str) -> int:
-    """A number of eight bytes."""
+    """Return a number of eight bytes."""
     return _number(fields, name, _uint64)
 
 
 def text_field(fields: Mapping[str, bytes], name: str) -> str:
-    """A text."""
+    """Return a text."""
     return text(field(fields, name))
 
 
 def time_field(fields: Mapping[str, bytes], name: str) -> int:
-    """A time, in ns."""
+    """Return a time, in ns."""
     value = field(fields, name)
     if len(value) != pair.size:
         raise ROSBagFormatException(f'error reading field "{name}": a time has 8 bytes, not {len(value)}')
@@ -250,7 +250,7 @@ def time_field(fields: Mapping[str, bytes], name: str) -> int:
 
 
 def text(value: bytes | str) -> str:
-    """A value of a header as text."""
+    """Return a value of a header as text."""
     return value if isinstance(value, str) else value.decode()
 
 

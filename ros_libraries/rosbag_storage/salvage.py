@@ -187,7 +187,7 @@ def _record_at(data: Bytes, at: int) -> _Record:
 
 
 def _fits(connection: Connection) -> int:
-    """How many parts of a connection bear each other out: its topic and its type are in it twice."""
+    """Return how many parts of a connection bear each other out: its topic and its type are in it twice."""
     topics = (None, connection.topic, connection.topic.encode())
     sums = ("*", connection.md5sum)
     return (connection.header.get("topic") in topics) + (md5sum_of(connection.datatype, connection.msg_def) in sums)

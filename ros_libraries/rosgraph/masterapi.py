@@ -64,7 +64,7 @@ class Master:
         self.handle: Any = ServerProxy(master_uri)
 
     def is_online(self) -> bool:
-        """Whether the master answers."""
+        """Return whether the master answers."""
         try:
             self.getPid()
         except Exception:
@@ -72,7 +72,7 @@ class Master:
         return True
 
     def _succeed(self, args: Any) -> Any:
-        """The value of an answer."""
+        """Return the value of an answer."""
         code, text, value = args
         if code == 1:
             return value
@@ -82,11 +82,11 @@ class Master:
         return self._succeed(getattr(self.handle, method)(self.caller_id, *args))
 
     def getPid(self) -> int:
-        """The master's process number."""
+        """Return the master's process number."""
         return int(self._ask("getPid"))
 
     def getUri(self) -> str:
-        """The master's URI as it knows it."""
+        """Return the master's URI as it knows it."""
         return str(self._ask("getUri"))
 
     # -- parameters --------------------------------------------------------------------------------------------------
@@ -100,19 +100,19 @@ class Master:
         return self._ask("setParam", key, value)
 
     def getParam(self, key: str) -> Any:
-        """The value of a parameter."""
+        """Return the value of a parameter."""
         return self._ask("getParam", key)
 
     def searchParam(self, key: str) -> Any:
-        """The full name of the nearest parameter of that name."""
+        """Return the full name of the nearest parameter of that name."""
         return self._ask("searchParam", key)
 
     def hasParam(self, key: str) -> Any:
-        """Whether there is a parameter."""
+        """Return whether there is a parameter."""
         return self._ask("hasParam", key)
 
     def getParamNames(self) -> Any:
-        """The names of all parameters."""
+        """Return the names of all parameters."""
         return self._ask("getParamNames")
 
     def subscribeParam(self, caller_api: str, key: str) -> Any:
@@ -152,11 +152,11 @@ class Master:
     # -- the graph ---------------------------------------------------------------------------------------------------
 
     def lookupNode(self, node_name: str) -> Any:
-        """The URI of a node."""
+        """Return the URI of a node."""
         return self._ask("lookupNode", node_name)
 
     def lookupService(self, service: str) -> Any:
-        """The URI of a service."""
+        """Return the URI of a service."""
         return self._ask("lookupService", service)
 
     def getPublishedTopics(self, subgraph: str) -> Any:

@@ -26,7 +26,7 @@ REMAP_PATTERN = re.compile(r"^([\~\/A-Za-z]|_|__)[\w\/]*" + REMAP + ".*")
 
 
 def isstring(s: object) -> bool:
-    """Whether something is a text."""
+    """Return whether something is a text."""
     return isinstance(s, str)
 
 
@@ -34,7 +34,7 @@ def isstring(s: object) -> bool:
 
 
 def is_global(name: str) -> bool:
-    """Whether a name begins at the root."""
+    """Return whether a name begins at the root."""
     return bool(name) and name.startswith(SEP)
 
 
@@ -49,12 +49,12 @@ def is_legal_name(name: str | None) -> bool:
 
 
 def is_legal_base_name(name: str | None) -> bool:
-    """Whether a name follows the rules of names without a namespace."""
+    """Return whether a name follows the rules of names without a namespace."""
     return name is not None and _matches(BASE_NAME_LEGAL_CHARS_P, name)
 
 
 def is_legal_remap(arg: str | None) -> bool:
-    """Whether an argument of a command line is a remapping or a parameter of ROS's."""
+    """Return whether an argument of a command line is a remapping or a parameter of ROS's."""
     return arg is not None and _matches(REMAP_PATTERN, arg)
 
 
@@ -67,7 +67,7 @@ def _matches(pattern: re.Pattern[str], text: str) -> bool:
 
 
 def canonicalize_name(name: str) -> str:
-    """A name without doubled or trailing slashes."""
+    """Return a name without doubled or trailing slashes."""
     if not name or name == SEP:
         return name
     plain = SEP.join(part for part in name.split(SEP) if part)
@@ -75,7 +75,7 @@ def canonicalize_name(name: str) -> str:
 
 
 def namespace(name: str) -> str:
-    """The namespace of a name, ending in a slash.
+    """Return the namespace of a name, ending in a slash.
 
     Raises:
         ValueError: None.
@@ -96,7 +96,7 @@ def ns_join(ns: str, name: str) -> str:
 
 
 def make_global_ns(name: str) -> str:
-    """A name with a slash before and behind it.
+    """Return a name with a slash before and behind it.
 
     Raises:
         ValueError: a private name.
@@ -111,7 +111,7 @@ def make_global_ns(name: str) -> str:
 
 
 def get_ros_namespace(env: Mapping[str, str] | None = None, argv: Sequence[str] | None = None) -> str:
-    """The namespace of a program: `__ns:=` on the command line, or ROS_NAMESPACE.
+    """Return the namespace of a program: `__ns:=` on the command line, or ROS_NAMESPACE.
 
     Args:
         env: os.environ by default.
@@ -165,7 +165,7 @@ def resolve_name(name: str, namespace_: str, remappings: Mapping[str, str] | Non
 
 
 def load_mappings(argv: Sequence[str]) -> dict[str, str]:
-    """The `from:=to` arguments of a command line, without parameters (`_name:=value`)."""
+    """Return the `from:=to` arguments of a command line, without parameters (`_name:=value`)."""
     found: dict[str, str] = {}
     for argument in filter(is_legal_remap, argv):
         parts = [part.strip() for part in argument.split(REMAP)]

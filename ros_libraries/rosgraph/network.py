@@ -34,7 +34,7 @@ def _is_unix_like_platform() -> bool:
 
 
 def get_address_override() -> str | None:
-    """The address that `__hostname:=` or `__ip:=`, ROS_HOSTNAME or ROS_IP ask for, or None.
+    """Return the address that `__hostname:=` or `__ip:=`, ROS_HOSTNAME or ROS_IP ask for, or None.
 
     Raises:
         ValueError: an argument with two ":=".
@@ -69,7 +69,7 @@ def _checked(variable: str, address: str) -> str:
 
 
 def use_ipv6() -> bool:
-    """Whether ROS_IPV6 is on."""
+    """Return whether ROS_IPV6 is on."""
     return os.environ.get(ROS_IPV6) == "on"
 
 
@@ -79,12 +79,12 @@ def get_local_addresses() -> list[str]:
 
 
 def get_local_address() -> str:
-    """The address of this machine that ROS uses."""
+    """Return the address of this machine that ROS uses."""
     return get_address_override() or ("::1" if use_ipv6() else get_local_addresses()[0])
 
 
 def is_local_address(hostname: str) -> bool:
-    """Whether a name or address is this machine's."""
+    """Return whether a name or address is this machine's."""
     own = {"localhost", "::1", socket.gethostname(), *get_local_addresses()}
     return hostname in own or hostname.startswith("127.")
 
@@ -100,12 +100,12 @@ def get_bind_address(address: str | None = None) -> str:
 
 
 def get_host_name() -> str:
-    """The name of this machine in URIs."""
+    """Return the name of this machine in URIs."""
     return get_address_override() or socket.gethostname()
 
 
 def create_local_xmlrpc_uri(port: int) -> str:
-    """The URI of a server of this machine."""
+    """Return the URI of a server of this machine."""
     return f"http://{get_host_name()}:{port}/"
 
 
@@ -146,7 +146,7 @@ def decode_ros_handshake_header(header_str: bytes) -> dict[str, str]:
 
 
 def encode_ros_handshake_header(header: Mapping[Any, Any]) -> bytes:
-    """A header of some fields."""
+    """Return a header of some fields."""
     fields = sorted((_encoded(key), _encoded(value)) for key, value in header.items())
     body = b"".join(_SIZE.pack(len(key) + len(value) + 1) + key + b"=" + value for key, value in fields)
     return _SIZE.pack(len(body)) + body

@@ -13,7 +13,7 @@ from rosgraph.network import create_local_xmlrpc_uri, get_bind_address
 
 
 def isstring(s: object) -> bool:
-    """Whether something is a text."""
+    """Return whether something is a text."""
     return isinstance(s, str)
 
 

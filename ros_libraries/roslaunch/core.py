@@ -25,7 +25,7 @@ def printerrlog(msg: str) -> None:
 
 
 def generate_run_id() -> str:
-    """An identifier for a launch."""
+    """Return an identifier for a launch."""
     import uuid
 
     return str(uuid.uuid1())

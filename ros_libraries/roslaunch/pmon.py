@@ -20,7 +20,7 @@ class Process:
         self._app = app
 
     def is_alive(self) -> bool:
-        """Whether it still runs."""
+        """Return whether it still runs."""
         return bool(_processes.is_alive(self._app))
 
     def stop(self, errors: list[str] | None = None) -> None:

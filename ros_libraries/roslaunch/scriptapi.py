@@ -55,6 +55,6 @@ class ROSLaunch:
         self.parent.spin()
 
     def spin_once(self) -> Any:
-        """Whether a node still runs."""
+        """Return whether a node still runs."""
         rospy.sleep(0.1)
         return any(process.is_alive() for process in self.parent.processes)

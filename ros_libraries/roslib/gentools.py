@@ -79,7 +79,7 @@ def _context(get_deps_dict: Dependencies) -> MsgContext:
 
 
 def compute_md5_text(get_deps_dict: Dependencies, spec: Any, rospack: Any = None) -> str:
-    """The text that is hashed."""
+    """Return the text that is hashed."""
     return genmsg.gentools.compute_md5_text(_context(get_deps_dict), spec)
 
 

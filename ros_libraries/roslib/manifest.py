@@ -48,7 +48,7 @@ def manifest_file(package: str, required: bool = True, env: Mapping[str, str] | 
 
 
 def load_manifest(package: str) -> Manifest:
-    """The manifest of a package.
+    """Return the manifest of a package.
 
     Raises:
         InvalidROSPkgException: there is no such package.
@@ -71,6 +71,6 @@ def parse(string: str, filename: str = "string") -> Manifest:
     """Read the text of a manifest.xml.
 
     Raises:
-        InvalidManifest: it is no manifest.
+        InvalidManifest: it is not a manifest.
     """
     return parse_manifest(MANIFEST_FILE, string, filename)

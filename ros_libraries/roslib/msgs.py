@@ -138,7 +138,7 @@ def register(msg_type_name: str, msg_spec: Any) -> None:
 
 
 def is_registered(msg_type_name: str) -> bool:
-    """Whether a definition is known under a full name."""
+    """Return whether a definition is known under a full name."""
     return msg_type_name in REGISTERED_TYPES
 
 
@@ -223,7 +223,7 @@ def load_from_file(file_path: str, package_context: str = "") -> tuple[str, MsgS
 
 
 def load_from_string(text: str, package_context: str = "", full_name: str = "", short_name: str = "") -> MsgSpec:
-    """The definition in a text.
+    """Return the definition in a text.
 
     Raises:
         MsgSpecException: a mistake in it.

@@ -75,12 +75,12 @@ def resource_name(res_pkg_name: str, name: str, my_pkg: str | None = None) -> st
 
 
 def resource_name_base(name: str) -> str:
-    """A resource's name without its package."""
+    """Return a resource's name without its package."""
     return name.rpartition(PRN_SEPARATOR)[2]
 
 
 def resource_name_package(name: str) -> str | None:
-    """The package of a resource's name, or None."""
+    """Return the package of a resource's name, or None."""
     package, separator, _ = name.partition(PRN_SEPARATOR)
     return package if separator else None
 
@@ -98,10 +98,10 @@ def package_resource_name(name: str) -> tuple[str, str]:
 
 
 def is_legal_resource_name(name: str | None) -> bool:
-    """Whether a name follows the rules for resources, with or without a package."""
+    """Return whether a name follows the rules for resources, with or without a package."""
     return name is not None and bool(RESOURCE_NAME_LEGAL_CHARS_P.fullmatch(name)) and "//" not in name
 
 
 def is_legal_resource_base_name(name: str | None) -> bool:
-    """Whether a name follows the rules for resources without a package."""
+    """Return whether a name follows the rules for resources without a package."""
     return name is not None and bool(BASE_RESOURCE_NAME_LEGAL_CHARS_P.fullmatch(name))

@@ -124,7 +124,7 @@ def resource_file(package: str, subdir: str, resource_name: str) -> str:
 def list_pkgs_by_path(
     path: str, packages: list[str] | None = None, cache: dict[str, Any] | None = None, env: Any = None
 ) -> list[str]:
-    """Names of the packages in a folder at any depth.
+    """Return the names of the packages in a folder at any depth.
 
     Args:
         path: the folder.

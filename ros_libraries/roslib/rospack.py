@@ -13,17 +13,17 @@ def rospack_depends_1(pkg: str) -> Sequence[str]:
 
 
 def rospack_depends(pkg: str) -> Sequence[str]:
-    """Names of the packages that a package depends on, also by way of others."""
+    """Return the names of the packages that a package depends on, also by way of others."""
     return rospkg.RosPack().get_depends(pkg)
 
 
 def rospack_depends_on_1(pkg: str) -> Sequence[str]:
-    """Names of the packages that depend on a package themselves."""
+    """Return the names of the packages that depend on a package themselves."""
     return rospkg.RosPack().get_depends_on(pkg, implicit=False)
 
 
 def rospack_depends_on(pkg: str) -> Sequence[str]:
-    """Names of the packages that depend on a package, also by way of others."""
+    """Return the names of the packages that depend on a package, also by way of others."""
     return rospkg.RosPack().get_depends_on(pkg)
 
 

@@ -52,7 +52,7 @@ def srv_file(package: str, type_: str) -> str:
 
 
 def load_from_file(file_name: str, package_context: str = "") -> tuple[str, SrvSpec]:
-    """Name and definition in a file; see roslib.msgs.load_from_file."""
+    """Return the name and definition in a file; see roslib.msgs.load_from_file."""
     short = os.path.basename(file_name).removesuffix(EXT)
     package_context = package_context.rstrip("/")
     name = resource_name(package_context, short)

@@ -50,7 +50,7 @@ def stack_of(pkg: str, env: Env = None) -> str | None:
 
 
 def get_stack_dir(stack: str, env: Env = None) -> str:
-    """The folder of a stack.
+    """Return the folder of a stack.
 
     Raises:
         InvalidROSStackException: there is no such stack.
@@ -62,12 +62,12 @@ def get_stack_dir(stack: str, env: Env = None) -> str:
 
 
 def list_stacks(env: Env = None) -> list[str]:
-    """Names of all stacks."""
+    """Return the names of all stacks."""
     return _stacks(env).list()
 
 
 def list_stacks_by_path(path: str, stacks: list[str] | None = None, cache: dict[str, str] | None = None) -> list[str]:
-    """Names of the stacks in a folder at any depth.
+    """Return the names of the stacks in a folder at any depth.
 
     Args:
         path: the folder.

@@ -71,7 +71,7 @@ def _parsed(parser: OptionParser, args: list[str], most: int = 1) -> tuple[Any, 
 
 
 def _named(mode: str, name: str) -> list[str]:
-    """Full names of the types that a name stands for."""
+    """Return the full names of the types that a name stands for."""
     name = name.removesuffix(mode)
     return [name] if "/" in name else list(rosmsg.rosmsg_search(rospkg.RosPack(), mode, name))
 

@@ -47,7 +47,7 @@ def get_array_type_instance(field_type: str, default_package: str | None = None)
 
 
 def create_names_filter(names: Iterable[str]) -> Callable[[Any], list[str]]:
-    """A filter of fields that leaves some out."""
+    """Return a filter of fields that leaves some out."""
     left_out = list(names)
     return lambda message: [field for field in message.__slots__ if field not in left_out]
 
@@ -61,7 +61,7 @@ def get_yaml_for_msg(
     flow_style_: bool | None = None,
     fill_arrays_: bool = False,
 ) -> str:
-    """A message as YAML.
+    """Return a message as YAML.
 
     Args:
         msg: the message.

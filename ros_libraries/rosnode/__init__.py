@@ -32,7 +32,7 @@ class ROSNodeIOException(ROSNodeException):
 
 
 def _succeed(args: Any) -> Any:
-    """The value of an answer.
+    """Return the value of an answer.
 
     Raises:
         ROSNodeException: the answer is not success.
@@ -85,7 +85,7 @@ def lookup_uri(master: rosgraph.Master, system_state: Any, topic: str, uri: str)
 
 
 def get_node_names(namespace: str | None = None) -> list[str]:
-    """Names of all nodes, or of those in a namespace.
+    """Return the names of all nodes, or of those in a namespace.
 
     Raises:
         ROSNodeIOException: the master does not answer.
@@ -102,7 +102,7 @@ def _names(state: Any) -> list[str]:
 
 
 def get_machines_by_nodes() -> list[str]:
-    """Names of the machines that nodes run on.
+    """Return the names of the machines that nodes run on.
 
     Raises:
         ROSNodeIOException: the master does not answer.
@@ -111,7 +111,7 @@ def get_machines_by_nodes() -> list[str]:
 
 
 def get_nodes_by_machine(machine: str) -> list[str]:
-    """Names of the nodes that run on a machine.
+    """Return the names of the nodes that run on a machine.
 
     Raises:
         ROSNodeException: the machine is unknown.
@@ -178,7 +178,7 @@ def rosnode_ping(node_name: str, max_count: int | None = None, verbose: bool = F
 
 
 def rosnode_ping_all(verbose: bool = False, skip_cache: bool = False) -> tuple[list[str], list[str]]:
-    """The nodes that answer and those that do not.
+    """Return the nodes that answer and those that do not.
 
     Raises:
         ROSNodeIOException: the master does not answer.
@@ -311,7 +311,7 @@ rosnode_debugnode = rosnode_info
 
 
 def _sub_rosnode_listnodes(namespace: str | None = None, list_uri: bool = False, list_all: bool = False) -> str:
-    """The lines that `rosnode list` prints."""
+    """Return the lines that `rosnode list` prints."""
     master = rosgraph.Master(ID)
     lines = []
     for name in sorted(get_node_names(namespace)):

@@ -56,7 +56,7 @@ def _no_master() -> RosParamIOException:
 
 
 def get_param_server() -> rosgraph.Master:
-    """The parameter server."""
+    """Return the parameter server."""
     return rosgraph.Master(make_caller_id(f"rosparam-{os.getpid()}"))
 
 
@@ -153,7 +153,7 @@ def upload_params(ns: str, values: Any, verbose: bool = False) -> None:
 
 
 def get_param(param: str) -> Any:
-    """The value of a parameter, or a namespace.
+    """Return the value of a parameter, or a namespace.
 
     Raises:
         rosgraph.MasterError: it is not set.
@@ -217,7 +217,7 @@ def delete_param(param: str, verbose: bool = False) -> None:
 
 
 def list_params(ns: str) -> list[str]:
-    """Names of the parameters in a namespace, sorted.
+    """Return the names of the parameters in a namespace, sorted.
 
     Raises:
         RosParamIOException: the parameter server does not answer.

@@ -80,10 +80,10 @@ def _dumper() -> Any:
 
 
 def documents(text: str) -> list[Any]:
-    """The documents of a YAML text."""
+    """Return the documents of a YAML text."""
     return list(yaml.load_all(text, Loader=_loader()))
 
 
 def text_of(value: Any) -> str:
-    """A value in YAML."""
+    """Return a value in YAML."""
     return str(yaml.dump(value, Dumper=_dumper()))

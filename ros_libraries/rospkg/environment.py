@@ -50,15 +50,15 @@ def get_ros_home(env: Env = None) -> str:
 
 
 def get_log_dir(env: Env = None) -> str:
-    """The folder of log files."""
+    """Return the folder of log files."""
     return _environment(env).get(ROS_LOG_DIR) or os.path.join(get_ros_home(env), "log")
 
 
 def get_test_results_dir(env: Env = None) -> str:
-    """The folder of test results."""
+    """Return the folder of test results."""
     return _environment(env).get(ROS_TEST_RESULTS_DIR) or os.path.join(get_ros_home(env), "test_results")
 
 
 def get_etc_ros_dir(env: Env = None) -> str:
-    """The folder of ROS's settings."""
+    """Return the folder of ROS's settings."""
     return _environment(env).get(ROS_ETC_DIR, "/etc/ros")

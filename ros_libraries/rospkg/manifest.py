@@ -75,7 +75,7 @@ class Export:
         self.str = str
 
     def get(self, attr: str) -> str | None:
-        """An attribute, or None."""
+        """Return an attribute, or None."""
         return self.attrs.get(attr)
 
 
@@ -119,7 +119,7 @@ class Manifest:
         self.unknown_tags: list[Any] = []
 
     def get_export(self, tag: str, attr: str, convert: bool = True) -> list[str]:
-        """Values of an attribute in exports.
+        """Return values of an attribute in exports.
 
         Args:
             tag: name of the export's element.
@@ -162,7 +162,7 @@ def parse_manifest(manifest_name: str, string: str, filename: str = "string") ->
     """Read a manifest.xml or stack.xml.
 
     Raises:
-        InvalidManifest: it is no manifest.
+        InvalidManifest: it is not a manifest.
     """
     kind = "stack" if manifest_name == STACK_FILE else "package"
     root = _root(string, filename, kind)

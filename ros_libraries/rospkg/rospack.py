@@ -33,7 +33,7 @@ class ManifestManager:
 
     @classmethod
     def get_instance(cls, ros_paths: Sequence[str] | None = None) -> Any:
-        """The instance for some folders, made when first asked for."""
+        """Return the instance for some folders, made when first asked for."""
         instances: dict[str, Any] = vars(cls).get("_instances") or {}
         if not instances:
             cls._instances = instances  # type: ignore[attr-defined]
@@ -43,7 +43,7 @@ class ManifestManager:
         return instances[key]
 
     def get_ros_paths(self) -> list[str]:
-        """The folders that packages are looked for in."""
+        """Return the folders in which packages are searched."""
         return self._ros_paths[:]
 
     ros_paths = property(get_ros_paths)
@@ -58,11 +58,11 @@ class ManifestManager:
         return self._places
 
     def list(self) -> list[str]:
-        """Names of all."""
+        """Return the names of all."""
         return [*self._folders()]
 
     def get_path(self, name: str) -> str:
-        """The folder of a package.
+        """Return the folder of a package.
 
         Raises:
             ResourceNotFound: there is no such package.
@@ -72,7 +72,7 @@ class ManifestManager:
         return self._folders()[name]
 
     def get_manifest(self, name: str) -> Manifest:
-        """The manifest of a package.
+        """Return the manifest of a package.
 
         Raises:
             ResourceNotFound: there is no such package.
@@ -179,7 +179,7 @@ class RosStack(ManifestManager):
         return found
 
     def packages_of(self, stack: str) -> Sequence[str]:
-        """Names of the packages in a stack.
+        """Return the names of the packages in a stack.
 
         Raises:
             ResourceNotFound: there is no such stack.
@@ -257,7 +257,7 @@ def get_stack_version_by_dir(stack_dir: str) -> str | None:
 
 
 def get_package_name(path: str) -> str | None:
-    """Name of the package that a file or folder lies in, or None."""
+    """Return the name of the package that a file or folder lies in, or None."""
     for folder in _upwards(os.path.realpath(path)):
         if _has(folder, MANIFEST_FILE):
             return os.path.basename(folder)
@@ -267,7 +267,7 @@ def get_package_name(path: str) -> str | None:
 
 
 def _upwards(folder: str) -> Iterable[str]:
-    """A folder and those above it."""
+    """Return a folder and those above it."""
     while folder and os.path.dirname(folder) != folder:
         yield folder
         folder = os.path.dirname(folder)

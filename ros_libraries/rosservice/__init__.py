@@ -38,7 +38,7 @@ def _no_master() -> ROSServiceIOException:
 
 
 def _succeed(args: Any) -> Any:
-    """The value of an answer.
+    """Return the value of an answer.
 
     Raises:
         ROSServiceException: the answer is not success.
@@ -76,7 +76,7 @@ def get_service_list(node: str | None = None, namespace: str | None = None, incl
 
 
 def get_service_node(service_name: str) -> str | None:
-    """Name of the node that offers a service, or None."""
+    """Return the name of the node that offers a service, or None."""
     found = dict(get_service_list(include_nodes=True)).get(service_name)
     return found[0] if found else None
 
@@ -129,7 +129,7 @@ def get_service_type(service_name: str) -> str | None:
 
 
 def rosservice_find(service_type: str) -> list[str]:
-    """Names of the services of a type.
+    """Return the names of the services of a type.
 
     Raises:
         ROSServiceIOException: the master does not answer.
@@ -167,12 +167,12 @@ def get_service_class_by_name(service_name: str) -> Any:
 
 
 def has_service_args(service_name: str, service_class: Any = None) -> bool:
-    """Whether a service's request has fields."""
+    """Return whether a service's request has fields."""
     return len(_class_of(service_name, service_class)._request_class.__slots__) > 0
 
 
 def get_service_args(service_name: str) -> str:
-    """Names of the fields of a service's request."""
+    """Return the names of the fields of a service's request."""
     return str(genpy.message.get_printable_message_args(_class_of(service_name, None)._request_class))
 
 

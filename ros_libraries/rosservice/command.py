@@ -62,7 +62,7 @@ def _one_service(command: str, args: list[str]) -> str:
 
 
 def _printer(command: str, ask: Callable[[str], str | None]) -> Callable[[list[str]], None]:
-    """A command that prints one thing about a service."""
+    """Return a command that prints one thing about a service."""
 
     def print_it(args: list[str]) -> None:
         name = _one_service(command, args)

@@ -19,14 +19,14 @@ _PUBLISHERS, _SUBSCRIBERS = 0, 1  # of a master's state
 
 
 def get_master() -> Any:
-    """An XML-RPC handle of the master."""
+    """Return an XML-RPC handle of the master."""
     from xmlrpc.client import ServerProxy
 
     return ServerProxy(rosgraph.get_master_uri())
 
 
 def is_subscriber(topic: str, subscriber_id: str) -> bool:
-    """Whether a node subscribes to a topic.
+    """Return whether a node subscribes to a topic.
 
     Args:
         topic: its resolved name.
@@ -39,7 +39,7 @@ def is_subscriber(topic: str, subscriber_id: str) -> bool:
 
 
 def is_publisher(topic: str, publisher_id: str) -> bool:
-    """Whether a node publishes a topic; see `is_subscriber`."""
+    """Return whether a node publishes a topic; see `is_subscriber`."""
     return _is_member(_PUBLISHERS, topic, publisher_id)
 
 

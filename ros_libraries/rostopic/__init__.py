@@ -148,7 +148,7 @@ def _has_field(kind: str, path: str) -> bool:
 
 
 def get_topic_class(topic: str, blocking: bool = False) -> tuple[Any, str | None, Any]:
-    """As `get_topic_type`, with the message class in place of the type.
+    """Return the same as `get_topic_type`, with the message class in place of the type.
 
     Raises:
         ROSTopicException: the class cannot be found.
@@ -164,7 +164,7 @@ def get_topic_class(topic: str, blocking: bool = False) -> tuple[Any, str | None
 
 
 def find_by_type(topic_type: str) -> list[str]:
-    """Names of the topics of a type.
+    """Return the names of the topics of a type.
 
     Raises:
         ROSTopicIOException: the master does not answer.

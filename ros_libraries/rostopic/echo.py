@@ -75,7 +75,7 @@ class CallbackEcho:
         fixed_numeric_width: int | None = None,
         value_transform: Callable[..., Any] | None = None,
     ) -> str:
-        """A message as YAML."""
+        """Return a message as YAML."""
         if type_information and type_information.startswith("uint8["):
             val = list(val)
         if value_transform is not None:

@@ -65,7 +65,7 @@ def _field(value: Any, steps: list[tuple[str, Any]], pattern: str) -> Any:
 
 
 def _str_plot_fields(val: Any, f: str, field_filter: Filter | None) -> str:
-    """The title line: names of all plain values in a message, `f` before each."""
+    """Return the title line: names of all plain values in a message, `f` before each."""
     return "time," + ",".join(name for name, _ in _plain(val, f, field_filter))
 
 
@@ -105,7 +105,7 @@ def _text(value: Any, time_offset: Any) -> str:
 
 
 def _plain(value: Any, name: str, field_filter: Filter | None) -> Iterable[tuple[str, Any]]:
-    """The plain values in a message, with their names."""
+    """Return the plain values in a message, with their names."""
     if hasattr(value, "_slot_types") and not isinstance(value, genpy.TVal):
         types = dict(zip(value.__slots__, value._slot_types, strict=False))
         for field in value.__slots__ if field_filter is None else field_filter(value):

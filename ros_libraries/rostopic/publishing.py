@@ -21,7 +21,7 @@ SUBSCRIBER_TIMEOUT = 5.0
 
 
 def create_publisher(topic_name: str, topic_type: str, latch: bool, disable_rostime: bool = True) -> tuple[Any, Any]:
-    """A publisher and its message class. The program becomes a node, if it is none yet.
+    """Return a publisher and its message class. The program becomes a node, if it is none yet.
 
     Args:
         topic_name: the topic.
@@ -147,7 +147,7 @@ def wait_for_subscriber(pub: Any, timeout: float) -> None:
 
 
 def file_yaml_arg(filename: str) -> Callable[[], Iterator[Any]]:
-    """A function that gives the documents of a YAML file, each in a list.
+    """Return a function that gives the documents of a YAML file, each in a list.
 
     Raises:
         ROSTopicException: no such file, or (the function) no YAML.
@@ -168,7 +168,7 @@ def file_yaml_arg(filename: str) -> Callable[[], Iterator[Any]]:
 
 
 def stdin_yaml_arg() -> Iterator[Any]:
-    """The YAML documents of stdin, each ended by a line `---`."""
+    """Yield the YAML documents of stdin, each ended by a line `---`."""
     import yaml
 
     lines: list[str] = []

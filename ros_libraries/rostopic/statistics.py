@@ -59,7 +59,7 @@ class ROSTopicHz:
         return self._of(None).values
 
     def get_times(self, topic: str | None = None) -> list[float]:
-        """Times between messages, in seconds."""
+        """Return times between messages, in seconds."""
         return self._of(topic).values
 
     def set_times(self, value: list[float], topic: str | None = None) -> None:
@@ -67,7 +67,7 @@ class ROSTopicHz:
         self._of(topic).values = value
 
     def get_msg_t0(self, topic: str | None = None) -> float:
-        """Time of the first message; -1 before it."""
+        """Return the time of the first message; -1 before it."""
         return self._of(topic).first
 
     def set_msg_t0(self, value: float, topic: str | None = None) -> None:
@@ -75,7 +75,7 @@ class ROSTopicHz:
         self._of(topic).first = value
 
     def get_msg_tn(self, topic: str | None = None) -> float:
-        """Time of the last message."""
+        """Return the time of the last message."""
         return self._of(topic).last
 
     def set_msg_tn(self, value: float, topic: str | None = None) -> None:
@@ -83,7 +83,7 @@ class ROSTopicHz:
         self._of(topic).last = value
 
     def get_last_printed_tn(self, topic: str | None = None) -> float:
-        """Time of the message that was the last one when `get_hz` was called last."""
+        """Return the time of the message that was the last one when `get_hz` was called last."""
         return self._of(topic).shown
 
     def set_last_printed_tn(self, value: float, topic: str | None = None) -> None:

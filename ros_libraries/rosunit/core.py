@@ -58,7 +58,7 @@ def xml_results_file(
 
 
 def rostest_name_from_path(pkg_dir: str, test_file: str) -> str:
-    """The name of a test file's results: its path in the package, with "_" for "/" and without its ending."""
+    """Return the name of a test file's results: its path in the package, with "_" for "/" and without its ending."""
     path = os.path.abspath(test_file)
     if path.startswith(pkg_dir):
         test_file = path[len(pkg_dir) :].lstrip(os.sep)

@@ -22,7 +22,7 @@ class TestInfo:
         self.text = text
 
     def xml(self) -> str:
-        """The tag, as text."""
+        """Return the tag, as text."""
         return f"<{self.kind} type={quoteattr(self.type)}>{escape(self.text)}</{self.kind}>"
 
 
@@ -73,7 +73,7 @@ class TestCaseResult:
         self.errors.append(error)
 
     def xml(self) -> str:
-        """The tag, as text."""
+        """Return the tag, as text."""
         inner = "".join(info.xml() for info in (*self.failures, *self.errors))
         names = f"classname={quoteattr(self.classname)} name={quoteattr(self.name)}"
         return f'<testcase {names} time="{self.time}">{inner}</testcase>'
@@ -112,7 +112,7 @@ class Result:
         self.test_case_results.append(r)
 
     def xml(self) -> str:
-        """The suite, as text."""
+        """Return the suite, as text."""
         counts = (
             f'tests="{self.num_tests}" failures="{self.num_failures}" time="{self.time}" errors="{self.num_errors}"'
         )

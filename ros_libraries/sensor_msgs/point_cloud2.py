@@ -79,7 +79,7 @@ def read_points_list(
 
 
 def create_cloud(header: Any, fields: Sequence[Any], points: Sequence[Iterable[Any]]) -> Any:
-    """A cloud of one row.
+    """Return a cloud of one row.
 
     Args:
         header: a std_msgs/Header.
@@ -104,7 +104,7 @@ def create_cloud(header: Any, fields: Sequence[Any], points: Sequence[Iterable[A
 
 
 def create_cloud_xyz32(header: Any, points: Sequence[Iterable[float]]) -> Any:
-    """A cloud of one row with the fields x, y and z as float32; see `create_cloud`."""
+    """Return a cloud of one row with the fields x, y and z as float32; see `create_cloud`."""
     fields = [PointField(name, 4 * at, PointField.FLOAT32, 1) for at, name in enumerate("xyz")]
     return create_cloud(header, fields, points)
 

@@ -34,14 +34,14 @@ __all__ = [
 
 
 def xyz_to_mat44(pos: Any) -> Any:
-    """The matrix of a message with x, y, z."""
+    """Return the matrix of a message with x, y, z."""
     from tf import transformations
 
     return transformations.translation_matrix((pos.x, pos.y, pos.z))
 
 
 def xyzw_to_mat44(ori: Any) -> Any:
-    """The matrix of a message with x, y, z, w."""
+    """Return the matrix of a message with x, y, z, w."""
     from tf import transformations
 
     return transformations.quaternion_matrix((ori.x, ori.y, ori.z, ori.w))
@@ -56,33 +56,33 @@ class TransformerROS(Transformer):
     """
 
     def asMatrix(self, target_frame: str, hdr: Any) -> Any:
-        """The 4x4 matrix (numpy.ndarray) that takes coordinates in a header's frame to the target frame."""
+        """Return the 4x4 matrix (numpy.ndarray) that takes coordinates in a header's frame to the target frame."""
         return self.fromTranslationRotation(*self.lookupTransform(target_frame, hdr.frame_id, hdr.stamp))
 
     def fromTranslationRotation(self, translation: Sequence[float], rotation: Sequence[float]) -> Any:
-        """The 4x4 matrix (numpy.ndarray) of a translation (x, y, z) and a rotation (x, y, z, w)."""
+        """Return the 4x4 matrix (numpy.ndarray) of a translation (x, y, z) and a rotation (x, y, z, w)."""
         from tf import transformations
 
         return transformations.translation_matrix(translation) @ transformations.quaternion_matrix(rotation)
 
     def transformPoint(self, target_frame: str, ps: Any) -> Any:
-        """A geometry_msgs/PointStamped."""
+        """Return a geometry_msgs/PointStamped."""
         found = PointStamped(point=_moved(self.asMatrix(target_frame, ps.header), ps.point, Point))
         return _stamped(found, target_frame, ps)
 
     def transformVector3(self, target_frame: str, v3s: Any) -> Any:
-        """A geometry_msgs/Vector3Stamped: it is turned, not moved."""
+        """Return a geometry_msgs/Vector3Stamped: it is turned, not moved."""
         matrix = self.asMatrix(target_frame, v3s.header)
         matrix[:3, 3] = 0.0
         return _stamped(Vector3Stamped(vector=_moved(matrix, v3s.vector, Vector3)), target_frame, v3s)
 
     def transformQuaternion(self, target_frame: str, ps: Any) -> Any:
-        """A geometry_msgs/QuaternionStamped."""
+        """Return a geometry_msgs/QuaternionStamped."""
         matrix = self.asMatrix(target_frame, ps.header) @ xyzw_to_mat44(ps.quaternion)
         return _stamped(QuaternionStamped(quaternion=_orientation(matrix)), target_frame, ps)
 
     def transformPose(self, target_frame: str, ps: Any) -> Any:
-        """A geometry_msgs/PoseStamped."""
+        """Return a geometry_msgs/PoseStamped."""
         matrix = self.asMatrix(target_frame, ps.header)
         matrix = matrix @ (xyz_to_mat44(ps.pose.position) @ xyzw_to_mat44(ps.pose.orientation))
         pose = Pose(Point(*matrix[:3, 3].tolist()), _orientation(matrix))

@@ -16,7 +16,7 @@ _NOT_LISTENING = "cannot wait for transform without a dedicated thread that list
 
 
 def strip_leading_slash(s: str) -> str:
-    """A frame's name as tf2 wants it."""
+    """Return a frame's name as tf2 wants it."""
     return s.removeprefix("/")
 
 
@@ -55,34 +55,34 @@ class Transformer:
         return self._buffer._allFramesAsDot(current_time) if current_time else self._buffer._allFramesAsDot()
 
     def allFramesAsString(self) -> str:
-        """A line for each frame that has a parent."""
+        """Return a line for each frame that has a parent."""
         return self._buffer.all_frames_as_string()
 
     def frameExists(self, frame_id: str) -> bool:
-        """Whether a frame has a parent."""
+        """Return whether a frame has a parent."""
         return frame_id in self.getFrameStrings()
 
     def getFrameStrings(self) -> list[str]:
-        """Names of the frames that have a parent."""
+        """Return the names of the frames that have a parent."""
         lines = self._buffer.all_frames_as_yaml().splitlines()
         return [line.removesuffix(": ") for line in lines if line.endswith(": ")]
 
     def chain(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> list[str]:
-        """The frames on the way from the source frame, by way of the fixed one, to the target frame."""
+        """Return the frames on the way from the source frame, by way of the fixed one, to the target frame."""
         return self._buffer._chain(target_frame, target_time, source_frame, source_time, fixed_frame)
 
     # -- asking ------------------------------------------------------------------------------------------------------
 
     def canTransform(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """Whether `lookupTransform` would succeed: 1 or 0."""
+        """Return whether `lookupTransform` would succeed: 1 or 0."""
         return self._buffer.can_transform(strip_leading_slash(target_frame), strip_leading_slash(source_frame), time)
 
     def canTransformFull(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Any:
-        """Whether `lookupTransformFull` would succeed: 1 or 0."""
+        """Return whether `lookupTransformFull` would succeed: 1 or 0."""
         target, source, fixed = map(strip_leading_slash, (target_frame, source_frame, fixed_frame))
         return self._buffer.can_transform_full(target, target_time, source, source_time, fixed)
 
@@ -132,7 +132,7 @@ class Transformer:
     # -- looking up --------------------------------------------------------------------------------------------------
 
     def getLatestCommonTime(self, source_frame: str, dest_frame: str) -> Any:
-        """The latest time that all frames between two have in common, a rospy.Time."""
+        """Return the latest time that all frames between two have in common, a rospy.Time."""
         return self._buffer.get_latest_common_time(strip_leading_slash(source_frame), strip_leading_slash(dest_frame))
 
     def lookupTransform(self, target_frame: str, source_frame: str, time: Any) -> tuple[Numbers, Numbers]:
@@ -155,7 +155,7 @@ class Transformer:
     def lookupTransformFull(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> tuple[Numbers, Numbers]:
-        """The transform from the source frame at one time to the target frame at another.
+        """Return the transform from the source frame at one time to the target frame at another.
 
         Args:
             target_frame: name of a frame.

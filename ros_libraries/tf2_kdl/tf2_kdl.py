@@ -51,7 +51,7 @@ def from_msg_vector(msg: Any) -> Any:
 
 
 def convert_vector(vector: Any) -> Any:
-    """A copy of a vector with a header."""
+    """Return a copy of a vector with a header."""
     return tf2_ros.Stamped(PyKDL.Vector(vector), vector.header.stamp, vector.header.frame_id)
 
 

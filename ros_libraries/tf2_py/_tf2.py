@@ -114,7 +114,7 @@ class BufferCore:
     def lookup_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Any:
-        """The transform from the source frame at one time to the target frame at another.
+        """Return the transform from the source frame at one time to the target frame at another.
 
         Args:
             target_frame: name of a frame.
@@ -138,7 +138,7 @@ class BufferCore:
         return message_of(target_frame, source_frame, when, product(second, first))
 
     def _lookup(self, target: str, source: str, time: int) -> tuple[int, Rigid]:
-        """Time and transform of a way through the tree."""
+        """Return the time and transform of a way through the tree."""
         tree = self._tree
         if target == source:
             cache = None if time else tree.caches.get(target)
@@ -166,7 +166,7 @@ class BufferCore:
     # -- asking ------------------------------------------------------------------------------------------------------
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[int, str]:
-        """Whether `lookup_transform_core` would succeed: 1 or 0, and why not."""
+        """Return whether `lookup_transform_core` would succeed: 1 or 0, and why not."""
         at = to_ns(time)
         if target_frame == source_frame:
             return 1, ""
@@ -177,7 +177,7 @@ class BufferCore:
     def can_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> tuple[int, str]:
-        """Whether `lookup_transform_full_core` would succeed: 1 or 0, and why not."""
+        """Return whether `lookup_transform_full_core` would succeed: 1 or 0, and why not."""
         at_target, at_source = to_ns(target_time), to_ns(source_time)
         frames = {"target_frame": target_frame, "source_frame": source_frame, "fixed_frame": fixed_frame}
         problem = self._unknown(frames)
@@ -221,11 +221,11 @@ class BufferCore:
     # -- reports -----------------------------------------------------------------------------------------------------
 
     def all_frames_as_string(self) -> str:
-        """A line for each frame that has a parent."""
+        """Return a line for each frame that has a parent."""
         return self._tree.as_string()
 
     def all_frames_as_yaml(self) -> str:
-        """The frames with parent, authority, rate and times, as YAML."""
+        """Return the frames with parent, authority, rate and times, as YAML."""
         return reports.as_yaml(self._tree, self._authorities)
 
     def _allFramesAsDot(self, time: Any = None) -> str:

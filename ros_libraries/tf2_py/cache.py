@@ -16,7 +16,7 @@ REPEATED_DATA = "TF_REPEATED_DATA ignoring data with redundant timestamp"
 
 
 def seconds(time_ns: int) -> float:
-    """A time in ns as ROS's C++ code gives it in seconds."""
+    """Return a time in ns as ROS's C++ code gives it in seconds."""
     whole, part = divmod(time_ns, 1_000_000_000)
     return whole + 1e-9 * part
 
@@ -122,7 +122,7 @@ class StaticCache:
         return ""
 
     def sample(self, time: int) -> Sample | None:
-        """The sample."""
+        """Return the sample."""
         return self._sample
 
     def complaint(self, time: int) -> str:
@@ -130,7 +130,7 @@ class StaticCache:
         return ""
 
     def latest(self) -> tuple[int, str]:
-        """Stamp 0, which stands for all times, and the parent."""
+        """Return stamp 0, which stands for all times, and the parent."""
         return 0, "" if self._sample is None else self._sample[0]
 
     def oldest_stamp(self) -> int:

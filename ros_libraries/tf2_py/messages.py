@@ -20,7 +20,7 @@ _NS_PER_S = 1_000_000_000
 
 
 def to_ns(time: Any) -> int:
-    """A rospy.Time or rospy.Duration in ns.
+    """Return a rospy.Time or rospy.Duration in ns.
 
     Raises:
         TypeError: it is neither.
@@ -34,12 +34,12 @@ def to_ns(time: Any) -> int:
 
 
 def time_of(ns: int) -> Any:
-    """A rospy.Time."""
+    """Return a rospy.Time."""
     return rospy.Time(*divmod(ns, _NS_PER_S))
 
 
 def rigid_of(transform: Any) -> Rigid:
-    """The numbers of a geometry_msgs/Transform, or of something with the same attributes."""
+    """Return the numbers of a geometry_msgs/Transform, or of an object with the same attributes."""
     t, r = transform.translation, transform.rotation
     for part, value, kind in (("translation", t, Vector3), ("rotation", r, Quaternion)):
         if not isinstance(value, kind):
@@ -54,7 +54,7 @@ def rigid_of(transform: Any) -> Rigid:
 
 
 def message_of(target: str, source: str, time: int, rigid: Rigid) -> Any:
-    """A lookup's result as a geometry_msgs/TransformStamped."""
+    """Return a lookup's result as a geometry_msgs/TransformStamped."""
     found = TransformStamped()
     header, transform = found.header, found.transform
     header.stamp = time_of(time)

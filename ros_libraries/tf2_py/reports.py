@@ -23,7 +23,7 @@ class Row(NamedTuple):
 
 
 def rows(tree: Tree, authorities: Mapping[str, str]) -> Iterator[Row]:
-    """The frames that have a sample."""
+    """Yield the frames that have a sample."""
     for name, cache in tree.caches.items():
         stamp, parent = (0, "") if cache is None else cache.latest()
         if cache is not None and parent:
@@ -78,7 +78,7 @@ def _edge(row: Row, now: float) -> str:
 
 
 def _legend(name: str, now: float) -> list[str]:
-    """The box with the title, which hangs on a root."""
+    """Return the box with the title, which hangs on a root."""
     recorded = [f'"Recorded at time: {now:.3f}"[ shape=plaintext ] ;\n }}->"{name}";'] if now else [f'}}->"{name}";']
     head = ' subgraph cluster_legend { style=bold; color=black; label ="view_frames Result";'
     return ["edge [style=invis];", "\n".join([head, *recorded])]

@@ -19,7 +19,7 @@ IDENTITY: Rigid = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
 
 def compose(samples: Iterable[Sample]) -> Rigid:
-    """The transform that applying all samples means, the first one first."""
+    """Return the transform that applying all samples means, the first one first."""
     vx = vy = vz = qx = qy = qz = 0.0
     qw = 1.0
     for _, tx, ty, tz, x, y, z, w in samples:
@@ -40,7 +40,7 @@ def compose(samples: Iterable[Sample]) -> Rigid:
 
 
 def inverse(transform: Rigid) -> Rigid:
-    """The transform back. As in tf2 its rotation is multiplied by none, which decides the signs of zeros."""
+    """Return the inverse transform. As in tf2 its rotation is multiplied by none, which decides the signs of zeros."""
     x, y, z, qx, qy, qz, qw = transform
     ax = qy * z - qw * x - qz * y
     ay = qz * x - qw * y - qx * z

@@ -128,7 +128,7 @@ class Tree:
         return found
 
     def chain(self, target: str, source: str, time: int) -> list[str]:
-        """The frames on the way from source to target.
+        """Return the frames on the way from source to target.
 
         Raises:
             ConnectivityException, ExtrapolationException, LookupException: as `path`.
@@ -141,11 +141,11 @@ class Tree:
         return up + down[-2::-1]
 
     def loop_text(self) -> str:
-        """The text of the error about a loop."""
+        """Return the text of the error about a loop."""
         return f"The tf tree is invalid because it contains a loop.\n{self.as_string()}\n"
 
     def as_string(self) -> str:
-        """A line for each frame that was given a parent."""
+        """Return a line for each frame that was given a parent."""
         named = ((name, cache.latest()[1] or "NO_PARENT") for name, cache in self.caches.items() if cache is not None)
         return "".join(f"Frame {name} exists with parent {parent}.\n" for name, parent in named)
 

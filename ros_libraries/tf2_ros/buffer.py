@@ -71,7 +71,7 @@ class Buffer(BufferCore, BufferInterface):
         fixed_frame: str,
         timeout: Any = NO_WAIT,
     ) -> Any:
-        """The transform from the source frame at one time to the target frame at another.
+        """Return the transform from the source frame at one time to the target frame at another.
 
         Args:
             target_frame: name of a frame.

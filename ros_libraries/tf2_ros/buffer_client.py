@@ -100,7 +100,7 @@ class BufferClient(BufferInterface):
         )
 
     def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_WAIT) -> bool:
-        """Whether `lookup_transform` succeeds."""
+        """Return whether `lookup_transform` succeeds."""
         try:
             self.lookup_transform(target_frame, source_frame, time, timeout)
         except TransformException:
@@ -116,7 +116,7 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Any = NO_WAIT,
     ) -> bool:
-        """Whether `lookup_transform_full` succeeds."""
+        """Return whether `lookup_transform_full` succeeds."""
         try:
             self.lookup_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
         except TransformException:

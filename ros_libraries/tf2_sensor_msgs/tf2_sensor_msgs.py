@@ -12,7 +12,7 @@ from tf2_geometry_msgs.tf2_geometry_msgs import transform_to_kdl
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """A cloud is a message already."""
+    """Return the cloud, which is a message already."""
     return msg
 
 

@@ -17,12 +17,12 @@ _NAME = "/rosviz"
 
 
 def topic_node(topic: str) -> str:
-    """The name of a topic in the picture."""
+    """Return the name of a topic in the picture."""
     return " " + topic
 
 
 def node_topic(node: str) -> str:
-    """The topic of such a name."""
+    """Return the topic of such a name."""
     return node[1:]
 
 
@@ -72,7 +72,8 @@ class Edge:
 
 
 def edge_args(start: str, dest: str, direction: str, label: str) -> list[tuple[str, str, str]]:
-    """The arguments of the edges between two names, in the direction "i", "o" or "b" (both) as seen from the first."""
+    """Return the arguments of the edges between two names, in the direction "i", "o" or "b" (both) as seen from the
+    first."""
     edges = {"o": [(start, dest, label)], "i": [(dest, start, label)]}
     return edges.get(direction, []) if direction != "b" else edges["o"] + edges["i"]
 
@@ -93,7 +94,7 @@ class EdgeList:
         return edge in self.edges_by_start.get(edge.key, [])
 
     def has(self, edge: Edge) -> bool:
-        """Whether an edge is there."""
+        """Return whether an edge is there."""
         return edge in self
 
     def add(self, edge: Edge) -> bool:

@@ -52,7 +52,7 @@ class Matrix3x3:
         return self.m_el[i]
 
     def getColumn(self, i: int) -> Vector3:
-        """A copy of a column."""
+        """Return a copy of a column."""
         return Vector3(*(row[i] for row in self))
 
     def setValue(self, *cells: float) -> None:
@@ -66,7 +66,7 @@ class Matrix3x3:
 
     @staticmethod
     def getIdentity() -> Matrix3x3:
-        """The identity."""
+        """Return the identity."""
         return Matrix3x3()
 
     def setFromOpenGLSubMatrix(self, m: Sequence[float]) -> None:
@@ -74,7 +74,7 @@ class Matrix3x3:
         self.setValue(*(m[column * 4 + row] for row in range(3) for column in range(3)))
 
     def getOpenGLSubMatrix(self) -> list[float]:
-        """Three columns of four numbers, the last one 0."""
+        """Return three columns of four numbers, the last one 0."""
         return [cell for column in range(3) for cell in (*self.getColumn(column), 0.0)]
 
     # -- rotations ---------------------------------------------------------------------------------------------------
@@ -91,7 +91,7 @@ class Matrix3x3:
         self.setValue(*first, *second, xz - wy, yz + wx, 1.0 - (xx + yy))
 
     def getRotation(self) -> Quaternion:
-        """The quaternion of this rotation."""
+        """Return the quaternion of this rotation."""
         m = self.m_el
         trace = m[0][0] + m[1][1] + m[2][2]
         found = Quaternion()
@@ -191,20 +191,20 @@ class Matrix3x3:
         return Matrix3x3(*(row[at] for at in range(3) for row in self))
 
     def absolute(self) -> Matrix3x3:
-        """The absolute values."""
+        """Return the absolute values."""
         return Matrix3x3(*(abs(cell) for row in self for cell in row))
 
     def cofac(self, r1: int, c1: int, r2: int, c2: int) -> float:
-        """The determinant of two rows and two columns."""
+        """Return the determinant of two rows and two columns."""
         m = self.m_el
         return m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
 
     def determinant(self) -> float:
-        """The determinant."""
+        """Return the determinant."""
         return self[0].triple(self[1], self[2])
 
     def adjoint(self) -> Matrix3x3:
-        """The adjoint: the inverse times the determinant."""
+        """Return the adjoint: the inverse times the determinant."""
         others = ((1, 2), (2, 0), (0, 1))
         return Matrix3x3(*(self.cofac(b, c, d, e) for c, e in others for b, d in others))
 

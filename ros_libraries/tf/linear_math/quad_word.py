@@ -21,19 +21,19 @@ class QuadWord:
         self.m_floats = [float(x), float(y), float(z), float(w)]
 
     def x(self) -> float:
-        """The first number."""
+        """Return the first number."""
         return self.m_floats[0]
 
     def y(self) -> float:
-        """The second number."""
+        """Return the second number."""
         return self.m_floats[1]
 
     def z(self) -> float:
-        """The third number."""
+        """Return the third number."""
         return self.m_floats[2]
 
     def w(self) -> float:
-        """The fourth number."""
+        """Return the fourth number."""
         return self.m_floats[3]
 
     getX, getY, getZ, getW = x, y, z, w

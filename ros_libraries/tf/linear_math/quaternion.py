@@ -106,7 +106,7 @@ class Quaternion(QuadWord):
         return self
 
     def inverse(self) -> Quaternion:
-        """The rotation back."""
+        """Return the inverse rotation."""
         x, y, z, w = self
         return Quaternion(-x, -y, -z, w)
 
@@ -138,15 +138,15 @@ class Quaternion(QuadWord):
         return tfAcos(self.dot(q) / sqrt(self.length2() * q.length2()))
 
     def angleShortestPath(self, q: Quaternion) -> float:
-        """The angle to another rotation along the shortest path, in rad."""
+        """Return the angle to another rotation along the shortest path, in rad."""
         return tfAcos(abs(self.dot(q)) / sqrt(self.length2() * q.length2())) * 2.0
 
     def getAngle(self) -> float:
-        """The angle of the rotation, 0 to 2 pi rad."""
+        """Return the angle of the rotation, 0 to 2 pi rad."""
         return 2.0 * tfAcos(self[3])
 
     def getAngleShortestPath(self) -> float:
-        """The angle of the rotation along the shortest path, 0 to pi rad."""
+        """Return the angle of the rotation along the shortest path, 0 to pi rad."""
         return 2.0 * tfAcos(abs(self[3]))
 
     def getAxis(self) -> Vector3:
@@ -170,7 +170,7 @@ class Quaternion(QuadWord):
         return qd if difference.length2() < total.length2() else -qd
 
     def slerp(self, q: Quaternion, t: float) -> Quaternion:
-        """The rotation between this and another, at constant speed: this for `t` 0, the other for 1."""
+        """Return the rotation between this and another, at constant speed: this for `t` 0, the other for 1."""
         theta = self.angleShortestPath(q) / 2.0
         if theta == 0.0:
             return _made(self)
@@ -180,7 +180,7 @@ class Quaternion(QuadWord):
 
     @staticmethod
     def getIdentity() -> Quaternion:
-        """The rotation that does not turn."""
+        """Return the identity."""
         return Quaternion()
 
 
@@ -224,28 +224,28 @@ def angle(q1: Quaternion, q2: Quaternion) -> float:
 
 
 def angleShortestPath(q1: Quaternion, q2: Quaternion) -> float:
-    """The angle of two rotations along the shortest path, in rad."""
+    """Return the angle of two rotations along the shortest path, in rad."""
     return q1.angleShortestPath(q2)
 
 
 def inverse(q: Quaternion) -> Quaternion:
-    """The rotation back."""
+    """Return the inverse rotation."""
     return q.inverse()
 
 
 def slerp(q1: Quaternion, q2: Quaternion, t: float) -> Quaternion:
-    """The rotation between two: q1 for `t` 0, q2 for 1."""
+    """Return the rotation between two: q1 for `t` 0, q2 for 1."""
     return q1.slerp(q2, t)
 
 
 def quatRotate(rotation: Quaternion, v: Vector3) -> Vector3:
-    """A vector, turned."""
+    """Return a vector, turned."""
     turned = rotation * v * rotation.inverse()
     return Vector3(turned[0], turned[1], turned[2])
 
 
 def shortestArcQuat(v0: Vector3, v1: Vector3) -> Quaternion:
-    """The rotation that turns one vector of length 1 to another."""
+    """Return the rotation that turns one vector of length 1 to another."""
     c, d = v0.cross(v1), v0.dot(v1)
     if d < -1.0 + TFSIMD_EPSILON:
         across, _ = tfPlaneSpace1(v0)

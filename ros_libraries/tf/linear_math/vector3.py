@@ -104,7 +104,7 @@ class Vector3(QuadWord):
         return self
 
     def normalized(self) -> Vector3:
-        """A vector of length 1 in this direction."""
+        """Return a vector of length 1 in this direction."""
         return self / self.length()
 
     def rotate(self, wAxis: Vector3, angle: float) -> Vector3:
@@ -120,7 +120,7 @@ class Vector3(QuadWord):
     # -- elements ----------------------------------------------------------------------------------------------------
 
     def absolute(self) -> Vector3:
-        """The vector of the absolute values."""
+        """Return the vector of the absolute values."""
         return Vector3(*map(abs, self))
 
     def minAxis(self) -> int:
@@ -151,11 +151,11 @@ class Vector3(QuadWord):
         self.m_floats[:3] = (s * a + rt * b for a, b in zip(v0, v1, strict=True))
 
     def lerp(self, v: Vector3, t: float) -> Vector3:
-        """The point between this and another: this for `t` 0, the other for 1."""
+        """Return the point between this and another: this for `t` 0, the other for 1."""
         return Vector3(*(a + (b - a) * t for a, b in zip(self, v, strict=True)))
 
     def getSkewSymmetricMatrix(self) -> tuple[Vector3, Vector3, Vector3]:
-        """The rows of the matrix that makes the vector product with this vector."""
+        """Return the rows of the matrix that makes the vector product with this vector."""
         x, y, z = self
         return Vector3(0.0, -z, y), Vector3(z, 0.0, -x), Vector3(-y, x, 0.0)
 
@@ -164,11 +164,11 @@ class Vector3(QuadWord):
         self.setValue(0.0, 0.0, 0.0)
 
     def isZero(self) -> bool:
-        """Whether all elements are 0."""
+        """Return whether all elements are 0."""
         return not any(self)
 
     def fuzzyZero(self) -> bool:
-        """Whether the length is almost 0."""
+        """Return whether the length is almost 0."""
         return self.length2() < TFSIMD_EPSILON
 
 
@@ -203,12 +203,12 @@ def tfAngle(v1: Vector3, v2: Vector3) -> float:
 
 
 def lerp(v1: Vector3, v2: Vector3, t: float) -> Vector3:
-    """The point between two: v1 for `t` 0, v2 for 1."""
+    """Return the point between two: v1 for `t` 0, v2 for 1."""
     return v1.lerp(v2, t)
 
 
 def tfPlaneSpace1(n: Vector3) -> tuple[Vector3, Vector3]:
-    """Two vectors that span the plane orthogonal to `n`, which has length 1."""
+    """Return two vectors that span the plane orthogonal to `n`, which has length 1."""
     x, y, z = n
     if abs(z) > TFSIMDSQRT12:
         a = y * y + z * z

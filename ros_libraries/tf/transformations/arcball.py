@@ -51,7 +51,7 @@ class Arcball:
         self._constrain = constrain == True  # noqa: E712  # as in tf: anything else than True and 1 is not
 
     def getconstrain(self) -> bool:
-        """Whether turning is held to the axes."""
+        """Return whether the rotation is constrained to the axes."""
         return self._constrain
 
     def down(self, point: Sequence[float]) -> None:
@@ -105,7 +105,7 @@ def arcball_map_to_sphere(point: Sequence[float], center: Sequence[float], radiu
 
 
 def arcball_constrain_to_axis(point: Any, axis: Any) -> Any:
-    """The point of the unit sphere nearest to another, in the plane orthogonal to an axis."""
+    """Return the point of the unit sphere nearest to another, in the plane orthogonal to an axis."""
     v, a = np.array(point, dtype=np.float64), np.array(axis, dtype=np.float64)
     v -= a * np.dot(a, v)
     length = vector_norm(v)

@@ -71,7 +71,7 @@ def _angles(rows: Any) -> list[float]:
 def compose_matrix(
     scale: Any = None, shear: Any = None, angles: Any = None, translate: Any = None, perspective: Any = None
 ) -> Any:
-    """The homogeneous matrix of several steps, each left out when it is None.
+    """Return the homogeneous matrix of several steps, each left out when it is None.
 
     Args:
         scale: factors for x, y, z.
@@ -99,7 +99,7 @@ def compose_matrix(
 
 
 def orthogonalization_matrix(lengths: Any, angles: Any) -> Any:
-    """The matrix from a crystal's cell to orthogonal coordinates.
+    """Return the matrix from a crystal's cell to orthogonal coordinates.
 
     Args:
         lengths: of the cell's three edges.
@@ -117,7 +117,7 @@ def orthogonalization_matrix(lengths: Any, angles: Any) -> Any:
 
 
 def superimposition_matrix(v0: Any, v1: Any, scaling: bool = False, usesvd: bool = True) -> Any:
-    """The matrix that brings points closest to other points: it turns, moves, and scales if asked to.
+    """Return the matrix that brings points closest to other points: it turns, moves, and scales if asked to.
 
     Args:
         v0: the points, an array of 3 or 4 rows.
@@ -164,16 +164,16 @@ def _horn(old: Any, new: Any) -> Any:
 
 
 def inverse_matrix(matrix: Any) -> Any:
-    """The inverse of a square matrix."""
+    """Return the inverse of a square matrix."""
     return np.linalg.inv(matrix)
 
 
 def concatenate_matrices(*matrices: Any) -> Any:
-    """The product of homogeneous matrices."""
+    """Return the product of homogeneous matrices."""
     return reduce(np.dot, matrices, np.identity(4))
 
 
 def is_same_transform(matrix0: Any, matrix1: Any) -> bool:
-    """Whether two homogeneous matrices do the same."""
+    """Return whether two homogeneous matrices do the same."""
     first, second = np.array(matrix0, dtype=np.float64), np.array(matrix1, dtype=np.float64)
     return bool(np.allclose(first / first[3, 3], second / second[3, 3]))

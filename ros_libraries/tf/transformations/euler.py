@@ -21,7 +21,7 @@ Convention = tuple[int, int, int, int]
 
 
 def _others(first: int, odd: int) -> tuple[int, int]:
-    """The second axis, and the one that remains."""
+    """Return the second axis, and the one that remains."""
     return (first + 1 + odd) % 3, (first + 2 - odd) % 3
 
 
@@ -47,7 +47,7 @@ def _convention(axes: Axes) -> Convention:
 
 
 def euler_matrix(ai: float, aj: float, ak: float, axes: Axes = "sxyz") -> Any:
-    """The homogeneous matrix that turns by three angles in rad, about the axes of a convention."""
+    """Return the homogeneous matrix that turns by three angles in rad, about the axes of a convention."""
     return quaternion_matrix(quaternion_from_euler(ai, aj, ak, axes))
 
 
@@ -74,12 +74,12 @@ def euler_from_matrix(matrix: Any, axes: Axes = "sxyz") -> tuple[float, float, f
 
 
 def euler_from_quaternion(quaternion: Any, axes: Axes = "sxyz") -> tuple[float, float, float]:
-    """The angles in rad of a rotation (x, y, z, w), about the axes of a convention."""
+    """Return the angles in rad of a rotation (x, y, z, w), about the axes of a convention."""
     return euler_from_matrix(quaternion_matrix(quaternion), axes)
 
 
 def quaternion_from_euler(ai: float, aj: float, ak: float, axes: Axes = "sxyz") -> Any:
-    """The quaternion (x, y, z, w) of turning by three angles in rad, about the axes of a convention."""
+    """Return the quaternion (x, y, z, w) of turning by three angles in rad, about the axes of a convention."""
     name = _name(_convention(axes))
     turns = [_about(axis, angle) for axis, angle in zip(name[1:], (ai, aj, ak), strict=True)]
     first, second, third = turns[::-1] if name[0] == "r" else turns

@@ -11,24 +11,24 @@ from tf.transformations.vectors import eigenvectors, fixed_point, unit_vector, v
 
 
 def identity_matrix() -> Any:
-    """The matrix that does nothing."""
+    """Return the identity matrix."""
     return np.identity(4)
 
 
 def translation_matrix(direction: Any) -> Any:
-    """The matrix that moves by a vector."""
+    """Return the matrix that moves by a vector."""
     found = np.identity(4)
     found[:3, 3] = direction[:3]
     return found
 
 
 def translation_from_matrix(matrix: Any) -> Any:
-    """The vector that a matrix moves by."""
+    """Return the vector that a matrix moves by."""
     return np.array(matrix)[:3, 3]
 
 
 def reflection_matrix(point: Any, normal: Any) -> Any:
-    """The matrix that mirrors at a plane.
+    """Return the matrix that mirrors at a plane.
 
     Args:
         point: on the plane.

@@ -47,7 +47,7 @@ def _perspective(point: Any, normal: Any, centre: Any, pseudo: bool) -> Any:
 
 
 def projection_from_matrix(matrix: Any, pseudo: bool = False) -> tuple[Any, Any, Any, Any, bool]:
-    """The arguments of `projection_matrix` that make a matrix.
+    """Return the arguments of `projection_matrix` that make a matrix.
 
     Args:
         matrix: the matrix.
@@ -84,7 +84,7 @@ def _parallel_parts(m: Any, point: Any) -> tuple[Any, Any, Any, Any, bool]:
 def clip_matrix(
     left: float, right: float, bottom: float, top: float, near: float, far: float, perspective: bool = False
 ) -> Any:
-    """The matrix that makes a view's coordinates lie from -1 to 1.
+    """Return the matrix that makes a view's coordinates lie from -1 to 1.
 
     Args:
         left, right, bottom, top, near, far: edges of the view along x, y and z.

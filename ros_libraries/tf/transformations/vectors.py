@@ -59,7 +59,7 @@ def random_vector(size: Any) -> Any:
 
 
 def eigenvectors(matrix: Any, value: float, tolerance: float = _EIGEN_TOLERANCE) -> list[Any]:
-    """The real parts of the eigenvectors of an eigenvalue, in LAPACK's order."""
+    """Return the real parts of the eigenvectors of an eigenvalue, in LAPACK's order."""
     values, vectors = np.linalg.eig(matrix)
     (found,) = np.nonzero(abs(np.real(values) - value) < tolerance)
     return [np.real(vectors[:, at]) for at in found]
