@@ -1,4 +1,4 @@
-"""SCH when the processor, its library or the board keep it from its slots, and when it cannot even start."""
+"""SCH when the processor, its library or the board delay its slots, and when it cannot start."""
 
 from __future__ import annotations
 

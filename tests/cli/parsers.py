@@ -30,5 +30,5 @@ def _leaves(words: str, parser: argparse.ArgumentParser) -> Iterator[tuple[str, 
 
 
 def options(parser: argparse.ArgumentParser) -> list[argparse.Action]:
-    """Its options, without --help and what is handed to a tool of ROS as it is."""
+    """Return its options, except for --help and the arguments passed on to a tool of ROS."""
     return [action for action in parser._actions if action.option_strings and action.dest not in ("help", "handed")]

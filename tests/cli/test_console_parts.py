@@ -1,4 +1,4 @@
-"""Parts of the console: how a line may go on, pages of telemetry, the script of a session."""
+"""Parts of the console: completion of a line, pages of telemetry, the script of a session."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ OVER = "the run ended earlier"
         (EXPECTED, S, 2 * S, "", "        expect event HK"),
         (EXPECTED, S, 2 * S, "no event was sent", "        expect event HK"),
         (EXPECTED, 2 * S, 3 * S, "", "        expect event HK"),
-        (EXPECTED, 2 * S, 4 * S, "", "# 2: expect event HK"),  # a look every 10 ms may be too late
+        (EXPECTED, 2 * S, 4 * S, "", "# 2: expect event HK"),  # checking every 10 ms may be too late
         (EXPECTED, S, 5 * S, "", "# 1: expect event HK"),
         (EXPECTED, S, 4 * S, OVER, "# 1: expect event HK"),
         (GUARD, 2 * S, 20 * S, "", "at 2 expect no event HK"),

@@ -1,4 +1,4 @@
-"""How the command ends when it is told to: Ctrl-C from its first import to its last step, SIGHUP, a closed terminal."""
+"""How the command ends on request: Ctrl-C from its first import to its last step, SIGHUP, a closed terminal."""
 
 from __future__ import annotations
 
@@ -152,14 +152,14 @@ def started(*options: str, below: Sequence[str] = ()) -> subprocess.Popen[str]:
 
 
 def read_to(process: subprocess.Popen[str], text: str) -> None:
-    """Read what it prints up to a text."""
+    """Read its output up to a text."""
     assert process.stdout is not None
     while text not in process.stdout.readline():
         assert process.poll() is None
 
 
 def assert_whole(bag: Path, journal: Path) -> None:
-    """Both are finished as they are after Ctrl-C."""
+    """Assert that both are complete, as they are after Ctrl-C."""
     with BagReader(str(bag)) as reader:
         assert sum(1 for _ in reader.messages())
     end = read_journal(journal).end
@@ -230,7 +230,7 @@ def test_a_reader_that_went_away_leaves_a_whole_journal(tmp_path: Path) -> None:
 
 @pytest.fixture
 def _sighup_is_not_ignored() -> Iterator[None]:
-    """Let the signal count where the tests run under nohup, too."""
+    """Enable the signal, which is ignored if the tests run under nohup."""
     before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
     yield
     signal.signal(signal.SIGHUP, before)

@@ -1,4 +1,4 @@
-"""Whether a run went well: every command, the page, the JSON and Python say the same of each mission."""
+"""Whether a run succeeded: every command, the page, the JSON and Python agree on each mission."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ ROS = """
 
 @dataclass(frozen=True)
 class Case:
-    """A mission, the files beside it, and words of its one problem; none of one that goes well."""
+    """A mission, the files beside it, and words of its one problem; no words for a successful mission."""
 
     source: str
     problem: str = ""

@@ -94,7 +94,7 @@ def test_a_node_is_replayed_with_its_own_exit_of_the_command(
     assert main(["node", "paths.py", "--record", "../node.cfepy", "--", "x"]) == 1
     first = capsys.readouterr().out
     assert "as asked" in first
-    assert main(["replay", "../node.cfepy"]) == 1  # as the run; it is the same nevertheless
+    assert main(["replay", "../node.cfepy"]) == 1  # the status of the run; the replay is identical nevertheless
     again = capsys.readouterr()
     assert again.out == first
     assert "the same run as ../node.cfepy" in again.err

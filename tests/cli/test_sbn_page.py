@@ -1,4 +1,4 @@
-"""docs/how_to/sbn.md: its commands, as they stand there."""
+"""docs/how_to/sbn.md: its commands, unchanged."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What spins ends by `--stall`, SIGTERM and one Ctrl-C, whatever it is, and in each command that flies it."""
+"""Code that spins ends by `--stall`, SIGTERM and one Ctrl-C, in each command that flies it."""
 
 from __future__ import annotations
 

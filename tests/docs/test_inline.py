@@ -19,7 +19,7 @@ from tests.test_docs import FENCE
 
 INLINE = re.compile(r"`([^`]+)`")
 PLACEHOLDER = re.compile(r"^[A-Z][A-Z_]*$|[<>|\[\]]|\.\.\.|\bFIELD=|\bNAME\b|\bFILE\b")
-OUTPUT = re.compile(r"cfepy fault \S+: ")  # what a run says
+OUTPUT = re.compile(r"cfepy fault \S+: ")  # output of a run
 EXTRAS = set(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"])
 
 
@@ -32,7 +32,7 @@ def spans(page: Path, start: str) -> Iterator[str]:
 
 
 def wrong(command: str) -> str:
-    """What is wrong with a command of cfepy in a sentence, which may be a part of one; "" for nothing."""
+    """Return the error in a command of cfepy in a sentence, which may be a part of one, or ""."""
     words = shlex.split(command.partition(" < ")[0].partition(" | ")[0])[1:]
     whole_parser, given = parser_of(words[0]), list(words)
     parser = whole_parser

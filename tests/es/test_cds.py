@@ -1,4 +1,4 @@
-"""The Critical Data Store on bytes that outlive it: blocks, resets, and damage to every single bit."""
+"""The Critical Data Store on memory that survives it: blocks, resets, and damage to every single bit."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def small() -> Board:
 
 
 def found(board: Board) -> dict[str, bytes | int]:
-    """What the owners find after a reset: name to data, or the status of the attempt to read them."""
+    """Return the owners' view after a reset: name to data, or the status of the attempt to read them."""
     contents: dict[str, bytes | int] = {}
     for name in ("A.One", "B.Two"):
         handle, status = board.cds.register(6, name, is_table=name == "B.Two")

@@ -38,7 +38,7 @@ class Sent(NamedTuple):
 
 
 class World:
-    """EVS and what it needs; it is its own ES, bus, clock and system log."""
+    """EVS and its peers; this object is its own ES, bus, clock and system log."""
 
     def __init__(self, config: PlatformConfig | None = None) -> None:
         self.kernel = Kernel()
@@ -123,7 +123,7 @@ class World:
         self.console.lines.clear()
 
     def call(self, function: Callable[[], Result], app_id: int = APP_ID) -> Result:
-        """What a function returns or raises in a task of an application."""
+        """Return the result of a function in a task of an application, or raise its exception."""
         results: list[Result] = []
         self.kernel.spawn("caller", lambda: results.append(function()), 100, self.apps[app_id])
         self.kernel.run(self.kernel.now + 1000)

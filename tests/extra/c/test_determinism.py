@@ -1,4 +1,4 @@
-"""Nothing of the host gets into a run of compiled applications: neither addresses nor registers, stacks or errno."""
+"""Nothing of the host affects a run of compiled applications: neither addresses nor registers, stacks or errno."""
 
 from __future__ import annotations
 

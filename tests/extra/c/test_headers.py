@@ -48,7 +48,7 @@ def rows(file: str) -> Iterator[tuple[str, str]]:
 
 
 def compile_text(folder: Path, text: str, *flags: str, command: list[str] | None = None) -> str:
-    """What the compiler says of a file that includes every header."""
+    """Return the compiler's output for a file that includes every header."""
     file = folder / "facts.c"
     includes = "".join(f'#include "{name}.h"\n' for name in sorted(names()))
     file.write_text(f"{includes}{text}\nint end;\n", encoding="utf-8")
@@ -146,7 +146,7 @@ def test_every_declaration_has_a_name_that_leads_to_it() -> None:
     assert there == led_to | included
 
 
-# -- what the engine declares ------------------------------------------------------------------------------------------
+# -- declarations of the engine ----------------------------------------------------------------------------------------
 
 KINDS_OF_LETTERS = {
     **dict.fromkeys("iI", "4"),
@@ -180,7 +180,7 @@ def kinds(folder: Path, functions: dict[str, str]) -> dict[str, str]:
         types = [re.sub(r"\s*\[\d*\]", "*", each) for each in types if each not in ("void", "...")]
         text += "".join(f"    K({each}),\n" for each in types) + "    '\\n',\n"
     (folder / "kinds.c").write_text(text + "};\n", encoding="utf-8")
-    made = folder / "kinds.o"  # not run: it may be for another computer than the one that compiles
+    made = folder / "kinds.o"  # not run: the compiler may target another computer
     subprocess.run([*compiler(), f"-I{headers_folder()}", "-c", str(folder / "kinds.c"), "-o", str(made)], check=True)
     elf = elf_file(BytesIO(made.read_bytes()))
     [symbol] = elf.get_section_by_name(".symtab").get_symbol_by_name("kinds")

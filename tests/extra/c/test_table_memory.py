@@ -1,4 +1,4 @@
-"""Tables of compiled applications: where their images are, how long, and who sees them."""
+"""Tables of compiled applications: place, lifetime and users of their images."""
 
 from __future__ import annotations
 

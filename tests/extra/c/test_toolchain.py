@@ -1,4 +1,4 @@
-"""Building compiled applications: what is compiled, against which headers, and the table files that come of it."""
+"""Building compiled applications: sources, headers, and the resulting table files."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def write(folder: Path, files: dict[str, str]) -> Path:
 
 @pytest.fixture
 def app(tmp_path: Path) -> Path:
-    """An application whose message id a mission may choose."""
+    """Return an application whose message id a mission may choose."""
     files = {"fsw/src/probe.c": MAIN, "config/default_probe_msgids.h": "#define PROBE_CMD_MID 0x1890\n"}
     return write(tmp_path / "apps/probe", files)
 

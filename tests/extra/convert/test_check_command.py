@@ -1,4 +1,4 @@
-"""`cfepy convert check` as a person and a program see it; the compiler is asked, so these are slow."""
+"""`cfepy convert check` for a user and for a program. It runs the compiler, so these tests are slow."""
 
 from __future__ import annotations
 

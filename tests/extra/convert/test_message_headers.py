@@ -1,4 +1,4 @@
-"""Headers of messages: what is written, and what is refused."""
+"""Headers of messages: their content, and refused definitions."""
 
 from __future__ import annotations
 

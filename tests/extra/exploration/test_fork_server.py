@@ -1,4 +1,4 @@
-"""Runs that part from one instant on, each in a process of its own."""
+"""Runs that share their beginning and then differ, each in a separate process."""
 
 from __future__ import annotations
 

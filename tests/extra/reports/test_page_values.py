@@ -1,4 +1,4 @@
-"""The values that the page carries: how they are thinned and encoded, and what is said of those that it has not."""
+"""The values in the page: how they are thinned and encoded, and the remark about missing ones."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from cfepy.mission import Seen
 
 
 def decoded(line: dict[str, Any], count: int) -> list[float]:
-    """What the page's script makes of it."""
+    """Return the values as the page's script decodes them."""
     if "data" not in line:
         return [line["low"]] * count
     steps = numpy.frombuffer(b64decode(line["data"]), "<u2")

@@ -28,11 +28,11 @@ HAS_ROS = (
 
 
 class RosGraph:
-    """A ROS graph that tools can be pointed at.
+    """A ROS graph for tools.
 
     Args:
-        uri: of its master.
-        folder: for what tools write.
+        uri: URI of its master.
+        folder: folder for files of tools.
     """
 
     def __init__(self, uri: str, folder: Path) -> None:
@@ -53,7 +53,7 @@ class RosGraph:
         return done.stdout + done.stderr
 
     def wait_for(self, command: str, text: str) -> None:
-        """Until the output of a command has a text; a node's start is waited for like this."""
+        """Wait until the output of a command contains a text, for example for a node's start."""
         said = ""
         for _ in range(LIMIT_S // 2):
             said = self.run(command)
@@ -73,7 +73,7 @@ def started(words: list[str], environ: dict[str, str] | None = None) -> Iterator
 
 
 def wait_for_line(process: subprocess.Popen[str], text: str, limit_s: float = LIMIT_S) -> str:
-    """Read what a process prints until a line has a text; a process that never prints it is killed after a while."""
+    """Read a process's output until a line contains a text. A process that never prints it is killed after a while."""
     assert process.stdout is not None
     end = threading.Timer(limit_s, process.kill)
     end.start()

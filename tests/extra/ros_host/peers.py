@@ -1,4 +1,4 @@
-"""Programs outside, as the tests play them: each step is driven by the test, and nothing waits for the wall clock."""
+"""External programs, played by the tests: the test drives each step, and nothing waits for the wall clock."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class Joined:
         return any(line in each for each in self.mission.console.lines)
 
     def ask(self, uri: str, method: str, *arguments: Any) -> Any:
-        """Ask the master, or a node, while the run goes on; the whole answer."""
+        """Ask the master, or a node, while the run continues. Returns the whole answer."""
         found: list[Any] = []
 
         def call() -> None:
@@ -127,7 +127,7 @@ class Wire:
         connected.setblocking(False)
 
     def frame(self) -> bytes:
-        """The next frame, for which the run goes on."""
+        """Return the next frame, running the mission until it arrives."""
         self._run.run_while(lambda: not self._look())
         return self._found.pop(0)
 
@@ -153,7 +153,7 @@ class Wire:
 
 
 class OutsideSpeaker:
-    """A publisher outside, with a slave API that the test serves; the master need not know it yet."""
+    """An external publisher, with a slave API that the test serves. The master need not know it yet."""
 
     def __init__(self, run: Joined, topic: str, kind: Mapping[str, str] = STRING, is_known: bool = True) -> None:
         self._run = run
@@ -177,7 +177,7 @@ class OutsideSpeaker:
         return bool(self._accepted)
 
     def connect(self) -> dict[str, str]:
-        """Wait for the mission to connect; the header that it sends."""
+        """Wait for the mission to connect. Returns the header that it sends."""
         self._run.run_while(lambda: not self._accepted)
         self._wire = self._accepted.pop()
         header = self._wire.header()
@@ -211,7 +211,8 @@ def joined(
     mission_file: str = "",
     world: Callable[[RosHost], RosWorld] = lambda host: ServedMaster(host, 0),
 ) -> Iterator[Joined]:
-    """A mission of nodes, by their application's name, with a master on a free port; more lines of its script."""
+    """Run a mission of nodes, by their application's name, with a master on a free port. `more` are lines of its
+    script."""
     (folder / "mission.yaml").write_text(mission_file or "name: joined\n", encoding="utf-8")
     lines = [f"CFE_APP, {app.lower()}.py, __main__, {app}, 100, 16384, 0x0, 0;\n" for app in nodes]
     (folder / "startup.scr").write_text("".join(lines) + more + "!\n", encoding="utf-8")

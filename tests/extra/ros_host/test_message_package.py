@@ -1,4 +1,4 @@
-"""`cfepy export ros`: a package from which ROS's own generator makes the types that telemetry has over a connection."""
+"""`cfepy export ros`: a package from which ROS's own generator makes the types of telemetry on connections."""
 
 from __future__ import annotations
 

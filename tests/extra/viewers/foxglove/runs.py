@@ -1,4 +1,4 @@
-"""Runs that Foxglove looks at: the mission goes on when the test says so, and not by the wall clock."""
+"""Runs that Foxglove looks at: the mission continues when the test says so, and not by the wall clock."""
 
 from __future__ import annotations
 
@@ -69,11 +69,11 @@ class ShownRun:
             self.go_on()
 
     def client(self, **options: Any) -> FoxgloveClient:
-        """A viewer; the run goes on while it waits."""
+        """Return a viewer. The run continues while it waits."""
         return FoxgloveClient(self.url, self.go_on, **options)
 
     def shake_hands(self, peer: socket.socket) -> None:
-        """Become the only viewer, without a library that reads what comes."""
+        """Become the only viewer, without a library that reads input."""
         lines = ("GET / HTTP/1.1", f"Host: {self.viewer.place}", "Upgrade: websocket", "Connection: Upgrade")
         lines += ("Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Version: 13")
         lines += (f"Sec-WebSocket-Protocol: {PROTOCOL}", "", "")
@@ -82,7 +82,7 @@ class ShownRun:
             self.go_on()
 
     def until_it_ends(self, peer: socket.socket) -> None:
-        """The run goes on until the server has ended a connection."""
+        """Continue the run until the server has ended a connection."""
         peer.settimeout(WAIT_S)
         left = int(PATIENCE_S / WAIT_S)
         while left:

@@ -1,4 +1,4 @@
-"""Foxglove's protocol as bytes: what is told, and what is understood of what viewers send."""
+"""Foxglove's protocol as bytes: sent messages, and the parsing of received ones."""
 
 from __future__ import annotations
 
