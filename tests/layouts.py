@@ -13,7 +13,7 @@ DATA = Path(__file__).parent / "data"
 
 
 class CField(NamedTuple):
-    """A field of a C struct; `type` is C's, with "[N]" for an array."""
+    """A field of a C struct. `type` is C's, with "[N]" for an array."""
 
     name: str
     offset: int

@@ -1,4 +1,5 @@
-"""Faults on applications: crash, hang, slow, stop, restart; what Executive Services and the others make of them."""
+"""Faults on applications: crash, hang, slow, stop, restart; the reactions of Executive Services and other
+applications."""
 
 from __future__ import annotations
 

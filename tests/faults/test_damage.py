@@ -1,4 +1,4 @@
-"""Which bits and bytes of a message a fault changes."""
+"""The bits and bytes of a message that a fault changes."""
 
 from __future__ import annotations
 

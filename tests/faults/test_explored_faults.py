@@ -1,4 +1,4 @@
-"""Faults whose instants the schedule chooses: each of them can be had, and none comes under fifo."""
+"""Faults whose instants the schedule chooses: each of them can occur, and none occurs under fifo."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def register(cfe: Cfe, name: str = NAME, options: int = 0) -> TableHandle:
 
 
 def content(cfe: Cfe, handle: int) -> tuple[tuple[int, ...], bool]:
-    """A table's numbers, and whether they were updated; the address is given back."""
+    """Return a table's numbers, and whether they were updated. The address is released."""
     view, is_updated = cfe.tbl.get_address(handle)
     numbers = NUMBERS.unpack(view)
     cfe.tbl.release_address(handle)

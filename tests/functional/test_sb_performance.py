@@ -39,7 +39,7 @@ def receive(cfe: Cfe, pipe: int, timeout_ms: int = POLL) -> int:
 
 
 def run_children(cfe: Cfe, tasks: list[tuple[Callable[[], None], int]]) -> None:
-    """Run child tasks with their priorities; waits until all are at their end, and raises what one of them raised."""
+    """Run child tasks with their priorities to their ends. Raises an exception of one of them."""
     attempts = [Attempt(task) for task, _ in tasks]
     for number, (_, priority) in enumerate(tasks):
         cfe.es.create_child_task(f"Bulk{number}", attempts[number], CHILD_STACK, priority)

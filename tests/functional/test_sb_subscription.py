@@ -24,7 +24,7 @@ def two_pipes(cfe: Cfe) -> tuple[int, int]:
 
 
 def come_and_go(cfe: Cfe, subscribe: Subscribe, unsubscribe: Subscribe) -> None:
-    """Both MsgIds into both pipes, twice each, and out again; and what cannot be."""
+    """Subscribe both pipes to both MsgIds, twice each, and unsubscribe; and try invalid subscriptions."""
     first, second = two_pipes(cfe)
     every = [(CMD_MID, first), (TLM_MID, second), (TLM_MID, first), (CMD_MID, second)]
     for call in (subscribe, unsubscribe):

@@ -1,6 +1,6 @@
-"""The XTCE of every mission that cfepy brings along, against the schema of XTCE 1.2 and another reader.
+"""The XTCE of every shipped mission, against the schema of XTCE 1.2 and another reader.
 
-Both are those of space_packet_parser: it has OMG's SpaceSystem.xsd, and decodes by what the document says alone.
+Both come from space_packet_parser: it has OMG's SpaceSystem.xsd, and decodes from the document alone.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def declared_telemetry(dictionary: Dictionary) -> Iterator[Telemetry]:
 
 
 def read_back(name: str, folder: Path, times: int) -> int:
-    """Let the other reader check the document and decode random packets; how many fields were compared."""
+    """Let the other reader check the document and decode random packets. Returns how many fields were compared."""
     dictionary, file = dictionary_named(name), folder / "mission.xml"
     file.write_text(xtce_of(name, dictionary), encoding="utf-8")
     result = validate_xtce(file, level="all", raise_on_error=False)

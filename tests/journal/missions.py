@@ -1,4 +1,4 @@
-"""Small missions in which something happens that a journal must have, each by its name."""
+"""Small missions whose events a journal must contain, each by its name."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def keyboard(folder: Path) -> str:
 
 
 def resets(folder: Path) -> str:
-    """An application that dies, whose exception resets the processor twice."""
+    """An application that dies, and whose exception resets the processor twice."""
     return write_mission(folder, "CFE_APP, crasher, crasher_main, CRASHER, 50, 16384, 0x0, 1;\n!", crasher=CRASHER)
 
 
@@ -65,7 +65,7 @@ def restarts(folder: Path) -> str:
 
 
 def race(folder: Path) -> str:
-    """Two nodes, whose threads and random numbers show who goes first."""
+    """Two nodes, whose threads and random numbers show the order of tasks."""
     lines = NODE.format(name="race", app="RACE_A") + NODE.format(name="race", app="RACE_B")
     return write_mission(folder, lines + "!", race=RACE)
 

@@ -1,4 +1,4 @@
-"""Where a replay parts is told for the first checkpoint that does not agree, however records come in."""
+"""A replay's deviation is reported at the first checkpoint that does not agree, in whatever portions records arrive."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """A paced run with real sockets is replayed without them, in virtual time, to the same digest.
 
-No test looks at the clock: the pacer is driven until what is expected is there.
+No test looks at the clock: the pacer runs until the expected result is there.
 """
 
 from __future__ import annotations

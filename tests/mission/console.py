@@ -1,4 +1,4 @@
-"""Comparing our console with one of NASA's, line by line, times masked, differences on purpose declared."""
+"""Compares our console with one of NASA's, line by line, with masked times and declared differences."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 DATA = Path(__file__).parents[1] / "data"
 STAMP = re.compile(r"\d{4}-\d{3}-\d\d:\d\d:\d\d\.\d{5}")
 
-# Lines that only NASA's console has: (pattern, why ours is silent or says something else).
+# Lines that only NASA's console has: (pattern, the reason why ours has none or another).
 ONLY_THEIRS = [
     (r"OS_Posix_", "the POSIX scheduler's policies: there is no such scheduler here"),
     (r"CFE_PSP: initializing module '(timebase_posix_clock|eeprom_mmap_file|iodriver|linux_sysmon)'", "host drivers"),

@@ -1,4 +1,4 @@
-"""What applications do with Python's own files is their run's, as it is with nodes."""
+"""Files that applications write with Python's own functions belong to their run, as with nodes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What applications ask of OSAL and of the board, in whole missions: loading code, the watchdog, EEPROM."""
+"""Requests of applications to OSAL and the board, in whole missions: loading code, the watchdog, EEPROM."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The console of a boot against NASA's, recorded on the real system: same lines, same order.
 
-The apps of the recording are played by stand-ins that do the same in view of the console; executive, events, tables and
-clean-up are the real ones.
+Stand-ins that write the same lines play the apps of the recording. Executive, events, tables and clean-up are the real
+ones.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The missions that cfepy brings along, flown whole."""
+"""The shipped missions, flown completely."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class Program:
 
     @property
     def lines(self) -> list[str]:
-        """What it printed, without the node's name."""
+        """Return its output, without the node's name."""
         start = len(self.universe.name) + 3
         return [line[start:] for line in self.universe.output]
 

@@ -28,7 +28,7 @@ def test_a_path_comes_back_from_its_place() -> None:
 
 @pytest.fixture
 def disk(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> overlay.Overlay:
-    """A run's files on a computer whose drive C: is a folder of this one."""
+    """Return a run's files on a computer whose drive C: is a folder of this one."""
     monkeypatch.setattr(overlay, "HAS_DRIVES", True)
     (tmp_path / "data").mkdir()
     (tmp_path / "data" / "old.txt").write_text("old", encoding="utf-8")
