@@ -63,7 +63,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
 
 @pytest.fixture(autouse=True)
 def _nobody_is_followed() -> Iterator[None]:
-    """Detach debuggers of earlier missions, which would slow down all later tests of the process."""
+    """Assert that no debugger of a mission is still active, which would slow down the whole process."""
     yield
     owner = getattr(sys.gettrace(), "__self__", None)
     assert type(owner).__name__ != "AppDebugger"
@@ -71,7 +71,7 @@ def _nobody_is_followed() -> Iterator[None]:
 
 @pytest.fixture(autouse=True)
 def _signals_are_answered_as_before() -> Iterator[None]:
-    """Restore the signal handlers after a test that changed them, so that Ctrl-C reaches the later tests."""
+    """Fail a test that leaves other signal handlers, after restoring them: later tests need Ctrl-C."""
     before = {each: signal.getsignal(each) for each in ENDING}
     yield
     after = {each: signal.getsignal(each) for each in ENDING}

@@ -1,7 +1,7 @@
 """The quick loop: `python -m pytest -m quick`, all tests that cost little, after a change and before the whole suite.
 
-A test is in it unless it is a slow one or stands in the table of costs, `tests/costs.tsv`, which `python -m dev.costs`
-measures and writes. A new test is in it until it was measured.
+A test belongs to it unless it is slow or in the table of costs, `tests/costs.tsv`, which `python -m dev.costs`
+measures and writes. A new test belongs to it until it is measured.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ def _name_of(path: Path) -> str:
 
 
 def is_read_in_vain(path: Path, marks: str) -> bool:
-    """Return whether a run of tests with `-m MARKS` has no test of a file: to import all files takes ten seconds."""
+    """Return whether a run of tests with `-m MARKS` needs no test of a file. Importing all files would take ten
+    seconds."""
     if marks == MARK and is_dear(path):
         return True
     if marks not in (MARK, SLOW, f"not {SLOW}") or not path.name.startswith("test_") or not path.is_file():

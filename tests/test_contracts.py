@@ -1,4 +1,4 @@
-"""The contracts of `pyproject.toml`, which import-linter checks: what the core must not import."""
+"""The contracts of `pyproject.toml`, which import-linter checks: modules that the core must not import."""
 
 from __future__ import annotations
 

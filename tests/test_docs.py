@@ -1,4 +1,4 @@
-"""The documentation: links lead somewhere, commands can be given as they stand, nothing goes stale unnoticed."""
+"""The documentation: links have targets, commands work unchanged, and generated parts are up to date."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ def keyboard(folder: Path) -> str:
 
 
 def resets(folder: Path) -> str:
-    """An application that dies, and whose exception resets the processor twice."""
+    """Write an application that dies, and whose exception resets the processor twice."""
     return write_mission(folder, "CFE_APP, crasher, crasher_main, CRASHER, 50, 16384, 0x0, 1;\n!", crasher=CRASHER)
 
 
@@ -65,7 +65,7 @@ def restarts(folder: Path) -> str:
 
 
 def race(folder: Path) -> str:
-    """Two nodes, whose threads and random numbers show the order of tasks."""
+    """Write two nodes, whose threads and random numbers show the order of tasks."""
     lines = NODE.format(name="race", app="RACE_A") + NODE.format(name="race", app="RACE_B")
     return write_mission(folder, lines + "!", race=RACE)
 

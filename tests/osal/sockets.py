@@ -1,4 +1,4 @@
-"""Sockets for tests: bound ones, connected ones, and what is none."""
+"""Sockets for tests: bound ones, connected ones, and invalid ones."""
 
 from __future__ import annotations
 

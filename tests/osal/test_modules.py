@@ -23,7 +23,7 @@ from tests.osal.test_queues import status_of
 
 
 class Shelf:
-    """Gives modules that know who owns them; /cf/bad.so is none."""
+    """Gives modules that know their owners; /cf/bad.so is not a module."""
 
     def load_module(self, file: str, owner: str) -> object:
         """The module."""
@@ -38,7 +38,7 @@ class Shelf:
 
 @pytest.fixture
 def loader(bench: Bench) -> Bench:
-    """A bench whose OSAL can load code."""
+    """Return a bench whose OSAL can load code."""
     bench.os.modules = Shelf()
     return bench
 

@@ -1,4 +1,4 @@
-"""The workflow of docs/how_to/ci.md is the file of the example, and its steps work, the first time and later."""
+"""The workflow of docs/how_to/ci.md is the file of the example, and its steps work the first time and later."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The clock of a running mission, as the tests of Time Services look at it and drive it."""
+"""The clock of a running mission, observed and controlled by the tests of Time Services."""
 
 from __future__ import annotations
 

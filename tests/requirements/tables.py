@@ -34,7 +34,7 @@ class ProbeTable:
         self.handle: TableHandle = self.call("register", "T", SIZE, options, validator)
 
     def call(self, function: str, *args: Any) -> Any:
-        """What a function of Table Services gives PROBE."""
+        """Return the result of a function of Table Services for PROBE."""
         return self.flight.call(lambda: getattr(self.flight.cfe.tbl, function)(*args))
 
     def mine(self, function: str, *args: Any) -> Any:
@@ -56,11 +56,11 @@ class ProbeTable:
         return data
 
     def info(self) -> Any:
-        """What CFE_TBL_GetInfo tells of it."""
+        """Return its CFE_TBL_GetInfo."""
         return self.call("get_info", NAME)
 
     def upload(self, data: bytes, offset: int = 0, path: str = "/ram/t.tbl") -> list[Event]:
-        """Write a table file and LOAD it; the events."""
+        """Write a table file and LOAD it. Returns the events."""
         put(self.flight, data, offset, path)
         return self.flight.send(pk.LOAD, LoadFilename=path)
 
@@ -70,7 +70,7 @@ class ProbeTable:
         self.mine("manage")
 
     def activate(self) -> int:
-        """ACTIVATE, and let the owner manage; what that returned."""
+        """ACTIVATE, and let the owner manage. Returns the result of the latter."""
         self.flight.send(pk.ACTIVATE, TableName=NAME)
         status: int = self.mine("manage")
         return status
@@ -92,7 +92,7 @@ def housekeeping(flight: Flight) -> dict[str, Any]:
 
 
 def free_bytes(flight: Flight) -> int:
-    """What is left of the tables' memory pool."""
+    """Return the free bytes of the tables' memory pool."""
     pool = housekeeping(flight)["MemPoolHandle"]
     left: Any = flight.call(lambda: flight.cfe.es.get_mem_pool_stats(pool))["NumFreeBytes"]
     assert isinstance(left, int)

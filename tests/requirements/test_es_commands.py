@@ -24,7 +24,7 @@ def pool(flight: Flight) -> Fields:
 
 
 def orphan(flight: Flight) -> Fields:
-    """A CDS block whose owner is gone."""
+    """Return a CDS block whose owner is gone."""
     es = flight.cfe.es
     flight.call(lambda: es.register_cds(10, "Data"), app="MUTE")
     flight.call(lambda: es.delete_app(es.get_app_id_by_name("MUTE")))

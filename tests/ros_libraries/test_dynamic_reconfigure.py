@@ -1,4 +1,4 @@
-"""dynamic_reconfigure: a server and its clients in a mission, and what .cfg scripts become."""
+"""dynamic_reconfigure: a server and its clients in a mission, and the results of .cfg scripts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is unpacked of an LZ4 frame that is damaged or cut off, beside the package lz4, which unpacks whole ones."""
+"""Decompression of damaged or truncated LZ4 frames, compared with the package lz4, which decompresses complete ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Others read the bags that are written here: ROS's own rosbag, where it is installed, and the package rosbags."""
+"""Other readers of cfepy's bags: ROS's own rosbag, if it is installed, and the package rosbags."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""tf.transformations gives the results that the module of ROS gives (recorded from it)."""
+"""tf.transformations gives the same results as ROS's module (recorded from it)."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ class There:
         return compile_program(made, sources, *given, target=self._target, base=STRICT_FLAGS)
 
     def run(self, program: Path, *words: str, given: str = "", status: int = 0) -> tuple[str, str]:
-        """What it prints, and its log."""
+        """Return its output, and its log."""
         command = [*self._target.runner, str(program), *words]
         environ = {**os.environ, "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4"}
         done = subprocess.run(command, input=given, env=environ, capture_output=True, text=True, check=False)

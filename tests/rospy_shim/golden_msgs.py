@@ -25,7 +25,7 @@ def recorded() -> dict[str, list[dict[str, Any]]]:
 
 
 def md5sums(kind: str) -> dict[str, str]:
-    """What genmsg computes for each shipped "msg" or "srv"."""
+    """Return genmsg's md5sum for each shipped "msg" or "srv"."""
     lines = (line.split() for line in _MD5SUMS.read_text(encoding="utf-8").splitlines())
     return {words[1]: words[2] for words in lines if words[0] == kind}
 

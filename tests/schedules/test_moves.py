@@ -1,4 +1,4 @@
-"""Moves name their places by what stays when a program is edited, as text that no shell has to quote."""
+"""Moves name their places by features that survive edits of a program, as text that needs no shell quoting."""
 
 from __future__ import annotations
 

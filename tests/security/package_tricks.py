@@ -1,4 +1,4 @@
-"""Tricks of packages and sources: names that lead out of a folder, what has no end, pipes in place of files."""
+"""Tricks of packages and sources: names that lead out of a folder, endless data, pipes in place of files."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def pipe(file: str) -> Callable[[Path], object]:
 
 
 def link(file: str, target: str) -> Callable[[Path], object]:
-    """A symbolic link; @ is the folder."""
+    """Make a symbolic link; @ is the folder."""
 
     def make(folder: Path) -> None:
         (folder / file).unlink(missing_ok=True)
@@ -101,7 +101,7 @@ def holes(file: str) -> Callable[[Path], object]:
 
 
 def _circles(folder: Path) -> None:
-    """Links by which a pattern goes round and round."""
+    """Make links that send a pattern in circles."""
     for name in "abc":
         (folder / "evil" / name).symlink_to(folder / "evil")
 

@@ -1,6 +1,6 @@
-"""Commands about tables in release 7.0.0 of cFE, where it says or does something else than 7.0.1.
+"""Table commands in release 7.0.0 of cFE, where texts or behaviour differ from 7.0.1.
 
-Every text and number here was seen on NASA's cFE 7.0.0.
+Every text and number here was observed on NASA's cFE 7.0.0.
 """
 
 from __future__ import annotations

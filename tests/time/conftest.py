@@ -28,7 +28,7 @@ class App(NamedTuple):
 
 
 class World:
-    """TIME and what it needs; it is its own ES, bus, event services and board."""
+    """TIME and its peers; this object is its own ES, bus, event services and board."""
 
     def __init__(
         self, start_ns: int = 351_000_000, tick_ns: int = 0, kept: dict[str, Any] | None = None, **config: Any
@@ -118,7 +118,7 @@ class World:
         self.kernel.run(self.kernel.now + int(seconds * SECOND_NS))
 
     def call(self, function: Callable[[], Result], app_id: int = APP_ID) -> Result:
-        """What a function returns or raises in a task of an application."""
+        """Return the result of a function in a task of an application, or raise its exception."""
         results: list[Result] = []
         self.kernel.spawn("caller", lambda: results.append(function()), 100, App(app_id, "APP"))
         self.kernel.run(self.kernel.now)

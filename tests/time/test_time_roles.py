@@ -1,4 +1,4 @@
-"""Other processors than a server with a simulated tone: clients, external sources, tones that are foretold, UTC."""
+"""Processors other than a server with a simulated tone: clients, external sources, predicted tones, UTC."""
 
 from __future__ import annotations
 
@@ -199,7 +199,7 @@ def test_an_external_met(make: Make) -> None:
 
 @pytest.mark.parametrize(("new_met", "sent"), [(2001, 2001), (2002, 2000), (1999, 2000)])
 def test_a_set_clock_does_not_believe_everything(make: Make, new_met: int, sent: int) -> None:
-    """The limit is half a second; what is beyond it makes the server tell its own time."""
+    """The limit is half a second. Beyond it, the server sends its own time."""
     world = source(make, "met")
     world.call(lambda: world.time.external_met((2000, 0)))
     world.run(0.01)

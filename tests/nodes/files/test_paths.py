@@ -1,4 +1,5 @@
-"""Paths with drives: what a run writes at C:\\a lies below its own folder, and is found there by the same path."""
+"""Paths with drives: a file that a run writes on drive C: lies below its own folder, and the same path finds it
+there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Shipped types against what real genpy 0.6.16 made of them: md5sum, definition, bytes and text."""
+"""Shipped types against the results of real genpy 0.6.16: md5sum, definition, bytes and text."""
 
 from __future__ import annotations
 
