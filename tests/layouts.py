@@ -31,7 +31,7 @@ class CStruct(NamedTuple):
 
 @cache
 def c_structs() -> dict[str, CStruct]:
-    """Every struct of the file, by name."""
+    """Return every struct of the file, by name."""
     found: dict[str, CStruct] = {}
     for block in (DATA / "layouts.txt").read_text(encoding="utf-8").replace("\n  ", "\t").splitlines():
         head, *rows = block.split("\t")

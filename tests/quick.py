@@ -23,7 +23,7 @@ STALE = pytest.StashKey[list[str]]()
 
 
 def is_dear(path: Path) -> bool:
-    """Whether no test of a file is in the quick loop, which need not be read then."""
+    """Return whether no test of a file is in the quick loop, so that the file need not be read."""
     return _name_of(path) in TABLE.costs
 
 
@@ -50,12 +50,12 @@ def slow_ones(tests: Iterable[pytest.Item]) -> Iterator[pytest.Item]:
 
 
 def quick_ones(tests: Iterable[pytest.Item]) -> Iterator[pytest.Item]:
-    """The tests of the quick loop."""
+    """Return the tests of the quick loop."""
     return (test for test in tests if not test.get_closest_marker("slow") and test.nodeid not in TABLE)
 
 
 def stale_lines(tests: Iterable[pytest.Item]) -> list[str]:
-    """The lines of the table that stand for none of the tests, which are all of their files."""
+    """Return the lines of the table that stand for none of the tests, which are all of their files."""
     names = [test.nodeid for test in tests if not test.get_closest_marker("slow")]
     known = {name for test in names for name in (test, function_of(test), file_of(test))}
     files = {file_of(name) for name in names}

@@ -38,7 +38,7 @@ _GUARD = re.compile(r"^if __name__ == .__main__.:", re.MULTILINE)
 
 
 def file_of(program: str) -> Path:
-    """The file of a program: a module, or the `__main__.py` of a package."""
+    """Return the file of a program: a module, or the `__main__.py` of a package."""
     path = ROOT.joinpath(*program.split("."))
     return path / "__main__.py" if path.is_dir() else path.with_suffix(".py")
 

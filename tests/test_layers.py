@@ -181,7 +181,8 @@ def test_numpy_and_test_libraries_are_imported_lazily(tree: Tree) -> None:
 
 
 def is_imported_late(path: Path) -> bool:
-    """The display and the screen are themselves imported only when needed; tests import the tools for tests."""
+    """Return whether a module is imported late: the display and the screen only when needed, tools for tests by
+    tests."""
     return (
         (path.name in {"display.py", "screen.py", "tables.py"} and "cli" in path.parts)
         or path.name == "in_tests.py"

@@ -17,7 +17,7 @@ HOW_LONG = re.compile(r"in [\d.]+ s: [\d.]+ x real time, board linux, \w+ tasks"
 
 
 def sample(first: str) -> list[str]:
-    """The lines of the code block that begins with a line."""
+    """Return the lines of the code block that begins with a line."""
     block = next(each for each in re.findall(r"^```\w*\n(.*?)^```", README, re.M | re.S) if each.startswith(first))
     return block.splitlines()
 

@@ -139,5 +139,5 @@ class AppBench(Bench):
 
 
 def cmd(msg_id: int, fcn_code: int = 0, payload: bytes = b"") -> bytes:
-    """A command packet."""
+    """Return a command packet."""
     return bytes(command(msg_id, fcn_code, payload))

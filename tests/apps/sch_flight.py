@@ -61,7 +61,7 @@ class Flight:
         return next(seen.at_ns for seen in self.seen if seen.msg_id == FIRST)
 
     def housekeeping(self) -> dict[str, int]:
-        """The last housekeeping packet."""
+        """Return the last housekeeping packet."""
         return pk.HK_TLM.read([seen.packet for seen in self.seen if seen.msg_id == pk.HK_TLM_MID][-1])
 
 

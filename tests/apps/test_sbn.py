@@ -234,7 +234,7 @@ def test_10_000_random_datagrams_do_no_harm_and_are_counted(impostor: Impostor) 
 
 
 def damaged(rng: random.Random) -> bytes:
-    """A datagram of processor 2 with something wrong in it, or random bytes."""
+    """Return a damaged datagram of processor 2, or random bytes."""
     kind = rng.choice([pr.SUB_MSG, pr.UNSUB_MSG, pr.APP_MSG, pr.PROTO_MSG, pr.NO_MSG, 0x55, 0xA1])
     payload = rng.choice([subs(0x08F0, 0x18F1), rng.randbytes(rng.randrange(64)), b""])
     data = bytearray(pr.pack(pr.NetMsg(kind, *IDS, payload)))

@@ -10,13 +10,13 @@ from cfepy.cli.main import parser_for
 
 
 def parsers() -> dict[str, argparse.ArgumentParser]:
-    """The parsers that have no subcommands, such as `run` and `topic echo`."""
+    """Return the parsers that have no subcommands, such as `run` and `topic echo`."""
     return dict(_leaves("", _whole()))
 
 
 @functools.cache
 def _whole() -> argparse.ArgumentParser:
-    """The parser of all commands, which takes a tenth of a second to make."""
+    """Return the parser of all commands, which takes a tenth of a second to make."""
     return parser_for([])
 
 

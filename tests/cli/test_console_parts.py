@@ -138,7 +138,7 @@ S = 10**9
 
 
 def saved(*noted: tuple[Step | None, int, int, str], end_ns: int = 20 * S) -> list[str]:
-    """The lines of a script: steps or commands with when they began and were done, and the verdict's detail."""
+    """Return the lines of a script: steps or commands with when they began and were done, and the verdict's detail."""
     script = SavedScript(DICTIONARY)
     for step, began_ns, done_ns, detail in noted:
         if step is None:

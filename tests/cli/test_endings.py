@@ -40,7 +40,7 @@ sys.exit(process())
 
 
 def ended(words: Sequence[str], when: str = "", before: str = "", after: str = "") -> subprocess.CompletedProcess[str]:
-    """The command in a process of its own, with Ctrl-C when a module is imported."""
+    """Run the command in a separate process, with Ctrl-C when a module is imported."""
     return subprocess.run(
         [sys.executable, "-c", COMMAND.format(words=list(words), when=when, before=before, after=after)],
         capture_output=True,
@@ -138,7 +138,7 @@ def test_main_puts_the_answers_to_signals_back() -> None:
 
 
 def flying(folder: Path) -> tuple[subprocess.Popen[str], Path, Path]:
-    """A run that has begun, its bag and its journal."""
+    """Return a run that has begun, its bag and its journal."""
     bag, journal = folder / "run.bag", folder / "run.cfepy"
     process = started("--for", "100000", "--bag", str(bag), "--record", str(journal))
     read_to(process, "phase approach")
@@ -146,7 +146,7 @@ def flying(folder: Path) -> tuple[subprocess.Popen[str], Path, Path]:
 
 
 def started(*options: str, below: Sequence[str] = ()) -> subprocess.Popen[str]:
-    """A run of capture, its output in pipes."""
+    """Return a run of capture, its output in pipes."""
     words = [*below, sys.executable, "-u", "-m", "cfepy", "run", "capture", *options]  # each line is seen at once
     return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 

@@ -33,7 +33,7 @@ PROGRAM = 'import cfepy; cfepy.run("lab", seconds=2)'
 
 
 def loaded_by(code: str) -> set[str]:
-    """The modules of cfepy that a fresh interpreter has after some code."""
+    """Return the modules of cfepy that a fresh interpreter has after some code."""
     told = f"import json, sys\n{code}\nprint()\nprint(json.dumps(list(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=True)
     return {name for name in json.loads(done.stdout.splitlines()[-1]) if name.partition(".")[0] in TOPS}

@@ -42,7 +42,7 @@ class Case:
 
 
 def app(body: str, ends: bool = False) -> str:
-    """An application that does something 0.7 s after its start."""
+    """Return an application that does something 0.7 s after its start."""
     loop = "" if ends else QUIET.partition("register()\n")[2]
     lines = "".join(f"        {line}\n" for line in body.splitlines())
     return f"\n    def Main(cfe):\n        cfe.evs.register()\n        cfe.os.task_delay(100)\n{lines}{loop}"

@@ -123,7 +123,7 @@ def test_each_attribute_of_a_plan_has_an_option() -> None:
 
 
 def plan_that_takes_off(words: list[str], monkeypatch: pytest.MonkeyPatch) -> RunPlan:
-    """The plan that a command line hands to the pilot."""
+    """Return the plan that a command line hands to the pilot."""
 
     def caught(plan: RunPlan, *_: object) -> object:
         raise TookOffError(plan)

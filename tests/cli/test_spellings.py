@@ -95,7 +95,7 @@ def key(action: Action) -> str:
 
 
 def pattern(core: str) -> str:
-    """A core of a help as a regular expression: `(a|b)` is a choice, all else is as it stands."""
+    """Return the core of a help text as a regular expression: `(a|b)` is a choice, all else is literal."""
     parts = re.split(r"(\([\w ]+(?:\|[\w ]+)+\))", core)
     return "".join(part if number % 2 else re.escape(part) for number, part in enumerate(parts))
 

@@ -66,7 +66,7 @@ class Block(NamedTuple):
 
 
 def is_command(line: str) -> bool:
-    """Whether a line begins as a command does."""
+    """Return whether a line begins as a command does."""
     word = _SETTINGS.sub("", line).partition(" ")[0]
     return word in PROGRAMS or _OWN_PROGRAM.match(word) is not None
 
@@ -85,10 +85,10 @@ def blocks(page: Path, section: str = "") -> list[Block]:
 
 
 def commands(page: Path) -> list[str]:
-    """All commands of a page, in their order."""
+    """Return all commands of a page, in their order."""
     return [line for block in blocks(page) for line in block.lines]
 
 
 def name_of(page: Path) -> str:
-    """A page's path in the repository."""
+    """Return a page's path in the repository."""
     return page.relative_to(ROOT).as_posix() if page.is_relative_to(ROOT) else str(page)

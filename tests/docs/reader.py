@@ -183,7 +183,7 @@ class Reader:
 
 
 def cpu_s() -> float:
-    """The processor time of all commands that have ended."""
+    """Return the processor time of all commands that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 

@@ -150,7 +150,7 @@ def table() -> dict[str, dict[str, Any]]:
 
 
 def scene_of(page: Path) -> Scene:
-    """The scene of a page.
+    """Return the scene of a page.
 
     Raises:
         KeyError: it has none.
@@ -159,6 +159,6 @@ def scene_of(page: Path) -> Scene:
 
 
 def overlooked(page: Path) -> list[str]:
-    """The commands of a page that no scene speaks of, and lines that look like commands and are not read as such."""
+    """Return the commands of a page without a scene, and lines that look like commands but are not read as such."""
     unread = [line for block in blocks(page) for line in block.overlooked]
     return unread if name_of(page) in table() else [*commands(page), *unread]

@@ -24,7 +24,7 @@ EXTRAS = set(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8")
 
 
 def spans(page: Path, start: str) -> Iterator[str]:
-    """The pieces of code in a page's sentences that begin so."""
+    """Yield the pieces of code in a page's sentences that begin so."""
     for found in INLINE.findall(FENCE.sub("", page.read_text(encoding="utf-8"))):
         text = " ".join(found.replace("\\|", "|").split())
         if text.startswith(start) and not OUTPUT.match(text):
@@ -58,12 +58,12 @@ def wrong(command: str) -> str:
 
 @cache
 def parser_of(word: str) -> argparse.ArgumentParser:
-    """The parser of a command line that begins so."""
+    """Return the parser of a command line that begins so."""
     return cli.parser_for([word])
 
 
 def subcommands(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
-    """The commands below a command."""
+    """Return the commands below a command."""
     found = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
     return {name: below for action in found for name, below in action.choices.items()}
 

@@ -130,7 +130,7 @@ def test_a_cds_that_is_too_small_is_not_available() -> None:
 
 
 def small() -> Board:
-    """Three blocks, the middle one given back, so that every kind of byte is there."""
+    """Return three blocks, the middle one given back, so that every kind of byte is there."""
     board = Board()
     for name, data in (("A.One", b"first."), ("A.Gone", b"gone.."), ("B.Two", b"second")):
         handle, _ = board.cds.register(6, name, is_table=name == "B.Two")

@@ -138,11 +138,11 @@ class World:
         self.call(lambda: self.evs.commands.process(bytes(command(msg_id, code, payload))), EVS_ID)
 
     def sent(self) -> list[Sent]:
-        """The long events on the bus."""
+        """Return the long events on the bus."""
         return [_event(packet) for packet in self.packets if get_msg_id(packet) == pk.LONG_EVENT_MSG_MID]
 
     def housekeeping(self) -> dict[str, object]:
-        """The fields of a fresh housekeeping packet."""
+        """Return the fields of a fresh housekeeping packet."""
         self.command(0, msg_id=pk.SEND_HK_MID)
         packet = self.packets[-1]
         assert get_msg_id(packet) == pk.HK_TLM_MID

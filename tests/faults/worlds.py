@@ -87,7 +87,7 @@ def told(mission: Mission, start: str) -> list[str]:
 
 
 def values(mission: Mission, app: str = "TAKER") -> list[int]:
-    """The numbers that an application took."""
+    """Return the numbers that an application took."""
     return [int(line.split()[2]) for line in told(mission, f"{app} takes ")]
 
 

@@ -81,7 +81,7 @@ class Attempt:
 
 
 def make_mission(folder: Path) -> Mission:
-    """A mission that is ready to boot."""
+    """Return a mission that is ready to boot."""
     return Mission(write_mission(folder, STARTUP, cfe_assert=ASSERT_LIB), console=Console(quiet=True))
 
 

@@ -19,7 +19,7 @@ IN_FILE = (0xF007, 0xBA11)
 
 
 def register(cfe: Cfe, name: str = NAME, options: int = 0) -> TableHandle:
-    """The handle of a table of the usual size."""
+    """Return the handle of a table of the usual size."""
     return cfe.tbl.register(name, SIZE, options)
 
 

@@ -21,7 +21,7 @@ NAME = "CHILD_TASK_1"
 
 
 def counter(cfe: Cfe, counts: list[int]) -> Callable[[], None]:
-    """A task that counts every 100 ms."""
+    """Return a task that counts every 100 ms."""
 
     def count() -> None:
         while True:

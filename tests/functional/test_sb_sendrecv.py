@@ -56,7 +56,7 @@ def test_basic_transmit_receive(cfe: Cfe) -> None:
 
 
 def buffer_of(cfe: Cfe, packet: bytearray) -> MessageBuffer:
-    """A zero-copy buffer that holds a message."""
+    """Return a zero-copy buffer that holds a message."""
     buffer = cfe.sb.allocate_message_buffer(len(packet))
     buffer[:] = packet
     return buffer

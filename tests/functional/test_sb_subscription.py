@@ -38,7 +38,7 @@ def come_and_go(cfe: Cfe, subscribe: Subscribe, unsubscribe: Subscribe) -> None:
 
 
 def pipe_gets(cfe: Cfe, msg_id: int, pipe: int) -> bool:
-    """Whether a message that is sent now comes into a pipe."""
+    """Return whether a message that is sent now comes into a pipe."""
     while cfe.sb.receive_buffer(pipe, 0) is not None:
         pass
     cfe.sb.transmit_msg(cfe.msg.init(msg_id, 16))

@@ -71,7 +71,7 @@ def _random_number(cell: Cell, random: Random) -> int:
 
 
 def random_telemetry(declared: Telemetry, sequence: int, random: Random) -> bytes:
-    """A telemetry packet of random values and a random time.
+    """Return a telemetry packet of random values and a random time.
 
     Args:
         declared: the packet.
@@ -95,7 +95,7 @@ def telemetry_values(declared: Telemetry, packet: bytes) -> dict[str, object]:
 
 
 def xtce_values(name: str, layout: Layout, payload: bytes) -> dict[str, object]:
-    """What a reader of our XTCE has to make of a payload: values by their parameters, of enumerations the names.
+    """Return the expected values of a payload by a reader of our XTCE, by parameter; enumerations have their names.
 
     Args:
         name: of the packet; "" for the arguments of a command.

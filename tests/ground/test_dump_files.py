@@ -21,7 +21,7 @@ def golden(name: str) -> DumpFile:
 
 
 def shown(dump: DumpFile, number: int) -> list[str]:
-    """A record as people see it."""
+    """Return a record as text."""
     record = dump.records[number]
     return [column.text(value_at(record, column.path)) for column in dump.columns]
 

@@ -59,7 +59,7 @@ def recording(folder: Path, suffix: str) -> Path:
 
 
 def played(node: Path, bag: str, options: str | None = None, tasks: str = "thread") -> tuple[list[str], str]:
-    """The lines of the console of a run into which a recording is played, and the digest."""
+    """Return the lines of the console of a run into which a recording is played, and the digest."""
     node.write_text(HEARS, encoding="utf-8")
     lines: list[str] = []
     plan = RunPlan((str(node),), NODE, seconds=4, tasks=tasks, play=bag, play_options=options)

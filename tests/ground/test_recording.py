@@ -166,7 +166,7 @@ def test_of_a_file_that_is_cut_off_all_before_is_left(suffix: str, kind: str, fo
 
 
 def left_of(data: bytes, copy: Path) -> int:
-    """How many messages are left of damaged data."""
+    """Return how many messages are left of damaged data."""
     copy.write_bytes(data)
     found: int = summary_of(str(copy)).to_dict()["messages"]
     return found
@@ -319,7 +319,7 @@ def test_what_is_damaged_is_lost_and_nothing_else(part: str, suffix: str, folder
 
 
 def chunks_of(file: Path) -> list[Any]:
-    """The chunks of an MCAP file, as the library mcap knows them."""
+    """Return the chunks of an MCAP file, as the library mcap knows them."""
     with file.open("rb") as stream:
         summary = make_reader(stream).get_summary()
         assert summary is not None

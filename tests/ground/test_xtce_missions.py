@@ -26,7 +26,7 @@ ALL_TYPES = "all types"
 
 
 def dictionary_named(name: str) -> Dictionary:
-    """The dictionary of a shipped mission, or one with a field of every type."""
+    """Return the dictionary of a shipped mission, or one with a field of every type."""
     if name != ALL_TYPES:
         return dictionary_of(read_mission(name))
     found = Dictionary()
@@ -35,7 +35,7 @@ def dictionary_named(name: str) -> Dictionary:
 
 
 def declared_telemetry(dictionary: Dictionary) -> Iterator[Telemetry]:
-    """Every packet that is declared, also several of one MsgId."""
+    """Yield every packet that is declared, also several of one MsgId."""
     for declared in dictionary.telemetry.values():
         if isinstance(declared, Telemetry):
             yield declared

@@ -42,7 +42,7 @@ _VALUES = {
 
 
 def is_installed() -> bool:
-    """Whether there is a Yamcs."""
+    """Return whether there is a Yamcs."""
     return (INSTALLED / "bin/yamcsd").exists()
 
 
@@ -73,7 +73,7 @@ def add_instances(home: Path, names: Iterable[str]) -> None:
 
 
 def ports_of(number: int) -> tuple[int, int]:
-    """Where the telemetry of an instance arrives, and where its commands go."""
+    """Return the port of an instance's telemetry, and the port of its commands."""
     return 13_000 + number, 14_000 + number
 
 

@@ -126,7 +126,7 @@ def _avoid_the_smallest(cell: Cell, payload: bytearray) -> None:
 
 
 def _argument(cell: Cell, value: object) -> object:
-    """A value as Yamcs takes it in JSON."""
+    """Return a value as Yamcs takes it in JSON."""
     if isinstance(value, float) and not math.isfinite(value):
         return "Infinity" if value > 0 else "-Infinity"
     return str(value) if cell.type in ("u64", "i64") else value

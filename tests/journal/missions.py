@@ -49,7 +49,7 @@ RACE = """
 
 
 def keyboard(folder: Path) -> str:
-    """A node that reads its terminal."""
+    """Return a node that reads its terminal."""
     keys = 'nodes:\n  TYPIST: {keys: ["a", 0.3, "bc", "\\x03"]}\n'
     return write_mission(folder, NODE.format(name="typist", app="TYPIST") + "!", typist=TYPIST, mission_yaml=keys)
 
@@ -60,7 +60,7 @@ def resets(folder: Path) -> str:
 
 
 def restarts(folder: Path) -> str:
-    """The same, but that it is only started again."""
+    """Return the same, except that it is only started again."""
     return write_mission(folder, "CFE_APP, crasher, crasher_main, CRASHER, 50, 16384, 0x0, 0;\n!", crasher=CRASHER)
 
 

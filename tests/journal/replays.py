@@ -44,6 +44,6 @@ def assert_same_again(journal: Journal, trace: str) -> None:
 
 
 def plan_for(mission: str, seconds: float | None = None, schedule: str = "fifo", **options: object) -> RunPlan:
-    """The plan of `cfepy run MISSION`."""
+    """Return the plan of `cfepy run MISSION`."""
     plan = RunPlan((mission,), seconds=seconds, schedule=Schedule.parse(schedule))
     return replace(plan, **options)  # type: ignore[arg-type]

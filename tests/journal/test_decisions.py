@@ -10,7 +10,7 @@ from cfepy.schedules import Schedule, make_kernel
 
 
 def fly(policy: Policy) -> list[int]:
-    """The decisions of three tasks that make five calls each."""
+    """Return the decisions of three tasks that make five calls each."""
     recorded = NotingPolicy(policy)
 
     def work() -> None:

@@ -30,13 +30,13 @@ ONLY_OURS = [
 
 
 def masked(lines: list[str], but: list[tuple[str, str]]) -> list[str]:
-    """Lines with the time masked, without those that a pattern declares to be different."""
+    """Return lines with the time masked, without those that a pattern declares to be different."""
     kept = [line for line in lines if not any(re.search(pattern, line) for pattern, _ in but)]
     return [STAMP.sub("<time>", line) for line in kept]
 
 
 def golden(name: str, last: str) -> list[str]:
-    """The lines of a recorded console up to the one that contains `last`."""
+    """Return the lines of a recorded console up to the one that contains `last`."""
     lines = (DATA / name).read_text(encoding="utf-8").splitlines()
     end = max(number for number, line in enumerate(lines) if last in line)
     return masked(lines[: end + 1], ONLY_THEIRS)

@@ -53,7 +53,7 @@ def commands() -> list[dict[str, Any]]:
 
 
 def recorded_telemetry() -> list[dict[str, Any]]:
-    """The recorded packets: name, MsgId, bytes."""
+    """Return the recorded packets: name, MsgId, bytes."""
     found: list[dict[str, Any]] = json.loads((DATA / "golden_telemetry.json").read_text(encoding="utf-8"))
     return found
 
@@ -83,7 +83,7 @@ def fly(folder: Path) -> Session:
 
 
 def events_in(lines: list[str]) -> Iterator[str]:
-    """The lines of the event port, without their stamps."""
+    """Yield the lines of the event port, without their stamps."""
     for line in lines:
         if STAMP.match(line):
             yield STAMP.sub("", line)

@@ -128,7 +128,7 @@ def test_nothing_of_it_is_past_the_simulated_computer(
 
 
 def flown_with(tmp_path: Path, startup: str, **sources: str) -> list[str]:
-    """The lines of the console of a mission that flies for two seconds."""
+    """Return the lines of the console of a mission that flies for two seconds."""
     (tmp_path / "other").mkdir(exist_ok=True)
     flown = fly(RunPlan((write_mission(tmp_path / "other", startup, **sources),), seconds=2.0))
     return list(flown.mission.console.lines)

@@ -45,7 +45,7 @@ def nothing_else() -> None:
 
 
 def parts() -> Counter[str]:
-    """How many parts of missions there are, without those that were there before the test."""
+    """Return how many parts of missions there are, without those that were there before the test."""
     return Counter(type(each).__name__ for each in gc.get_objects() for kind in PARTS if isinstance(each, kind))
 
 

@@ -137,7 +137,7 @@ def left(mission: Mission) -> dict[str, object]:
 
 
 def left_by_loads(mission: Mission) -> list[int]:
-    """The files of good LOAD commands, which CFE_TBL never closes, as in NASA's code."""
+    """Return the files of good LOAD commands, which CFE_TBL never closes, as in NASA's code."""
     osal, (services,) = mission.processor.osal, (app for app in mission.cfe.es.apps if app.name == "CFE_TBL")
     opened: list[int] = []
     osal.for_each_object_of_type(OS_STREAM_BASE, services.main_task_id, lambda number, _: opened.append(number))

@@ -20,7 +20,7 @@ def run() -> cfepy.Run:
 
 
 def matrix(transform: Any) -> Any:
-    """A geometry_msgs/Transform as a matrix."""
+    """Return a geometry_msgs/Transform as a matrix."""
     turn, place = transform.rotation, transform.translation
     x, y, z, w = turn.x, turn.y, turn.z, turn.w
     made = numpy.identity(4)

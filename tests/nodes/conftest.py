@@ -40,7 +40,7 @@ class Program:
         return "\n".join(self.lines)
 
     def global_(self, name: str) -> Any:
-        """A global of its `__main__`."""
+        """Return a global of its `__main__`."""
         return getattr(self.universe.importer.modules["__main__"], name)
 
 

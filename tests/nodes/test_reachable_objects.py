@@ -201,7 +201,7 @@ def in_statement(thing: Thing, here: Callable[[], object]) -> object:
 
 
 def holds(function: Callable[[Thing, Callable[[], object]], object]) -> bool:
-    """Whether a task that stands where the function calls `here` still has the thing in its hands."""
+    """Return whether a task at the call of `here` can still reach the thing."""
     frames: list[FrameType] = []
     arrived, go = threading.Event(), threading.Event()
 

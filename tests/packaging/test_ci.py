@@ -25,7 +25,7 @@ KEPT = {"restore": "actions/cache/restore", "save": "actions/cache/save", "artif
 
 
 def job_of(file: Path, name: str) -> dict[str, Any]:
-    """A job of a workflow."""
+    """Return a job of a workflow."""
     found: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8"))["jobs"][name]
     return found
 

@@ -135,7 +135,7 @@ def test_inputs_are_opened_by_the_helper_alone() -> None:
 
 
 def _opens(node: ast.AST) -> bool:
-    """Whether code opens a file: `open(...)`, `path.open("...")`, `path.read_bytes()`, `path.read_text(...)`."""
+    """Return whether code opens a file: `open(...)`, `path.open("...")`, `path.read_bytes()`, `path.read_text(...)`."""
     if not isinstance(node, ast.Call):
         return False
     if isinstance(node.func, ast.Name):

@@ -16,12 +16,12 @@ ON_ITS_OWN = {"time_cfg_fake_tone": False}
 
 
 def housekeeping(flight: Flight) -> dict[str, Any]:
-    """The housekeeping packet."""
+    """Return the housekeeping packet."""
     return flight.ask(pk.SEND_HK, pk.HK_TLM)
 
 
 def diagnostic(flight: Flight) -> dict[str, Any]:
-    """The diagnostic packet."""
+    """Return the diagnostic packet."""
     return flight.ask(pk.SEND_DIAGNOSTIC, pk.DIAG_TLM)
 
 

@@ -146,7 +146,7 @@ class Flight:
         return self.events()
 
     def events(self) -> list[Event]:
-        """The long events since the last command."""
+        """Return the long events since the last command."""
         return [
             Event(packet_id["AppName"], packet_id["EventID"], packet_id["EventType"], fields["Message"])
             for fields in self.all(evs_packets.LONG_EVENT_MSG)
@@ -154,7 +154,7 @@ class Flight:
         ]
 
     def all(self, telemetry: Telemetry | Command) -> list[dict[str, Any]]:
-        """The fields of every packet of a kind since the last command."""
+        """Return the fields of every packet of a kind since the last command."""
         return [telemetry.read(packet) for packet in self.packets if get_msg_id(packet) == telemetry.msg_id]
 
     def ask(self, command: Command, telemetry: Telemetry) -> dict[str, Any]:

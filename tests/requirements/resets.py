@@ -48,14 +48,14 @@ SOURCES = {
 
 
 def booted(folder: Path) -> Mission:
-    """The mission, operational."""
+    """Return the mission, operational."""
     mission = Mission(write_mission(folder, STARTUP, **SOURCES), console=Console(quiet=True))
     mission.run_for(2)
     return mission
 
 
 def housekeeping(ground: Ground) -> dict[str, int]:
-    """The housekeeping packet of Executive Services."""
+    """Return the housekeeping packet of Executive Services."""
     return ground.answer(pk.SEND_HK, pk.HK_TLM)
 
 

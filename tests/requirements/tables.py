@@ -38,11 +38,11 @@ class ProbeTable:
         return self.flight.call(lambda: getattr(self.flight.cfe.tbl, function)(*args))
 
     def mine(self, function: str, *args: Any) -> Any:
-        """The same with PROBE's handle first."""
+        """Return the same with PROBE's handle first."""
         return self.call(function, self.handle, *args)
 
     def status(self, function: str, *args: Any) -> int:
-        """The status that a function of PROBE's handle fails with."""
+        """Return the status that a function of PROBE's handle fails with."""
         try:
             result = self.mine(function, *args)
         except CfeError as error:
@@ -50,7 +50,7 @@ class ProbeTable:
         raise AssertionError(f"{function} gave {result!r}")
 
     def content(self) -> bytes:
-        """The active image."""
+        """Return the active image."""
         data = bytes(self.mine("get_address")[0])
         self.mine("release_address")
         return data
@@ -82,12 +82,12 @@ def put(flight: Flight, data: bytes, offset: int = 0, path: str = "/ram/t.tbl", 
 
 
 def fields_of(time: tuple[int, int]) -> dict[str, int]:
-    """A time as packets have it."""
+    """Return a time as packets have it."""
     return {"Seconds": time[0], "Subseconds": time[1]}
 
 
 def housekeeping(flight: Flight) -> dict[str, Any]:
-    """The housekeeping packet of Table Services."""
+    """Return the housekeeping packet of Table Services."""
     return flight.ask(pk.SEND_HK, pk.HK_TLM)
 
 
@@ -100,6 +100,6 @@ def free_bytes(flight: Flight) -> int:
 
 
 def registry(flight: Flight, name: str = NAME) -> dict[str, Any]:
-    """A table's registry entry in telemetry."""
+    """Return a table's registry entry in telemetry."""
     flight.send(pk.SEND_REGISTRY, TableName=name)
     return flight.ask(pk.SEND_HK, pk.REG_TLM)

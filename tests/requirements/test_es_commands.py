@@ -19,7 +19,7 @@ NOBODY = {"Application": "NOBODY"}
 
 
 def pool(flight: Flight) -> Fields:
-    """A memory pool that is there."""
+    """Return an existing memory pool."""
     return {"PoolHandle": flight.call(lambda: flight.cfe.es.pool_create(1024))}
 
 

@@ -41,7 +41,7 @@ class Family:
             cfe.os.task_delay(100)
 
     def is_running(self, lab: Lab) -> bool:
-        """Whether the child task does anything."""
+        """Return whether the child task does anything."""
         before = self.beats
         lab.mission.run_for(1)
         return self.beats > before

@@ -283,7 +283,7 @@ def test_cEVS3018_housekeeping(flight: Flight) -> None:
         "OutputPort": 5,
         "LogFullFlag": 1,
         "LogMode": 0,
-        "MessageSendCounter": 25,  # beside the 22 a NOOP, a refusal and the unregistered application
+        "MessageSendCounter": 25,  # 22, a NOOP, a refusal and the unregistered application
         "LogOverflowCounter": 5,
         "LogEnabled": 1,
         "Spare1": 0,

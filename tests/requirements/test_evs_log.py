@@ -28,7 +28,7 @@ def number(flight: Flight, count: int, first: int = 0) -> None:
 
 
 def logged(flight: Flight, path: str = "") -> list[str]:
-    """The texts of the event log, written to a file."""
+    """Return the texts of the event log from a written file."""
     flight.send(pk.WRITE_LOG_DATA_FILE, LogFilename=path)
     data = flight.mission.files.read_file(path or "/ram/cfe_evs.log")
     assert read_header(data).subtype == 16

@@ -20,7 +20,7 @@ MESSAGES = [pytest.param(each, id=each["type"]) for each in recorded()["messages
 
 
 def loaded(full_name: str, full_text: str) -> tuple[Any, Any]:
-    """A context with all types of a full text, and the spec of the first."""
+    """Return a context with all types of a full text, and the spec of the first."""
     core, *others = full_text.split("\n" + "=" * 80 + "\n")
     context = generator.MsgContext.create_default()
     for other in others:

@@ -43,7 +43,7 @@ def filled(world: dict[str, Any]) -> Any:
 
 
 def plain(answer: Any) -> Any:
-    """An answer as it stands in the file."""
+    """Return an answer as it stands in the file."""
     if isinstance(answer, msg.TransformStamped):
         t, r = answer.transform.translation, answer.transform.rotation
         frames = [answer.header.frame_id, answer.child_frame_id]

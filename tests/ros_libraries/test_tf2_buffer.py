@@ -27,7 +27,7 @@ def stamped(load: Any, parent: str, child: str, seconds: float, *numbers: float)
 
 
 def buffer_of(load: Any) -> Any:
-    """A buffer with `base` a quarter turn left of `map`, 1 m ahead."""
+    """Return a buffer with `base` a quarter turn left of `map`, 1 m ahead."""
     buffer = load("tf2_ros").Buffer(debug=False)
     buffer.set_transform(stamped(load, "map", "base", 5, 1, 0, 0, 0, 0, HALF, HALF), "me")
     return buffer

@@ -32,7 +32,7 @@ on 64 bits, and a vector that is read into again may take twice what it needs.""
 
 
 def mutated(frame: bytes, draw: random.Random) -> bytes:
-    """A frame with a fault in it."""
+    """Return a frame with a fault in it."""
     octets = bytearray(frame)
     fault = draw.randrange(6)
     at = draw.randrange(len(octets) + 1)
@@ -105,7 +105,7 @@ class Walker:
 
 
 def is_message(full_name: str, octets: bytes) -> bool:
-    """Whether a packet is a message, no byte more or less."""
+    """Return whether a packet is a message, no byte more or less."""
     try:
         Walker(octets).whole(full_name)
     except ValueError:

@@ -71,7 +71,7 @@ def line(name: str, *values: Any) -> Line:
 
 
 def changed(value: Any, operation: str, other: Any) -> Any:
-    """A copy after +=, -=, *= or /=."""
+    """Return a copy after +=, -=, *= or /=."""
     copy = type(value)(*value)
     return getattr(copy, operation)(other)
 

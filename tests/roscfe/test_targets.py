@@ -45,7 +45,7 @@ class There:
         write_headers([*PRINTED, *GEOMETRY], folder / "messages", Profile.HOST, LIBRARY)
 
     def compile(self, name: str, *more: Path, flags: Sequence[str] = ()) -> Path:
-        """A program of this folder, with other sources."""
+        """Return a program of this folder, with other sources."""
         given = (f"-I{self._folder / 'messages'}", "-O1", "-ffp-contract=off", *flags)
         made = self._folder / name
         sources = [FOLDER / f"{name}.cpp", *more]

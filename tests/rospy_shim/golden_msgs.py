@@ -18,7 +18,7 @@ _TIMES = {"time": genpy.Time, "duration": genpy.Duration}
 
 @cache
 def recorded() -> dict[str, list[dict[str, Any]]]:
-    """All recorded types with their cases: "messages", with the requests and responses, and "services"."""
+    """Return all recorded types with their cases: "messages", with the requests and responses, and "services"."""
     found: dict[str, list[dict[str, Any]]] = json.loads(_FILE.read_text(encoding="utf-8"))
     parts = [service[part] for service in found["services"] for part in ("request", "response")]
     return {"messages": found["messages"] + parts, "services": found["services"]}
@@ -31,7 +31,7 @@ def md5sums(kind: str) -> dict[str, str]:
 
 
 def build(library: Library, field_type: str, value: Any) -> Any:
-    """A field's value, or a whole message, from its plain form (dicts, lists, hexadecimal for uint8[])."""
+    """Return a field's value, or a whole message, from its plain form (dicts, lists, hexadecimal for uint8[])."""
     if isinstance(value, dict) and "__bytes_hex__" in value:
         return bytes.fromhex(value["__bytes_hex__"])
     if field_type.endswith("]"):

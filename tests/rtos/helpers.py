@@ -20,7 +20,7 @@ class Log(list[str]):
         self.append(text)
 
     def writer(self, text: str) -> Callable[[], None]:
-        """A task's entry point that writes one line."""
+        """Return a task's entry point that writes one line."""
         return lambda: self.append(text)
 
 

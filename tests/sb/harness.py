@@ -126,5 +126,5 @@ class Bench:
 
 
 def packet(msg_id: int, payload: bytes = b"") -> bytes:
-    """A telemetry packet."""
+    """Return a telemetry packet."""
     return bytes(telemetry(msg_id, payload))

@@ -70,7 +70,7 @@ def words(*steps: int) -> set[str]:
 
 
 def preemptions(word: str, steps: dict[str, int]) -> int:
-    """How many times a task was taken off that had something left to write."""
+    """Return how many times a task with unwritten output was preempted."""
     left, count = dict(steps), 0
     runs = [(name, len(list(run))) for name, run in groupby(word)]
     for name, length in runs:
@@ -80,7 +80,7 @@ def preemptions(word: str, steps: dict[str, int]) -> int:
 
 
 def enough(found: int, odds: float, runs: int = SEEDS) -> bool:
-    """Whether something of at least these odds could have come so rarely."""
+    """Return whether something of at least these odds could have come so rarely."""
     return found >= runs * odds - 4 * sqrt(runs * odds * (1 - odds))
 
 
@@ -232,7 +232,7 @@ PROGRAMS = st.lists(
 
 
 def made_of(tasks: list[tuple[int, list[str]]]) -> Program:
-    """A program of kernel calls of all sorts."""
+    """Return a program of kernel calls of all sorts."""
 
     def program(kernel: Kernel, written: list[str]) -> None:
         queue, mutex, semaphore = Queue(kernel, 2), Mutex(kernel), Semaphore(kernel, 0, 1)
@@ -417,7 +417,7 @@ def test_abreast_lets_who_starts_many_go_on_beyond_its_time_slice() -> None:
 
 
 def _is_together(schedule: str, slice_us: int) -> bool:
-    """Whether of six all have done the first thing before the first one does its second."""
+    """Return whether all of six tasks have done the first step before any does its second."""
 
     def program(kernel: Kernel, written: list[str]) -> None:
         def come() -> None:

@@ -26,7 +26,7 @@ def package(
     words: str = CONVERT,
     **more: str,
 ) -> Trick:
-    """A package that is converted."""
+    """Return a package that is converted."""
     contents = {
         "evil/package.xml": MANIFEST.format(called),
         "evil/CMakeLists.txt": cmake,
@@ -37,28 +37,28 @@ def package(
 
 
 def cmake(name: str, said: str, text: str) -> Trick:
-    """A CMakeLists.txt that is read when a node of a launch file is built."""
+    """Return a CMakeLists.txt that is read when a node of a launch file is built."""
     return package(f"cmake, {name}", said, f"{text}\n{BUILT}", words="check {}/x.launch")
 
 
 def node(name: str, said: str, text: str) -> Trick:
-    """A node that is checked."""
+    """Return a node that is checked."""
     return Trick(f"python: {name}", "check {}/n.py", said, files_of({"n.py": f"import rospy\n{text}"}))
 
 
 def app(name: str, said: str, contents: dict[str, str]) -> Trick:
-    """An application that is checked."""
+    """Return an application that is checked."""
     return Trick(f"application: {name}", "check {}", said, files_of({"startup.scr": START, **contents}))
 
 
 def c_app(name: str, said: str, contents: dict[str, str]) -> Trick:
-    """An application in C that is built."""
+    """Return an application in C that is built."""
     inside = {f"evil/{file}": text for file, text in contents.items()}
     return Trick(f"application in C: {name}", "build {}/evil", said, files_of({"evil/fsw/src/a.c": "int a;", **inside}))
 
 
 def with_(trick: Trick, name: str, more: Callable[[Path], object]) -> Trick:
-    """A trick with something else in its folder."""
+    """Return a trick with another file in its folder."""
 
     def make(folder: Path) -> None:
         trick.make(folder)
@@ -68,7 +68,7 @@ def with_(trick: Trick, name: str, more: Callable[[Path], object]) -> Trick:
 
 
 def pipe(file: str) -> Callable[[Path], object]:
-    """A pipe in place of a file."""
+    """Return a pipe in place of a file."""
 
     def make(folder: Path) -> None:
         (folder / file).unlink(missing_ok=True)
@@ -90,7 +90,7 @@ def link(file: str, target: str) -> Callable[[Path], object]:
 
 
 def holes(file: str) -> Callable[[Path], object]:
-    """A file of a terabyte, which takes no room."""
+    """Return a file of a terabyte, which takes no room."""
 
     def make(folder: Path) -> None:
         (folder / file).parent.mkdir(parents=True, exist_ok=True)

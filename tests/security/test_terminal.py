@@ -88,7 +88,7 @@ def bag(folder: Path, topics: Sequence[str] = (f"/{NASTY}", "/good\n/forged")) -
 
 
 def dumped(folder: Path, source: Path, at: int) -> Path:
-    """A file of cFE with a nasty text from a byte on."""
+    """Return a file of cFE with a nasty text from a byte on."""
     data = bytearray(source.read_bytes())
     nasty = b"x\x1b]0;title\a\x1b[31m\x9b"
     data[at : at + len(nasty)] = nasty

@@ -69,23 +69,23 @@ def files_of(contents: Mapping[str, str]) -> Callable[[Path], object]:
 
 
 def launch(name: str, said: str, body: str) -> Trick:
-    """A launch file that is checked."""
+    """Return a launch file that is checked."""
     return Trick(name, "check {}/x.launch", said, _file("x.launch", f"<launch>\n{body}\n</launch>\n"))
 
 
 def expression(name: str, said: str, text: str) -> Trick:
-    """An expression in a launch file."""
+    """Return an expression in a launch file."""
     text = text.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     return launch(f"eval: {name}", said, f'<param name="p" value="$(eval {text})"/>')
 
 
 def parameters(name: str, said: str, text: str) -> Trick:
-    """A file of parameters, built into tables."""
+    """Return a file of parameters, built into tables."""
     return Trick(f"yaml: {name}", "param build {}/robot.yaml -o {}/out", said, _file("robot.yaml", text))
 
 
 def mission(name: str, said: str, text: str, **more: str) -> Trick:
-    """A mission file that is checked."""
+    """Return a mission file that is checked."""
     start = "CFE_APP, hk, HK_AppMain, HK, 90, 16384, 0x0, 0;\n!\n"
     return Trick(f"mission: {name}", "check {}", said, _files(startup__scr=start, mission__yaml=text, **more))
 
@@ -108,7 +108,7 @@ def _look(**values: Any) -> Callable[[str, dict[str, Any], Path], object]:
 
 
 def _look_through_link() -> Callable[[str, dict[str, Any], Path], object]:
-    """A link, and a link that is to be put through it."""
+    """Return a link, and a link to be created through it."""
     names = iter(["/way", f"/way/{CANARY}"])
 
     def change(kind: str, body: dict[str, Any], folder: Path) -> None:
@@ -185,7 +185,7 @@ def _wide_includes(folder: Path) -> None:
 
 
 def _messages(package: str, text: str) -> Callable[[Path], object]:
-    """A package with a message, and a node that imports it."""
+    """Return a package with a message, and a node that imports it."""
     return _files(
         **{
             "package__xml": f"<package><name>{package}</name></package>",

@@ -202,7 +202,7 @@ class Bench:
         self.files[path] = build(TableImage(name, data, "test", offset))
 
     def take_events(self) -> list[tuple[int, int, str]]:
-        """The events since the last time."""
+        """Return the events since the last time."""
         events = list(self.events)
         self.events.clear()
         return events

@@ -21,7 +21,7 @@ NAME = "APP.T"
 
 
 def after_reset(bench: Bench) -> Bench:
-    """The bench that a processor reset makes of another one."""
+    """Return the bench that a processor reset makes of another one."""
     return Bench(bench.store)
 
 

@@ -18,7 +18,7 @@ BAD = 0xFF
 
 
 def make_bench(version: str) -> tuple[Bench, int]:
-    """A bench with a table that was loaded twice, so that it can be dumped, and a good file for it."""
+    """Return a bench with a table that was loaded twice, so that it can be dumped, and a good file for it."""
     bench = Bench(cfe_version=version)
     handle = bench.tbl.register("T", 4, 0, lambda image: -5 if image[0] == BAD else 0)
     for _ in range(2):

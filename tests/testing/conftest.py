@@ -85,7 +85,7 @@ Suite = Callable[..., pytest.RunResult]
 
 
 def write_mission(folder: Path, **nodes: str) -> Path:
-    """A mission of ROS nodes: their programs by name."""
+    """Return a mission of ROS nodes: their programs by name."""
     folder.mkdir()
     lines = [NODE_LINE.format(name=name, app=name.upper()) for name in nodes]
     (folder / "startup.scr").write_text("".join(lines) + "!\n", encoding="utf-8")

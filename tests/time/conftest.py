@@ -134,17 +134,17 @@ class World:
         return replies.command_counter, replies.error_counter
 
     def housekeeping(self) -> dict[str, Any]:
-        """The fields of a fresh housekeeping packet."""
+        """Return the fields of a fresh housekeeping packet."""
         self.command(0, msg_id=pk.SEND_HK_MID)
         return self._last(pk.HK_TLM_MID, pk.HOUSEKEEPING, TLM_HEADER_SIZE)
 
     def diagnostic(self) -> dict[str, Any]:
-        """The fields of a fresh diagnostic packet."""
+        """Return the fields of a fresh diagnostic packet."""
         self.command(pk.SEND_DIAGNOSTIC_CC)
         return self._last(pk.DIAG_TLM_MID, pk.DIAGNOSTIC, TLM_HEADER_SIZE)
 
     def tone_data(self) -> dict[str, Any]:
-        """The fields of the last message about a tone."""
+        """Return the fields of the last message about a tone."""
         return self._last(pk.DATA_CMD_MID, pk.TONE_DATA, CMD_HEADER_SIZE)
 
     def _last(self, msg_id: int, layout: Layout, offset: int) -> dict[str, Any]:

@@ -177,7 +177,7 @@ def test_a_good_tone_comes_a_second_after_the_last(client: World, micros: int, g
 
 
 def source(make: Make, kind: str, **config: bool) -> World:
-    """A server with an external source, at its first tone."""
+    """Return a server with an external source, at its first tone."""
     world = make(time_cfg_source=True, time_cfg_fake_tone=False, **{f"time_cfg_src_{kind}": True}, **config)
     world.start()
     world.run(0.5)

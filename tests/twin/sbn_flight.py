@@ -81,11 +81,11 @@ class Paced:
         self.run_while(lambda: self.mission.kernel.now < end_ns)
 
     def packets(self, msg_id: int) -> list[bytes]:
-        """The packets of a MsgId so far."""
+        """Return the packets of a MsgId so far."""
         return [each.packet for each in self.seen if each.msg_id == msg_id]
 
     def says(self, text: str) -> bool:
-        """Whether a line of the console has a text."""
+        """Return whether a line of the console has a text."""
         return any(text in line for line in self.mission.console.lines)
 
     def send(self, packet: bytes) -> None:

@@ -40,7 +40,7 @@ def compile_c(folder: Path, name: str, source: str, *flags: str) -> Path:
 
 
 def compile_cpp(folder: Path, name: str, source: str, *flags: str) -> Path:
-    """As `compile_c`, for C++; functions that cFE calls are declared as extern "C" in the text."""
+    """Compile as `compile_c` does, for C++; functions that cFE calls are declared as extern "C" in the text."""
     return _compile(CPP, folder, f"{name}.cpp", source, flags)
 
 
@@ -83,7 +83,7 @@ def fly(folder: str, seconds: float = 2, tasks: str = "thread", **options: objec
 
 
 def digest_of(folder: str, tasks: str, seconds: float = 2) -> str:
-    """The digest of a mission's trace."""
+    """Return the digest of a mission's trace."""
     with Mission(folder, console=Console(quiet=True), tasks=tasks) as mission:
         mission.run_for(seconds)
         return mission.finish()

@@ -42,7 +42,7 @@ class Mistake(NamedTuple):
     before: str = ""
 
     def source(self, what: str) -> str:
-        """The application with `wrong` or `right`."""
+        """Return the application with `wrong` or `right`."""
         return SOURCE.format(body=self.body.replace("@", what), before=self.before.replace("@", what))
 
 
@@ -145,7 +145,7 @@ QUICK = ("behind a table", "shortly behind a pool block")
 
 
 def compile_app(folder: Path, source: str) -> str:
-    """The mission of an application."""
+    """Return the mission of an application."""
     compile_c(folder, "TEST", source, "-O0", "-w")
     return write_mission(folder, "TEST")
 
@@ -160,7 +160,7 @@ def without_addresses(text: object) -> str:
 
 
 def found(mission: Mission) -> str:
-    """The fault of TEST."""
+    """Return the fault of TEST."""
     return without_addresses(mission.cfe.es.history["TEST"].last_error)
 
 
@@ -368,7 +368,7 @@ def test_of_more_blocks_than_linux_has_mappings_it_is_told_at_the_end(tmp_path: 
 
 
 def image_of(tbl: TableServices) -> memoryview:
-    """The active image of TEST.T."""
+    """Return the active image of TEST.T."""
     table = tbl.registry.by_name("TEST.T")
     active = tbl.registry.active(table)
     assert active is not None

@@ -41,7 +41,7 @@ each_profile = pytest.mark.parametrize("flags", PROFILES.values(), ids=PROFILES)
 
 
 def rows(file: str) -> Iterator[tuple[str, str]]:
-    """The rows of a table of facts."""
+    """Yield the rows of a table of facts."""
     for line in (FACTS / file).read_text(encoding="utf-8").splitlines():
         name, _, value = line.partition("\t")
         yield name, value
@@ -158,7 +158,7 @@ KINDS_OF_LETTERS = {
 
 
 def declared() -> dict[str, str]:
-    """The functions that Python answers, with the letters of their parameters."""
+    """Return the functions that Python answers, with the letters of their parameters."""
     found: dict[str, str] = {}
 
     class Recorder(MagicMock):
@@ -170,7 +170,7 @@ def declared() -> dict[str, str]:
 
 
 def kinds(folder: Path, functions: dict[str, str]) -> dict[str, str]:
-    """The parameters of functions: `*` for pointers, else their size."""
+    """Return the parameters of functions: `*` for pointers, else their size."""
     text = '#include "cfe.h"\n#include "cfe_config.h"\n#include "iodriver_base.h"\n'
     text += "#define CFE_TBL_Handle_t uint32\n"  # the engine takes it so: of 16 bits or 32, as the application has it
     text += "#define K(type) (__builtin_classify_type(*(type *)0) == 5 ? '*' : (char)('0' + sizeof(type)))\n"

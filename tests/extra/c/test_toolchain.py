@@ -51,12 +51,12 @@ def app(tmp_path: Path) -> Path:
 
 
 def library(built: Built) -> object:
-    """The shared object, as pyelftools reads it."""
+    """Return the shared object, as pyelftools reads it."""
     return elf_file(built.library.open("rb"))  # type: ignore[arg-type]  # a file is a stream, too
 
 
 def symbols(built: Built) -> dict[str, bool]:
-    """The dynamic symbols, and whether each is defined."""
+    """Return the dynamic symbols, and whether each is defined."""
     table = library(built).get_section_by_name(".dynsym")  # type: ignore[attr-defined]
     return {each.name: each["st_shndx"] != "SHN_UNDEF" for each in table.iter_symbols() if each.name}
 

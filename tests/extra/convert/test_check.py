@@ -26,7 +26,7 @@ def look(folder: Path, text: str, profile: Profile = Profile.STRICT, **others: s
 
 
 def found(report: CheckReport) -> dict[str, tuple[int, int]]:
-    """Where each rule was met first."""
+    """Return where each rule was met first."""
     return {each.rule: (each.place.line, each.place.column) for each in sorted(report.findings, reverse=True)}
 
 

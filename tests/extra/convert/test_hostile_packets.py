@@ -35,7 +35,7 @@ def send(mission: Mission, packet: bytes) -> None:
 
 
 def one_subscription(msg_id: int, pipe: int, kind: int = 0, priority: int = 0) -> bytes:
-    """A report as the Software Bus makes one."""
+    """Return a report as the Software Bus makes one."""
     return packet_of(ONESUB, bytes(10) + struct.pack("<B3xIBBxxI", kind, msg_id, priority, 0, pipe))
 
 

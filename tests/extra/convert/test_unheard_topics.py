@@ -71,7 +71,7 @@ def spec(tmp_path: Path, profile: str) -> MissionSpec:
 
 
 def flown(spec: MissionSpec, *watches: Any) -> Mission:
-    """The mission, watched."""
+    """Return the mission, watched."""
     return Mission(spec, console=Console(quiet=True), attachments=list(watches))
 
 

@@ -31,7 +31,7 @@ NO_MOVES: tuple[MadeMove, ...] = ()
 
 
 def deed(text: str) -> Deed:
-    """A deed of `task verb thing line note`."""
+    """Return a deed of `task verb thing line note`."""
     task, verb, thing, line, *note = text.split("|")
     ident, key = (1 + ord(thing[-1]), thing) if thing.startswith("o.") else (0, "")
     return Deed(0, task, task, verb, thing, f"a.py:{line}", "".join(note), ident, key)

@@ -23,7 +23,7 @@ IMPOSSIBLE = "moves:BANK.bank.1@550/pay.get_time/3=BANK,NOBODY@550=BANK"
 
 
 def bank(folder: Path) -> Path:
-    """A mission with a lost update."""
+    """Return a mission with a lost update."""
     return missions.write(folder, {"BANK": missions.LOST_UPDATE}, PAID)
 
 

@@ -63,7 +63,7 @@ OSAL = """
 
 
 def looked_at(folder: Path, tasks: str) -> TaskLook:
-    """A look at a run of a mission, which is as without it."""
+    """Return an observed run of a mission, which is the same as without observation."""
     trial = Trial(RunPlan((str(folder),), seconds=0.7, tasks=tasks))
     look = TaskLook(trial.plan.spec())
     schedule = Schedule("at")

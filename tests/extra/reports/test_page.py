@@ -165,7 +165,7 @@ def test_the_same_run_gives_the_same_page(shown: Shown) -> None:
 
 
 def items(page: str) -> list[str]:
-    """The lines of the problem box, as text."""
+    """Return the lines of the problem box, as text."""
     box = page.partition('class="banner')[2].partition("</div>")[0]
     return [re.sub("<[^>]*>", "", item) for item in re.findall("<li.*?</li>", box)]
 

@@ -61,7 +61,7 @@ def test_each_stretch_of_many_messages_has_its_lowest_and_highest() -> None:
 
 
 def a_set(fields: int, messages: int = 300, most: int | None = None) -> SeriesSet:
-    """A topic with a small and one with a large message."""
+    """Return a topic with a small and one with a large message."""
     found = SeriesSet()
     for name, count in (("/large", fields), ("/small", 1)):
         series = Series(name, "x/Y", lambda seen, count=count: {"v": [seen.at_ns % 7 * 1.5] * count}, lambda seen: None)

@@ -40,7 +40,7 @@ class RosGraph:
         self.folder = folder
 
     def run(self, command: str) -> str:
-        """The output of a command."""
+        """Return the output of a command."""
         done = subprocess.run(
             ["sh", "-c", command],
             env=self.environ,
@@ -86,7 +86,7 @@ def wait_for_line(process: subprocess.Popen[str], text: str, limit_s: float = LI
 
 
 def free_graph(folder: Path) -> RosGraph:
-    """A graph at a free port, which has no master yet."""
+    """Return a graph at a free port, which has no master yet."""
     return RosGraph(f"http://127.0.0.1:{free_port()}", folder)
 
 
@@ -108,7 +108,7 @@ def rosmaster(folder: Path) -> Iterator[RosGraph]:
 
 
 def mission_of(folder: Path) -> Path:
-    """A mission of the talker."""
+    """Return a mission of the talker."""
     mission = folder / "mission"
     mission.mkdir()
     shutil.copy(TALKER, mission / "talker.py")

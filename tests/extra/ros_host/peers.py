@@ -49,7 +49,7 @@ rospy.spin()
 
 
 def text(value: str) -> bytes:
-    """A std_msgs/String as ROS serialises it."""
+    """Return a std_msgs/String as ROS serialises it."""
     return frame(value.encode())
 
 
@@ -74,7 +74,7 @@ class Joined:
             self._pacer.step(PATIENCE_NS)
 
     def heard(self, line: str) -> bool:
-        """Whether the console has a line."""
+        """Return whether the console has a line."""
         return any(line in each for each in self.mission.console.lines)
 
     def ask(self, uri: str, method: str, *arguments: Any) -> Any:
@@ -95,13 +95,13 @@ class Joined:
         return found[0]
 
     def master(self, method: str, *arguments: Any) -> Any:
-        """The value of the master's answer, which is a success."""
+        """Return the value of the master's answer, which is a success."""
         code, why, value = self.ask(self.host.world.uri, method, CALLER, *arguments)
         assert code == 1, why
         return value
 
     def connected(self, uri: str, header: Mapping[str, str]) -> Wire:
-        """A TCPROS connection with a host and port, and its header sent."""
+        """Return a TCPROS connection with a host and port, and its header sent."""
         address, _, port = uri.rpartition("://")[2].rstrip("/").rpartition(":")
         wire = Wire(self, socket.create_connection((address, int(port))))
         wire.socket.sendall(pack_header({"callerid": CALLER, **header}))
@@ -132,7 +132,7 @@ class Wire:
         return self._found.pop(0)
 
     def header(self) -> dict[str, str]:
-        """The other side's connection header."""
+        """Return the other side's connection header."""
         return parse_header(self.frame())
 
     def ended(self) -> None:

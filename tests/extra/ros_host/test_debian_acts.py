@@ -128,7 +128,7 @@ def unbuffered(graph: RosGraph) -> dict[str, str]:
 
 
 def lines_of(output: str) -> set[str]:
-    """Lines without colours, times, and options of a connection that both sides choose for themselves."""
+    """Return lines without colours, times, and options of a connection that both sides choose for themselves."""
     output = re.sub(r"\x1b\[\d*m", "", output)
     output = re.sub(r"\[\d+\.\d+\]", "[T]", output)
     return {re.sub(r"(, )?'tcp_nodelay': '\d'", "", line) for line in output.splitlines()}
@@ -168,7 +168,7 @@ def test_a_bag_is_played_alike(real: RosGraph, mission: RosGraph) -> None:
 
 
 def contents(graph: RosGraph, bag: str) -> list[str]:
-    """All of a bag but its times, and the number in the name of rosbag's node."""
+    """Return a bag's content, except for its times and the number in the name of rosbag's node."""
     (graph.folder / "dump.py").write_text(DUMP, encoding="utf-8")
     told = graph.run(f"rosbag info {bag}; {PYTHON} dump.py {bag}")
     lines = re.sub(r"/play_\d+", "/play_N", told).splitlines()

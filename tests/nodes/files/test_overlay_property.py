@@ -67,7 +67,7 @@ def fill(folder: Path) -> None:
 
 
 def tree(system: Any, folder: str) -> dict[str, Any]:
-    """All that is below a folder: names, kinds, permissions, sizes, targets of links."""
+    """Return all that is below a folder: names, kinds, permissions, sizes, targets of links."""
     found: dict[str, Any] = {}
     try:
         names = sorted(system.listdir(folder))

@@ -46,7 +46,7 @@ def printed(mission: Mission) -> list[str]:
 
 
 def events(mission: Mission) -> list[str]:
-    """The texts of ROS's events."""
+    """Return the texts of ROS's events."""
     return [line.partition("/ROS ")[2] for line in mission.console.lines if "/ROS " in line]
 
 
@@ -72,7 +72,7 @@ def load(mission: Mission, number: int, values: Mapping[str, str]) -> None:
 
 
 def dump(mission: Mission, number: int) -> bytes:
-    """The file that the ground gets when it dumps a table of parameters."""
+    """Return the file that the ground gets when it dumps a table of parameters."""
     packet = DUMP.packet(ActiveTableFlag=ACTIVE_BUFFER, TableName=TABLES[number].name, DumpFilename="/ram/dump.tbl")
     mission.cfe.sb.transmit_msg(packet, is_origination=False)
     mission.cfe.sb.transmit_msg(command(0x180C, 0), is_origination=False)  # CFE_TBL writes with its housekeeping
@@ -83,7 +83,7 @@ def dump(mission: Mission, number: int) -> bytes:
 
 
 def rows_of(mission: Mission) -> list[Row]:
-    """The rows that are not free, of all tables that there are."""
+    """Return the rows that are not free, of all tables that there are."""
     registry = mission.cfe.tbl.registry
     tables = [found for table in TABLES if (found := registry.find(table.name)) is not None]
     images = [table.image(active) for table in tables if (active := registry.active(table)) is not None]

@@ -117,11 +117,11 @@ class FoxgloveClient:
             self._take(message)
 
     def told(self, op: str) -> list[dict[str, Any]]:
-        """The messages of one kind."""
+        """Return the messages of one kind."""
         return [each for each in self.texts if each["op"] == op]
 
     def of(self, topic: str) -> list[bytes]:
-        """The messages of one topic."""
+        """Return the messages of one topic."""
         return [data for name, _, data in self.messages if name == topic]
 
     def _take(self, message: str | bytes) -> None:

@@ -97,12 +97,12 @@ class ShownRun:
         raise AssertionError("the connection does not end")
 
     def rows(self) -> dict[tuple[str, str], dict[str, Any]]:
-        """The report's rows by name and direction."""
+        """Return the report's rows by name and direction."""
         return {(row["name"], row["direction"]): row for row in self.mission.record.rows("viewer_peers")}
 
 
 def spec_of(folder: Path, nodes: Mapping[str, str], params: Mapping[str, Any] | None = None) -> MissionSpec:
-    """A mission of ROS nodes."""
+    """Return a mission of ROS nodes."""
     lines = []
     for name, code in nodes.items():
         (folder / f"{name}.py").write_text(textwrap.dedent(code), encoding="utf-8")

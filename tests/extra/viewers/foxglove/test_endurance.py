@@ -25,7 +25,7 @@ MOST_GROWTH = 4 << 20  # bytes of memory
 
 
 def memory() -> int:
-    """Bytes in use."""
+    """Return bytes in use."""
     gc.collect()
     return int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[1]) * os.sysconf("SC_PAGE_SIZE")
 

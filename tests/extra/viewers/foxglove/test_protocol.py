@@ -35,7 +35,7 @@ NUMBER = st.integers(0, 2**32 - 1)
 
 
 def ask(op: str, **fields: Any) -> str:
-    """A message of a viewer."""
+    """Return a message of a viewer."""
     return json.dumps({"op": op, **fields})
 
 

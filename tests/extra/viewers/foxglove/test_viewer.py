@@ -23,7 +23,7 @@ EPOCH_NS = 316_533_800_000_000_000  # of the mission's clock at power-on
 
 
 def text(value: str) -> bytes:
-    """A std_msgs/String as ROS serialises it."""
+    """Return a std_msgs/String as ROS serialises it."""
     return bytes(STRING(value)._pack())
 
 

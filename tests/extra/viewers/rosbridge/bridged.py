@@ -53,7 +53,7 @@ class Bridged:
             self.step()
 
     def client(self, path: str = "/", headers: Mapping[str, str] | None = None) -> Client:
-        """A client that is connected."""
+        """Return a client that is connected."""
         client = Client(self, path, headers or {})
 
         def waits() -> bool:
