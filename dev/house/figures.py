@@ -231,7 +231,7 @@ ABOUT_IMPORTS = re.compile(
 
 
 def sentences_about_imports(tree: Tree) -> list[str]:
-    """Modules whose docstring says what they import; the rule of the floors says it, and is tested."""
+    """Return the modules whose docstring lists imports, which the rule of the floors already covers."""
     return [
         module.name
         for module in tree.modules.values()

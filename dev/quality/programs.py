@@ -55,7 +55,7 @@ class Program(Bug):
         origin: the tool or benchmark that uses such a program, and its name there; empty for a program of ours.
         options: options of all schedules, as written after a schedule's kind: `at` with options.
         hangs: it fails under every schedule, including fifo.
-        bound: how many preemptions the original needs, according to SCTBench's authors; empty if they do not say.
+        bound: how many preemptions the original needs, according to SCTBench's authors; empty if unknown.
     """
 
     origin: str = ""

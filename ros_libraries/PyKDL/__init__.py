@@ -1,6 +1,6 @@
 """PyKDL for nodes: vectors, rotations, frames, twists and wrenches of orocos KDL, in Python.
 
-Names, arguments and results are those of PyKDL 1.5. Results agree except for the last digits of a double. Kinematic
+Names, arguments and results match PyKDL 1.5. Results agree except for the last digits of a double. Kinematic
 chains and trees are included with the common solvers; dynamics are not.
 """
 

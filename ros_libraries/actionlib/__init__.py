@@ -1,6 +1,6 @@
 """actionlib for nodes: long-running jobs that a client can follow and cancel, over five topics.
 
-Names, states, texts and timing are those of ROS's actionlib 1.14. The code is cfepy's own, and uses the node's `rospy`.
+Names, states, texts and timing match ROS's actionlib 1.14. The code is cfepy's own, and uses the node's `rospy`.
 It is executed anew in each node that imports it, so nodes share none of its state. As with ROS's, a star import also
 provides the modules that it uses.
 """

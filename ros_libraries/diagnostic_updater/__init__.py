@@ -1,6 +1,6 @@
 """diagnostic_updater for nodes: reports of a node's health on /diagnostics.
 
-Names, arguments and texts are those of ROS's diagnostic_updater 1.11; the code is cfepy's own, on top of `rospy`. A
+Names, arguments and texts match ROS's diagnostic_updater 1.11; the code is cfepy's own, on top of `rospy`. A
 star import provides the same names, including `rospy` and `threading`.
 """
 

@@ -1,6 +1,6 @@
 """dynamic_reconfigure for nodes: parameters that other nodes can change at run time.
 
-Names, arguments, topics and services are those of ROS's dynamic_reconfigure 1.7; the code is cfepy's own, on top of
+Names, arguments, topics and services match ROS's dynamic_reconfigure 1.7; the code is cfepy's own, on top of
 `rospy`. The modules `<package>.cfg.<Name>Config` are made from a package's cfg/<Name>.cfg when they are imported.
 """
 

@@ -116,7 +116,7 @@ def compute_pkg_type(package: str, type_: str) -> tuple[str, str]:
 
 
 def compute_import(msg_context: MsgContext, package: str, type_: str) -> list[str]:
-    """Import statements that a type needs, with those of the types inside it."""
+    """Return the import statements of a type and of the types inside it."""
     bare = bare_msg_type(type_)
     owner, name = compute_pkg_type(package, bare)
     if is_builtin(bare) or is_header_type(bare):

@@ -1,6 +1,6 @@
 """message_filters for nodes: matches messages of several topics by their stamps.
 
-Names, arguments and results are those of ROS's message_filters 1.15; the code is cfepy's own, on top of `rospy`. It is
+Names, arguments and results match ROS's message_filters 1.15; the code is cfepy's own, on top of `rospy`. It is
 executed anew in each node that imports it.
 """
 

@@ -1,6 +1,6 @@
 """resource_retriever for nodes: files by URL, including files of ROS packages as `package://name/path`.
 
-Names and results are those of ROS's resource_retriever 1.12; the code is cfepy's own. Files are read as the node sees
+Names and results match ROS's resource_retriever 1.12; the code is cfepy's own. Files are read as the node sees
 them. Other schemes use urllib, which refuses the network in a simulation.
 """
 

@@ -1,6 +1,6 @@
 """rosbag for nodes: messages in files, in ROS's bag format 2.0.
 
-Names, arguments, results and bytes are those of ROS's rosbag 1.15. The code is cfepy's own, on top of `rospy` and of
+Names, arguments, results and bytes match ROS's rosbag 1.15. The code is cfepy's own, on top of `rospy` and of
 `rosbag_storage`, which implements the format. It is executed anew in each node that imports it.
 """
 

@@ -1,4 +1,4 @@
-"""Definitions with those of nested types indented below the fields, from the full text that message classes carry."""
+"""Definitions with nested types' definitions indented below the fields, from the full text in message classes."""
 
 from __future__ import annotations
 

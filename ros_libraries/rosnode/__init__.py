@@ -218,7 +218,7 @@ def cleanup_master_blacklist(master: rosgraph.Master, blacklist: Sequence[str]) 
 
 
 def cleanup_master_whitelist(master: rosgraph.Master, whitelist: Sequence[str]) -> None:
-    """Remove all registrations from the master, except for those of some nodes."""
+    """Remove all registrations from the master, except for those of the listed nodes."""
     for name in _names(master.getSystemState()):
         if name not in whitelist:
             _unregister(master, name)

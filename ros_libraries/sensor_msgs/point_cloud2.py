@@ -1,6 +1,6 @@
 """Reads and makes sensor_msgs/PointCloud2 messages.
 
-Names, arguments and results are those of sensor_msgs 1.13; the code is cfepy's own.
+Names, arguments and results match sensor_msgs 1.13; the code is cfepy's own.
 """
 
 from __future__ import annotations
