@@ -65,7 +65,7 @@ def instant(command: dict[str, Any]) -> int:
 
 @cache
 def fly(folder: Path) -> Session:
-    """Fly the session up to its final processor reset. The files are those of shortly before."""
+    """Fly the session up to its final processor reset. The files are from shortly before."""
     path = write_mission(folder, STARTUP, cfe_assert=CFE_ASSERT, mission_yaml='cfe_version: "7.0.0"')
     (folder / "hk_cpy_tbl.tbl").write_bytes((DATA / "hk_cpy_tbl.tbl").read_bytes())  # NASA's, with its wrong offsets
     with Mission(path, console=Console(quiet=True)) as mission:

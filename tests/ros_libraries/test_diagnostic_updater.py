@@ -1,4 +1,4 @@
-"""diagnostic_updater: statuses, tasks and what an updater publishes."""
+"""diagnostic_updater: statuses, tasks and an updater's messages."""
 
 from __future__ import annotations
 

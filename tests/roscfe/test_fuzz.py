@@ -67,7 +67,7 @@ def packets(full_name: str, count: int) -> list[bytes]:
 class Walker:
     """Walks over the bytes of a message by its definition, making nothing. Raises ValueError if they are not a message.
 
-    genpy cannot be used: it iterates over an array of fixed arrays as often as a packet says, even without bytes.
+    genpy cannot be used: it iterates over an array of fixed arrays as often as a packet demands, even without bytes.
     """
 
     def __init__(self, octets: bytes) -> None:

@@ -1,4 +1,4 @@
-"""Runs that Foxglove looks at: the mission continues when the test says so, and not by the wall clock."""
+"""Runs that Foxglove looks at: the test advances the mission, not the wall clock."""
 
 from __future__ import annotations
 

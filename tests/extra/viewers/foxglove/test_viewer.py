@@ -1,4 +1,4 @@
-"""A mission in Foxglove: what a client of its protocol sees of a run, and its effects on the run."""
+"""A mission in Foxglove: a client's view of a run, and its effects on the run."""
 
 from __future__ import annotations
 
