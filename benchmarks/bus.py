@@ -65,8 +65,10 @@ def one_task(context: str, count: int = 300_000) -> int:
 
 
 def ping_pong(context: str, count: int = 100_000) -> int:
-    """Measure two tasks of one priority that send each other a packet. A round trip is two messages and two task
-    switches."""
+    """Measure two tasks of one priority that send each other a packet.
+
+    A round trip is two messages and two task switches.
+    """
     bus = make_bus(context)
     there, back = bus.create_pipe(10, "THERE"), bus.create_pipe(10, "BACK")
     bus.subscribe(0x0881, there)

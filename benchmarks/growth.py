@@ -45,8 +45,10 @@ Row = dict[int, float]
 
 @contextmanager
 def ring(nodes: int, hz: int, context: str) -> Iterator[Mission]:
-    """Run a mission whose nodes send each other messages in a circle. When it yields, all nodes are up and have
-    sent."""
+    """Run a mission whose nodes send each other messages in a circle.
+
+    When it yields, all nodes are up and have sent.
+    """
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         (folder / SCRIPT.name).write_bytes(SCRIPT.read_bytes())

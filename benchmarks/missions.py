@@ -29,8 +29,10 @@ def _whole(mission: str, context: str, seconds: float) -> float:
 
 
 def publish_to_callback(context: str) -> float:
-    """Return JointState messages per second from a publisher in one node to a callback in another. No message is
-    lost."""
+    """Return JointState messages per second from a publisher in one node to a callback in another.
+
+    No message is lost.
+    """
     return max(_messages_per_second(context) for _ in range(REPEATS))
 
 
@@ -47,8 +49,10 @@ def _messages_per_second(context: str) -> float:
 
 
 def _counts(flight: Mission) -> tuple[int, int]:
-    """Return the messages delivered so far, and lost. During the start, the publisher may be ahead of the
-    subscriber."""
+    """Return the messages delivered so far, and lost.
+
+    During the start, the publisher may be ahead of the subscriber.
+    """
     assert flight.ros is not None
     msg_id = next(row.msg_id for row in flight.ros.topics() if row.name == "/joints")
     delivered, _, limited, overflown = flight.cfe.sb.routes[msg_id].totals()

@@ -32,8 +32,10 @@ def _name_of(path: Path) -> str:
 
 
 def is_read_in_vain(path: Path, marks: str) -> bool:
-    """Return whether a run of tests with `-m MARKS` needs no test of a file. Importing all files would take ten
-    seconds."""
+    """Return whether a run of tests with `-m MARKS` needs no test of a file.
+
+    Importing all files would take ten seconds.
+    """
     if marks == MARK and is_dear(path):
         return True
     if marks not in (MARK, SLOW, f"not {SLOW}") or not path.name.startswith("test_") or not path.is_file():

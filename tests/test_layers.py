@@ -154,8 +154,10 @@ def test_only_the_kernel_knows_the_host(tree: Tree) -> None:
 
 @pytest.mark.slow
 def test_libraries_are_code_of_nodes(tree: Tree) -> None:
-    """They run in a node's universe, with its rospy and its clock. They import the modules of nodes, none of the
-    house."""
+    """They run in a node's universe, with its rospy and its clock.
+
+    They import the modules of nodes, none of the house.
+    """
     libraries = ROOT / "ros_libraries"
     others = {folder.name for folder in libraries.iterdir()} | {path.stem for path in TOOLS.glob("*.py")}
     others |= {"rospy", "genpy", "lz4", "zstandard", "numpy", "yaml"}

@@ -48,8 +48,9 @@ class CommandIngest:
         self._commands.handle(pk.READ_UPLINK, self._read_uplink, any_length=True)
 
     def start(self) -> None:
-        """Prepare everything before the first message. Failures are reported, and the app continues without the failed
-        part.
+        """Prepare everything before the first message.
+
+        Failures are reported, and the app continues without the failed part.
 
         Raises:
             CfeError: the pipe is missing, and the app would only spin without it.

@@ -70,8 +70,10 @@ def _bytes(begin: int, end: int, shift: int, name: str) -> _Piece:
 
 
 def _fields(pieces: Iterable[_Piece]) -> Iterator[tuple[str, Any]]:
-    """Yield names and types without gaps. If two overlap, the first stays. A field that is copied twice gets a
-    number."""
+    """Yield names and types without gaps.
+
+    If two overlap, the first stays. A field that is copied twice gets a number.
+    """
     counts: dict[str, int] = {}
     at = 0
     for piece in pieces:

@@ -44,8 +44,10 @@ class Combiner:
         self._subscribed: set[int] = set()
 
     def use_table(self, table: memoryview) -> None:
-        """Build the packets of a new copy table and subscribe to its inputs. Call `tear_down` for the old one
-        before."""
+        """Build the packets of a new copy table and subscribe to its inputs.
+
+        Call `tear_down` for the old one before.
+        """
         self._entries = read_entries(table)
         for index, entry in enumerate(self._entries):
             if not entry.is_used:
@@ -109,8 +111,9 @@ class Combiner:
             )
 
     def send(self, msg_id: int) -> tuple[int, int]:
-        """Send a combined packet, unless it lacks data and such packets are discarded. Then wait for all of its data
-        anew.
+        """Send a combined packet, unless it lacks data and such packets are discarded.
+
+        Then wait for all of its data anew.
 
         Returns:
             How many packets were sent, and how many lacked data: (0, 0), (1, 0), (1, 1), or (0, 1) if discarded.

@@ -15,8 +15,10 @@ BUFFER = "SAMPLE DATA"
 
 
 def SAMPLE_LIB_Init(cfe: Cfe) -> int:
-    """Initialize the library; the startup script names this function. A result other than CFE_SUCCESS unloads the
-    library."""
+    """Initialize the library; the startup script names this function.
+
+    A result other than CFE_SUCCESS unloads the library.
+    """
     cfe.os.printf(f"SAMPLE Lib Initialized.{VERSION}\n")
     return CFE_SUCCESS
 

@@ -36,8 +36,9 @@ class Module(Protocol):
         """Send a message. Raises OsalError if that fails."""
 
     def recv(self, net: Net, pend: bool) -> pr.NetMsg | None:
-        """Return the next message of a net, or None if there is none now. Its sender is a peer, which is then
-        connected.
+        """Return the next message of a net, or None if there is none now.
+
+        Its sender is a peer, which is then connected.
 
         Args:
             net: the net.

@@ -124,8 +124,10 @@ class SchLab:
         return max(1, SECOND_US // tick_rate)
 
     def wait(self) -> None:
-        """Wait for one tick, then send the commands that are due. Failed sends are reported only by the services'
-        events."""
+        """Wait for one tick, then send the commands that are due.
+
+        Failed sends are reported only by the services' events.
+        """
         cfe = self._cfe
         has_ticked = False
         with suppress(CfeError):

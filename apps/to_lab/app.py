@@ -93,8 +93,10 @@ class TelemetryOutput:
         self._commands = ToLabCommands(self._cfe, self._downlink, self._telemetry, self._table, VERSION)
 
     def _subscribe(self) -> bool:
-        """Subscribe to the packets of the table, up to the first empty row. Returns whether the last subscription
-        was refused."""
+        """Subscribe to the packets of the table, up to the first empty row.
+
+        Returns whether the last subscription was refused.
+        """
         refused = False
         for row in pk.SUBSCRIPTIONS.unpack(self._table):
             stream = row["Stream"]

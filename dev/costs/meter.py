@@ -72,8 +72,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def measured(folder: Path) -> dict[str, float]:
-    """Return the CPU time in seconds of each test, by id. Of several runs the minimum counts, since only the first
-    fills caches.
+    """Return the CPU time in seconds of each test, by id.
+
+    Of several runs the minimum counts, since only the first fills caches.
     """
     parts: dict[str, dict[str, float]] = {}
     for tests, part, cost in rows(folder):

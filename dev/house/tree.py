@@ -142,8 +142,9 @@ class Tree:
         return found
 
     def arrows(self, module: Module) -> dict[str, list[Import]]:
-        """Return the imports of a module within the tree, by imported module. `cfepy.__version__` belongs to no
-        module.
+        """Return the imports of a module within the tree, by imported module.
+
+        `cfepy.__version__` belongs to no module.
         """
         found: dict[str, list[Import]] = {}
         for each in module.imports:

@@ -91,8 +91,10 @@ def _run(peer: Peer, sources: Sources, folder: Path) -> tuple[dict[str, str], st
 
 
 def _place(peer: Peer, sources: Sources, folder: Path) -> Path:
-    """Return the file to run. Tests of libraries that cfepy brings along are copied away from the code that they came
-    with."""
+    """Return the file to run.
+
+    Tests of libraries that cfepy brings along are copied away from the code that they came with.
+    """
     file = sources.folder(peer.repo) / peer.path
     if peer.packages or peer.kind != UNIT:
         return file

@@ -140,8 +140,9 @@ def best(measured: Measured, name: str) -> tuple[str, Median]:
 
 
 def median_of_default(measured: Measured) -> float:
-    """Return the median, over all bugs, of the schedules that the default policy needs. A bug not found counts as the
-    longest.
+    """Return the median, over all bugs, of the schedules that the default policy needs.
+
+    A bug not found counts as the longest.
     """
     found = [medians(measured, bug.name)[DEFAULT] for bug in BUGS]
     return statistics.median(each.schedules if each.found else LONGEST for each in found)

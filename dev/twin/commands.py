@@ -137,8 +137,10 @@ def _go_together(one: Step, other: Step) -> bool:
 
 
 def _cuts_a_route(packet: bytes) -> bool:
-    """Return whether SB may get no commands after this one. Chance decides which commands of the same step still
-    arrive."""
+    """Return whether SB may get no commands after this one.
+
+    Chance decides which commands of the same step still arrive.
+    """
     is_command = len(packet) > 6 and int.from_bytes(packet[:2], "big") == sb.CMD_MID
     return is_command and packet[6] & 0x7F == sb.DISABLE_ROUTE.code
 

@@ -142,8 +142,10 @@ class Rotation:
         return math.pi, self._axis_of_half_turn()
 
     def _axis_of_half_turn(self) -> Vector:
-        """Return the axis of a half turn. Its matrix is symmetric: (matrix + 1) / 2 is the product of the axis with
-        itself."""
+        """Return the axis of a half turn.
+
+        Its matrix is symmetric: (matrix + 1) / 2 is the product of the axis with itself.
+        """
         m = self.m
         squares = [(m[0] + 1) / 2, (m[4] + 1) / 2, (m[8] + 1) / 2]
         at = max((2, 1, 0), key=squares.__getitem__)

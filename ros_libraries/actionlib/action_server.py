@@ -37,8 +37,10 @@ def nop_cb(goal_handle: ServerGoalHandle) -> None:
 
 
 def _is_over(tracker: StatusTracker, now: Any, oldest_ns: int) -> bool:
-    """Return whether a goal ended before `oldest_ns`. It compares integers, because a server may check a thousand
-    goals."""
+    """Return whether a goal ended before `oldest_ns`.
+
+    It compares integers, because a server may check a thousand goals.
+    """
     ended = tracker.handle_destruction_time
     ended_ns = ended.to_nsec()
     if ended_ns == 0 or ended_ns >= oldest_ns:

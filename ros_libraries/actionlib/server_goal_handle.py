@@ -75,8 +75,10 @@ class ServerGoalHandle:
         self._end(_SUCCEED, "a succeeded state", "a preempting or active", result, text)
 
     def set_cancel_requested(self) -> bool:
-        """Handle a client's cancel request. Returns whether the goal is in a state in which the user code is
-        notified."""
+        """Handle a client's cancel request.
+
+        Returns whether the goal is in a state in which the user code is notified.
+        """
         self._debug("Transisitoning to a cancel requested state on goal id: %s, stamp: %.2f")
         if self.goal is None:
             return False

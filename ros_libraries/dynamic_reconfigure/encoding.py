@@ -110,8 +110,10 @@ _DESCRIBED = ("type", "level", "description", "edit_method")
 
 
 def get_tree(m: Any, group: Any = None) -> Config:
-    """Return the tree of the groups in a message. With a `group` that is not the outermost, return the groups inside
-    it."""
+    """Return the tree of the groups in a message.
+
+    With a `group` that is not the outermost, return the groups inside it.
+    """
     if group is None or group.id == 0:
         return _tree(m.groups, group_dict)
     return _inside(m.groups, group.id, group_dict)

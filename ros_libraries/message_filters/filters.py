@@ -57,8 +57,9 @@ class Subscriber(SimpleFilter):
 
 
 def stamp_of(msg: Any, allow_headerless: bool) -> Any:
-    """Return the stamp of a message. Without a header, return the current time, or None with a warning if that is not
-    allowed.
+    """Return the stamp of a message.
+
+    Without a header, return the current time, or None with a warning if that is not allowed.
     """
     if hasattr(msg, "header") and hasattr(msg.header, "stamp"):
         return msg.header.stamp

@@ -237,8 +237,10 @@ def human_frequency(frequency: float) -> str:
 
 
 def yaml_of(bag: Bag, key: str | None) -> Any:
-    """Return the output of `rosbag info --yaml`. With a key such as "topics[0].type", return only that value or
-    None."""
+    """Return the output of `rosbag info --yaml`.
+
+    With a key such as "topics[0].type", return only that value or None.
+    """
     text = _yaml(bag)
     if not key:
         return text

@@ -29,8 +29,10 @@ POLL_S = 0.1  # interval of checks for subscribers, and while playing is paused
 
 
 def _time(ns: int) -> Any:
-    """Return a time exact to the nanosecond. Seconds in a float are less exact, and would leave out the last
-    message."""
+    """Return a time exact to the nanosecond.
+
+    Seconds in a float are less exact, and would leave out the last message.
+    """
     return rospy.Time(*divmod(ns, NS_PER_S))
 
 

@@ -1,5 +1,7 @@
-"""Selects connections and messages, and splits a message to be written into its parts. Imports genpy and
-rosbag_storage."""
+"""Selects connections and messages, and splits a message to be written into its parts.
+
+Imports genpy and rosbag_storage.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
-"""The content of a bag as rosbag shows it: tuples with ROS times in place of nanoseconds. Imports rospy and
-rosbag_storage.
+"""The content of a bag as rosbag shows it: tuples with ROS times in place of nanoseconds.
+
+Imports rospy and rosbag_storage.
 """
 
 from __future__ import annotations

@@ -1,5 +1,6 @@
-"""The content of a bag according to its index: connections, chunks, and positions of messages. Imports records and
-errors.
+"""The content of a bag according to its index: connections, chunks, and positions of messages.
+
+Imports records and errors.
 """
 
 from __future__ import annotations

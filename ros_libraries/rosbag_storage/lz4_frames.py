@@ -142,8 +142,10 @@ def _beginning_of_block(block: bytes, window: bytes, most: int) -> bytes:
 
 
 def _length(block: bytes, at: int, length: int) -> tuple[int, int]:
-    """Return a length that a token begins, and the next position. If the length is truncated, that is behind the
-    block's end."""
+    """Return a length that a token begins, and the next position.
+
+    If the length is truncated, that is behind the block's end.
+    """
     if length < 15:
         return length, at
     while at < len(block):

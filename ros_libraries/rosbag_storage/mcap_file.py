@@ -167,8 +167,10 @@ class McapFile(BagFile):
 
 
 def _within(data: bytes, place: int) -> Iterator[tuple[int, int, mcap.Body]]:
-    """Yield (opcode, offset, body) of the records of a chunk. The body of a message outside of a chunk may be its
-    head only."""
+    """Yield (opcode, offset, body) of the records of a chunk.
+
+    The body of a message outside of a chunk may be its head only.
+    """
     at = 0
     while at < len(data):
         if len(data) - at < mcap.PREFIX.size:

@@ -353,7 +353,7 @@ def _is_record(data: Bytes, at: int) -> bool:
 
 
 def _begins_record(data: Bytes, at: int) -> bool:
-    """Return whether a record begins at a byte. If it is truncated or damaged, the rest of its header decides."""
+    """Return whether a record begins at a byte. A truncated or damaged one is recognised by the rest of its header."""
     if _is_record(data, at):
         return True
     rest = bytes(data[at : at + _FARTHEST_OP])

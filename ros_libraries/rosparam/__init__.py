@@ -69,7 +69,7 @@ def load_file(filename: str, default_namespace: str | None = None, verbose: bool
     Args:
         filename: the file; `-` or nothing for stdin.
         default_namespace: namespace of documents without one (`_ns`).
-        verbose: print the file name.
+        verbose: print the file name and the documents' namespaces.
 
     Raises:
         RosParamException: there is no such file.
@@ -95,7 +95,7 @@ def load_str(
         str: the text.
         filename: its origin.
         default_namespace: namespace of documents without one (`_ns`).
-        verbose: print the file name.
+        verbose: print the namespaces that documents give.
     """
     found = []
     default = default_namespace or get_ros_namespace()
@@ -177,7 +177,7 @@ def set_param_raw(param: str, value: Any, verbose: bool = False) -> None:
     Args:
         param: its name.
         value: its value.
-        verbose: print the new value.
+        verbose: print the name and the new value.
 
     Raises:
         RosParamException: a name that is not a text.

@@ -136,8 +136,10 @@ def _get_topic_type(topic: str) -> tuple[str | None, str | None, Any]:
 
 
 def _has_field(kind: str, path: str) -> bool:
-    """Return whether messages of a type have the first fields of a path, up to one with an index. Unknown counts as
-    true."""
+    """Return whether messages of a type have the first fields of a path, up to one with an index.
+
+    Unknown counts as true.
+    """
     message_class = roslib.message.get_message_class(kind)
     value = message_class() if message_class else None
     for field in path.rstrip("/").partition("[")[0].split("/") if value is not None else ():

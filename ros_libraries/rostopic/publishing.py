@@ -128,8 +128,10 @@ def argv_publish(
     verbose: bool,
     substitute_keywords: bool = False,
 ) -> None:
-    """Publish as `publish_message` does. With `once` it stays for three seconds, so that others can receive the
-    message."""
+    """Publish as `publish_message` does.
+
+    With `once` it stays for three seconds, so that others can receive the message.
+    """
     publish_message(pub, msg_class, pub_args, rate, once, verbose, substitute_keywords)
     end = time.time() + _ONCE_DELAY
     while once and not rospy.is_shutdown() and time.time() < end:

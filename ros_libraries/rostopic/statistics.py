@@ -184,8 +184,10 @@ class ROSTopicDelay:
                 self.delays.pop(0)
 
     def get_delay(self) -> Figures | None:
-        """Return mean, least, largest delay, standard deviation in s; number of messages. None if there is no new
-        message."""
+        """Return mean, least, largest delay, standard deviation in s; number of messages.
+
+        None if there is no new message.
+        """
         if self.msg_tn == self.last_msg_tn or not self.delays:
             return None
         with self.lock:

@@ -70,8 +70,10 @@ def read_points_list(
     skip_nans: bool = False,
     uvs: Iterable[tuple[int, int]] = (),
 ) -> list[Any]:
-    """Return the points as `read_points`, as a list of named tuples. Their names are the field names in the order
-    given."""
+    """Return the points as `read_points`, as a list of named tuples.
+
+    Their names are the field names in the order given.
+    """
     _check(cloud)
     names = [field.name for field in cloud.fields] if field_names is None else field_names
     kind: Any = namedtuple("Point", names)  # type: ignore[misc]  # the names are known at run time only

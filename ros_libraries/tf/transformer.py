@@ -116,8 +116,10 @@ class Transformer:
         timeout: Any,
         polling_sleep_duration: Any = None,
     ) -> None:
-        """Wait until `lookupTransformFull` would succeed. It has the arguments of that, and the rest as
-        `waitForTransform`."""
+        """Wait until `lookupTransformFull` would succeed.
+
+        It has the arguments of that, and the rest as `waitForTransform`.
+        """
         self._require_listening()
         target, source, fixed = map(strip_leading_slash, (target_frame, source_frame, fixed_frame))
         found = self._buffer.can_transform_full(

@@ -17,8 +17,10 @@ def _moved(value: Any, transform: Any) -> Any:
 
 
 def do_transform_vector(vector: PyKDL.Vector, transform: Any) -> Any:
-    """Return a vector as seen from another frame. It gets the header of `transform`, a
-    geometry_msgs/TransformStamped."""
+    """Return a vector as seen from another frame.
+
+    It gets the header of `transform`, a geometry_msgs/TransformStamped.
+    """
     return _moved(vector, transform)
 
 

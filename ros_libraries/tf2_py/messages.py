@@ -1,5 +1,6 @@
-"""Conversion between messages and numbers: times in ns, transforms as seven floats. Imports rospy, geometry_msgs and
-tf2_py.
+"""Conversion between messages and numbers: times in ns, transforms as seven floats.
+
+Imports rospy, geometry_msgs and tf2_py.
 
 Times are converted through a float of seconds, as in tf2's Python module, so a stamp loses the precision that a float
 cannot hold.

@@ -129,8 +129,10 @@ class Buffer(BufferCore, BufferInterface):
         timeout: Any = NO_WAIT,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Return whether `lookup_transform_full` would succeed. It has the arguments of that, and the rest as
-        `can_transform`."""
+        """Return whether `lookup_transform_full` would succeed.
+
+        It has the arguments of that, and the rest as `can_transform`.
+        """
 
         def ask() -> tuple[int, str]:
             return self.can_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)

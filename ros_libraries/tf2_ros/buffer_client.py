@@ -85,8 +85,10 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Any = NO_WAIT,
     ) -> Any:
-        """Return the transform as `tf2_ros.Buffer.lookup_transform_full` does. Errors are those of
-        `lookup_transform`."""
+        """Return the transform as `tf2_ros.Buffer.lookup_transform_full` does.
+
+        Errors are those of `lookup_transform`.
+        """
         return self._ask(
             LookupTransformGoal(
                 target_frame=target_frame,

@@ -20,8 +20,10 @@ Cell = Callable[..., dict[str, Any]]
 
 @pytest.fixture(scope="module")
 def cell() -> Iterator[Cell]:
-    """Return a function that executes code in a kernel and gives its last output. `stop` presses the button after
-    output."""
+    """Return a function that executes code in a kernel and gives its last output.
+
+    `stop` presses the button after output.
+    """
     sockets = TemporaryDirectory()
     manager = jupyter_client.KernelManager(kernel_name="python3", **kernel_sockets(sockets.name))
     manager.start_kernel()

@@ -104,8 +104,10 @@ def run_as_application(mission: Mission, function: Callable[[], object]) -> None
 
 
 def call_outside(cfe: Cfe, function: Callable[[], object]) -> None:
-    """Call a function in a task that belongs to no application, and wait for its end. Raises the function's
-    exception."""
+    """Call a function in a task that belongs to no application, and wait for its end.
+
+    Raises the function's exception.
+    """
     attempt = Attempt(function)
     task_id = cfe.os.task_create("NonCfe", attempt, CHILD_STACK, CHILD_PRIORITY)
     task = cfe.es.kernel.tasks[-1]

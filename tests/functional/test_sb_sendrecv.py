@@ -96,8 +96,10 @@ def test_msg_broadcast(cfe: Cfe) -> None:
     pipes = [listening_pipe(cfe, CMD_MID, limit, depth) for limit, depth in ((1, 3), (2, 3), (4, 3), (6, 5))]
 
     def broadcast(*values: int) -> list[list[int]]:
-        """Send values. Returns the values received from the pipes in each round; a round has the same message in all
-        pipes."""
+        """Send values.
+
+        Returns the values received from the pipes in each round; a round has the same message in all pipes.
+        """
         for value in values:
             sb.transmit_msg(message(cfe, CMD_MID, value))
         rounds = []

@@ -91,8 +91,10 @@ def fly(
     params: Mapping[str, Any] | None = None,
     ended: Callable[[str], object] = lambda digest: None,
 ) -> str:
-    """Fly a mission of nodes, and record it if a bag is given. Returns the digest of the trace, which `ended` gets
-    before."""
+    """Fly a mission of nodes, and record it if a bag is given.
+
+    Returns the digest of the trace, which `ended` gets before.
+    """
     lines = []
     for name, code in scripts.items():
         (folder / f"{name.lower()}.py").write_text(textwrap.dedent(code), encoding="utf-8")

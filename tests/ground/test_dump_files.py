@@ -124,8 +124,10 @@ def test_foreign_files(data: bytes, words: str) -> None:
 
 
 def perf_file(*entries: tuple[int, int, int], count: int | None = None, endian: int = 0) -> bytes:
-    """Return a file of entries (data, upper, lower). The timer counts 1000 a second, and its lower half goes up to
-    100."""
+    """Return a file of entries (data, upper, lower).
+
+    The timer counts 1000 a second, and its lower half goes up to 100.
+    """
     about = {"Endian": endian, "TimerTicksPerSecond": 1000, "TimerLow32Rollover": 100}
     head = PERF_METADATA.pack(about, DataCount=len(entries) if count is None else count)
     rows = (PERF_ENTRY.pack(Data=data, TimerUpper32=upper, TimerLower32=lower) for data, upper, lower in entries)

@@ -289,8 +289,10 @@ def test_traffic_of_many_tasks_is_the_same_on_threads_and_greenlets() -> None:
 
 
 def crowd(context: str) -> tuple[str, list[object]]:
-    """Run four tasks of equal priority that echo to each other. Returns the trace's digest, and the receptions with
-    times."""
+    """Run four tasks of equal priority that echo to each other.
+
+    Returns the trace's digest, and the receptions with times.
+    """
     bench = Bench(context=context)
     os = bench.os
 

@@ -298,8 +298,9 @@ def test_a_choice_that_is_not_there_becomes_the_last_that_is() -> None:
 
 
 def crowd(count: int) -> Program:
-    """Return a starter and `count` tasks with two steps each. A digit is the number of first steps before a second
-    step.
+    """Return a starter and `count` tasks with two steps each.
+
+    A digit is the number of first steps before a second step.
 
     The started tasks may run while the starter starts others.
     """

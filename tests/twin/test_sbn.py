@@ -114,8 +114,10 @@ def said_by_client(folder: Path, code: list[Path]) -> list[tuple[int, bytes | in
 @needs_sbn
 @pytest.mark.slow
 def test_nasas_sbn_as_compiled_code_says_what_cfepys_says(tmp_path: Path) -> None:
-    """The same shared objects as above, in virtual time. The only difference is that cfepy's sends its subscriptions
-    once more."""
+    """The same shared objects as above, in virtual time.
+
+    The only difference is that cfepy's sends its subscriptions once more.
+    """
     assert SERVER is not None
     code = [SERVER / "cf" / name for name in ("sbn.so", "sbn_udp.so", "sbn_f_remap.so")]
     own = said_by_client(tmp_path / "own", [])

@@ -31,8 +31,10 @@ def main() -> None:
 
 
 def report(results: list[Result]) -> int:
-    """Print the segments of the first flight beside NASA's, and whether the flights were identical. Returns an exit
-    status."""
+    """Print the segments of the first flight beside NASA's, and whether the flights were identical.
+
+    Returns an exit status.
+    """
     nasa, first = of_nasa(), results[0]
     print("| segment | passed | failed | by hand | left out | NASA: passed, by hand, left out |")
     print("|---|---|---|---|---|---|")

@@ -14,8 +14,10 @@ Angles = tuple[float, float, float]
 
 
 class Matrix3x3:
-    """A matrix from nine numbers row by row, or from a quaternion; the identity without arguments. An index gives a
-    row."""
+    """A matrix from nine numbers row by row, or from a quaternion; the identity without arguments.
+
+    An index gives a row.
+    """
 
     __slots__ = ("m_el",)
     __hash__ = None  # type: ignore[assignment]  # it can change

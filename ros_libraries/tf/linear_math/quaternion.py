@@ -64,7 +64,7 @@ class Quaternion(QuadWord):
         )
 
     def setEulerZYX(self, yaw: float, pitch: float, roll: float) -> None:
-        """Set as `setRPY`, whose old name this is, with the arguments in the other order."""
+        """Set the rotation; this is the old form of `setRPY`, with the arguments in reverse order."""
         self.setRPY(roll, pitch, yaw)
 
     # -- arithmetic --------------------------------------------------------------------------------------------------

@@ -305,8 +305,10 @@ def test_blocks_have_the_alignment_of_their_pool(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(("size", "at"), [(1000, 1000), (1001, 1001), (4096, 4096), (4096, -1)])
 def test_an_area_of_any_size_ends_where_nobody_may_write(tmp_path: Path, size: int, at: int) -> None:
-    """The area ends there if its size is a number of whole words. Otherwise a write behind it is reported at the
-    end."""
+    """The area ends there if its size is a number of whole words.
+
+    Otherwise a write behind it is reported at the end.
+    """
     folder = compile_app(tmp_path, SOURCE.format(body=f"p = user_area(); p[{at}] = 1;", before=""))
     for is_on in (False, True):
         switch(tmp_path, is_on)

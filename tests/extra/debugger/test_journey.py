@@ -72,8 +72,10 @@ class User(io.StringIO):
 
 
 def journey_of(plan: RunPlan, commands: str | User, journey: Journey, **options: Any) -> tuple[str, Flown, int]:
-    """Fly with a debugger, again each time its user goes back. Returns its output, the last flight, and the number
-    of flights."""
+    """Fly with a debugger, again each time its user goes back.
+
+    Returns its output, the last flight, and the number of flights.
+    """
     typed = io.StringIO(commands) if isinstance(commands, str) else commands
     stream, flights, end = io.StringIO(), 0, End()
     while True:

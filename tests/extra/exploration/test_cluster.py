@@ -149,8 +149,10 @@ def test_a_lost_scheduler_keeps_what_was_found(cluster: LoopbackCluster, tmp_pat
 
 @pytest.mark.slow
 def test_a_mission_flies_where_none_of_its_files_are(cluster: LoopbackCluster, tmp_path: Path) -> None:
-    """The workers get the mission after it was removed here. Its verdicts do not contain the path where it was
-    unpacked."""
+    """The workers get the mission after it was removed here.
+
+    Its verdicts do not contain the path where it was unpacked.
+    """
     folder = tmp_path / "mission"
     shutil.copytree(shipped("missions") / "capture", folder)
     plan = RunPlan((str(folder),), seconds=0.2)

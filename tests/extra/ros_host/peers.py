@@ -211,8 +211,10 @@ def joined(
     mission_file: str = "",
     world: Callable[[RosHost], RosWorld] = lambda host: ServedMaster(host, 0),
 ) -> Iterator[Joined]:
-    """Run a mission of nodes, by their application's name, with a master on a free port. `more` are lines of its
-    script."""
+    """Run a mission of nodes, by their application's name, with a master on a free port.
+
+    `more` are lines of its script.
+    """
     (folder / "mission.yaml").write_text(mission_file or "name: joined\n", encoding="utf-8")
     lines = [f"CFE_APP, {app.lower()}.py, __main__, {app}, 100, 16384, 0x0, 0;\n" for app in nodes]
     (folder / "startup.scr").write_text("".join(lines) + more + "!\n", encoding="utf-8")

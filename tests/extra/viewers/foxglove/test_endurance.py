@@ -134,8 +134,10 @@ def send_nonsense(run: ShownRun, client: FoxgloveClient, choose: random.Random) 
 
 
 def settled(run: ShownRun, client: FoxgloveClient) -> FoxgloveClient:
-    """Wait until the server has read everything and the run has processed it. Returns a new viewer if it was
-    disconnected."""
+    """Wait until the server has read everything and the run has processed it.
+
+    Returns a new viewer if it was disconnected.
+    """
     try:
         client.send(op="getParameters", parameterNames=[], id="last")
         client.wait_for(lambda: any(each.get("id") == "last" for each in client.told("parameterValues")))
