@@ -1,5 +1,4 @@
-"""Speed of encoding and decoding messages, in microseconds and relative to a plain loop of one struct call per
-value."""
+"""Speed of encoding and decoding, in microseconds and relative to a plain loop with one struct call per value."""
 
 from __future__ import annotations
 

@@ -218,8 +218,7 @@ KINDS: Mapping[str, tuple[Callable[[int, str], Row], tuple[int, ...], str]] = {
 
 
 def growth(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Return figures by name: microseconds of CPU per message as KIND.CONTEXT.SIZE, and MiB of the process beside
-    each."""
+    """Return figures by name: microseconds of CPU per message as KIND.CONTEXT.SIZE, each with MiB of the process."""
     figures: dict[str, float] = {}
     for kind, (_, sizes, _) in KINDS.items():
         for context in contexts:

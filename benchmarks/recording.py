@@ -14,8 +14,7 @@ REPEATS = 5
 
 
 def recording(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Return the CPU time of a recorded run relative to an unrecorded one, and the journal's bytes per virtual
-    second."""
+    """Return the relative CPU time of a recorded run, and the journal's bytes per virtual second."""
     figures: dict[str, float] = {}
     for context in contexts:
         plan = RunPlan(("capture",), seconds=CAPTURE_S, tasks=context)

@@ -71,8 +71,7 @@ class Verdict(NamedTuple):
 
 
 def code_digest() -> str:
-    """Return a digest of everything but the nodes that affects verdicts: the check, the interface library, the
-    definitions."""
+    """Return a digest of all that affects verdicts beside the nodes: check, interface library, definitions."""
     root = Path(__file__).parents[2]
     digest = hashlib.sha256()
     for folder in CODE:
@@ -121,8 +120,7 @@ def blocker_of(finding: RuleFinding) -> str:
 
 
 def missing(verdicts: Iterable[Verdict]) -> Iterator[str]:
-    """Yield the features that would free the most nodes, most first: nodes blocked by it alone, and nodes blocked at
-    all."""
+    """Yield the blockers of most nodes, most first: number of nodes blocked by it alone, and in total."""
     alone: Counter[str] = Counter()
     among: Counter[str] = Counter()
     example: dict[str, str] = {}

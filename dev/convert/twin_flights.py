@@ -1,5 +1,4 @@
-"""Packages of twins: a launch file flies a node in C++, or its twin in Python with `suffix:=.py`, and both are
-compared.
+"""Packages of twins: a launch file flies a node in C++, or its twin in Python with `suffix:=.py`, for comparison.
 
 Each package of the folder twins has such a launch file, with a stimulus and the recorder of the package twin_tools.
 """

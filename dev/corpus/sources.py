@@ -39,8 +39,7 @@ class Sources:
         return self.root / repo.replace("/", "+")
 
     def script(self, program: Program) -> tuple[Path, str]:
-        """Return the folder of a program's package, or its repository when it is in none, and the script's path in
-        it."""
+        """Return the folder of a program's package, or else its repository, and the script's path in it."""
         root = self.folder(program.repo)
         script = root / program.path
         inside = [folder for folder in script.parents if folder.is_relative_to(root)]

@@ -88,9 +88,7 @@ def _approx(value: float, expected: float, tolerance: float = 1e-9) -> bool:
 
 
 def _last_error(outcome: Outcome) -> list[str]:
-    """Return the most informative line of a failure: the last one of a traceback, or the error that ended the
-    stimulus.
-    """
+    """Return the main line of a failure: the last one of a traceback, or the error that ended the stimulus."""
     if "stimulus failed" in outcome.remarks:
         return [f"stimulus: {outcome.remarks['stimulus failed'].strip().splitlines()[-1]}"]
     lines = outcome.out.splitlines()

@@ -85,8 +85,7 @@ def measured(folder: Path) -> dict[str, float]:
 
 
 def rows(folder: Path) -> Iterator[tuple[list[str], str, float]]:
-    """Yield the meters' measurements: tests, the part of their cost (a fixture, or "" for the test itself), and the
-    cost."""
+    """Yield the measurements: tests, the part of their cost (a fixture, or "" for the test itself), and the cost."""
     for path in sorted(folder.glob("*.jsonl")):
         for line in path.read_text(encoding="utf-8").splitlines():
             tests, part, cost = json.loads(line)

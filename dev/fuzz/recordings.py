@@ -92,8 +92,7 @@ def placed_chunks(file: Path) -> list[PlacedChunk]:
 
 
 def placed_messages(file: Path) -> list[tuple[int, Message]]:
-    """Return the messages of a recording, each with the byte position where it ends, or where its compressed chunk
-    ends."""
+    """Return the messages of a recording, each with the end position of its bytes or of its compressed chunk."""
     said, chunks = read(file), placed_chunks(file)
     if file.name.startswith("none."):
         return list(zip(ends(file), said, strict=True))

@@ -102,9 +102,7 @@ class Entry(NamedTuple):
 
 
 def listed(module: str) -> Iterator[tuple[str, str, bool]]:
-    """Yield (header, name, whether the header defines it inline) for each declaration of a module's headers, once
-    each.
-    """
+    """Yield (header, name, whether it is inline) for each declaration of a module's headers, once each."""
     header, seen = "", set[str]()
     for line in (LISTS / f"api_{module}.txt").read_text(encoding="utf-8").splitlines():
         if line.startswith("#"):

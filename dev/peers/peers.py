@@ -48,8 +48,7 @@ class Peer:
         return tuple(dict.fromkeys([self.repo, *(each.partition(":")[0] for each in self.packages)]))
 
     def enough(self, passed: int) -> bool:
-        """Return whether that many are as many as pass on ROS, but for a twentieth and for those that are not
-        counted."""
+        """Return whether enough tests passed: 95 % of those that pass on ROS, without those that are not counted."""
         return passed >= ((self.passed or 0) - len(self.aside)) * SHARE
 
 

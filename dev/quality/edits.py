@@ -120,8 +120,7 @@ def _logs(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _boot(text: str, in_node: str, in_app: str) -> tuple[int, str]:
-    """Return the line before which to insert a text, and the text: after `init_node`, or at the start of an
-    application."""
+    """Return the line before which to insert a text, and the text: after `init_node`, or at an application's start."""
     tree = ast.parse(text)
     if _is_node(text):
         calls = (each for each in ast.walk(tree) if isinstance(each, ast.Expr) and "init_node(" in ast.unparse(each))

@@ -121,9 +121,8 @@ def verdicts(mission: Bug, folder: Path, count: int, first_seed: int = 0) -> Ite
 
 
 def mended_trial(mission: Bug, folder: Path) -> tuple[Trial, Schedule]:
-    """Return the trial of a mended form, in which no task may wait forever, and the schedule whose options all
-    share.
-    """
+    """Return the trial of a mended form, in which no task may wait forever, and the schedule with the common
+    options."""
     fixed = mission.write_fixed(folder)
     if isinstance(mission, Program):
         return program_trial(mission, fixed), Schedule.parse(mission.options + FROM)

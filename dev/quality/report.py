@@ -92,8 +92,7 @@ def _missing(measured: Measured, names: list[str], most: int) -> Iterator[tuple[
 
 
 def _missing_shrinks(measured: Measured, names: list[str]) -> Iterator[tuple[str, str]]:
-    """Yield the bugs whose schedules are to be shrunk, each with the default policy, or else the first policy to find
-    one."""
+    """Yield the bugs whose schedules are to be shrunk, each with the default policy or the first one to find it."""
     for name, columns in measured.items():
         if (not names or name in names) and SHRUNK not in columns:
             yield name, shown_by(measured, name)

@@ -275,8 +275,7 @@ def result_of(letter: str, status: int, data: bytes) -> Answer:
 
 
 def dump_of(file: bytes) -> str:
-    """Return a dumped table without its time, its application, and the table header bytes that NASA's cFE never
-    sets."""
+    """Return a dumped table without its time, its application, and the header bytes that NASA's cFE never sets."""
     return (file[:16] + file[32:64] + file[72:115] + file[116:]).hex()
 
 

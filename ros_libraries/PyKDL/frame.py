@@ -10,8 +10,7 @@ from .vector import EPSILON, Vector
 
 
 class Frame:
-    """A pose with the rotation `M` and the position `p`: `Frame()`, `Frame(M, p)`, one of them alone, or a copy of
-    another."""
+    """A pose with the rotation `M` and the position `p`: `Frame()`, `Frame(M, p)`, one of them, or a copy."""
 
     def __init__(self, *args: Any) -> None:
         if len(args) == 1:

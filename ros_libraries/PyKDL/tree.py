@@ -45,8 +45,7 @@ class Tree:
         return len(self.segments)
 
     def getChain(self, chain_root: str, chain_tip: str) -> Chain:
-        """Return the chain from the end of one segment to the end of another through the tree; empty if there is
-        none."""
+        """Return the chain from the end of one segment to the end of another, or an empty chain."""
         chain = Chain()
         if not (self._has(chain_root) and self._has(chain_tip)):
             return chain

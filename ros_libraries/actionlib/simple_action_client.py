@@ -127,8 +127,7 @@ class SimpleActionClient:
         return self.gh.get_result()
 
     def get_state(self) -> int:
-        """Return the status number of actionlib_msgs/GoalStatus without the states in between, or LOST without a
-        goal."""
+        """Return the number of actionlib_msgs/GoalStatus without the states in between, or LOST without a goal."""
         if not self.gh:
             return int(GoalStatus.LOST)
         status = self.gh.get_goal_status()

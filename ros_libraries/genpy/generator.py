@@ -172,8 +172,7 @@ def _structs() -> Source:
 
 
 def srv_generator(msg_context: MsgContext, spec: Any, search_path: SearchPath) -> Source:
-    """Yield the source of a service: request class, response class, and a class that holds both; see
-    `msg_generator`."""
+    """Yield the source of a service: request, response, and a class that holds both; see `msg_generator`."""
     for part in (spec.request, spec.response):
         yield from msg_generator(msg_context, part, search_path)
     load_depends(msg_context, spec, search_path)

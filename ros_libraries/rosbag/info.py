@@ -101,8 +101,7 @@ def _topic(bag: Bag, connections: list[Connection]) -> TopicTuple:
 
 
 def _frequency(bag: Bag, connections: list[Connection]) -> float | None:
-    """Return the frequency in Hz from the median of the periods; None without the index, or with less than two
-    messages."""
+    """Return the frequency in Hz from the median period; None without the index, or with less than two messages."""
     if not bag._connection_indexes_read:
         return None
     stamps = [seconds(entry.time) for entry in bag._storage.contents.entries(connections)]

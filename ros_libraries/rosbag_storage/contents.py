@@ -52,8 +52,7 @@ class Connection:
 
 @dataclass
 class Chunk:
-    """A chunk: its position in the file, first and last time in ns, messages per connection, and its compression and
-    size."""
+    """A chunk: position in the file, first and last time in ns, messages per connection, compression and size."""
 
     pos: int
     start: int

@@ -209,8 +209,7 @@ class McapSalvage(Salvage):
         damaged.
 
         A record with a damaged kind is recognised by its length, at whose end another record begins. A record with a
-        damaged
-        length is recognised by its kind.
+        damaged length is recognised by its kind.
         """
         if at >= end:
             return at == end

@@ -95,8 +95,7 @@ def _show(mode: str, args: list[str]) -> int:
 
 
 def _in_bag(file: str, name: str) -> list[Any]:
-    """Return the class of a message in a bag, made from the definition there, or nothing if the bag has no such
-    message.
+    """Return a list with the class of a message, made from its definition in a bag, or an empty list.
 
     Raises:
         rosmsg.ROSMsgException: there is no such bag, or it is broken.

@@ -58,8 +58,7 @@ def inverse(transform: Rigid) -> Rigid:
 
 
 def between(older: Sample, newer: Sample, ratio: float) -> Sample:
-    """Return the sample at a point between two: translation linearly, rotation along the shortest arc at constant
-    speed.
+    """Return the sample at a point between two: linear translation, rotation along the shortest arc.
 
     Args:
         older: the sample for `ratio` 0.

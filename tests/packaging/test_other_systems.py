@@ -1,9 +1,7 @@
-"""cfepy works without features that other systems lack: every module is imported, and the demonstration is the same
-run.
+"""cfepy works without features that other systems lack: all modules are imported, and the demonstration is the same.
 
 The tests remove the features that Windows' or macOS's Python lacks. Replacements on those systems are missing here,
-too,
-so the tests only find code that cannot do without a feature. docs/how_to/install.md lists runs on real systems.
+too. So the tests only find code that cannot do without a feature. docs/how_to/install.md lists runs on real systems.
 """
 
 from __future__ import annotations
