@@ -2,8 +2,7 @@
 
 `python -m benchmarks growth` prints the figures. `python -m benchmarks.growth PICTURE` measures and draws them, and
 `python -m benchmarks.growth PICTURE --of FIGURES` draws earlier figures. Each size is measured in its own process, and
-in
-CPU time, which other programs on the computer disturb less than the wall clock.
+in CPU time, which other programs on the computer disturb less than the wall clock.
 """
 
 from __future__ import annotations

@@ -2,8 +2,7 @@
 
 It works on a copy of the committed files in a separate folder. It changes the checkout only after all steps succeed:
 then CHANGELOG.md has the day, the commit is tagged, and `dist/` has the files. It sends nothing except pip's requests
-to
-the package registry. The last line that it prints is the command that uploads.
+to the package registry. The last line that it prints is the command that uploads.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """SAMPLE_APP: waits for commands on a pipe, answers with events and telemetry, and keeps a parameter table.
 
 Every cFE app has this shape. The startup script names the entry point `SAMPLE_APP_Main`. cFE calls it in a separate
-task
-with the handle `cfe`, which gives access to all services: `cfe.CFE_service.function`, named as in NASA's API
+task with the handle `cfe`, which gives access to all services: `cfe.CFE_service.function`, named as in NASA's API
 (CFE_SB_CreatePipe is cfe.sb.create_pipe). A call that fails raises CfeError with NASA's status.
 """
 

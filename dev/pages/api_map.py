@@ -3,9 +3,8 @@
     python -m dev.pages.api_map
 
 NASA's names are in tests/data/api, one file for each module; api_names.py maps them to the names here. Different and
-absent names are read from the tables of docs/reference/differences.md: a name in a row differs as the row describes,
-or is absent for its reason. So nothing is written twice, and a name without an entry is missing. The names that
-compiled
+absent names are read from the tables of docs/reference/differences.md: a name in a row differs as the row describes, or
+is absent for its reason. So nothing is written twice, and a name without an entry is missing. The names that compiled
 applications can call are read from the declarations of `cfepy.extra.c.api`, for which the engine is built.
 """
 

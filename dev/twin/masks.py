@@ -1,8 +1,7 @@
 """Allowed differences between packets or files of NASA's cFE and ours: which fields, and why. All else is compared.
 
 Time in the headers of packets and files is left out everywhere, and so is the sequence count of events. TIME of the
-real
-cFE enters and leaves flywheel mode when the host is slow, with an event each time.
+real cFE enters and leaves flywheel mode when the host is slow, with an event each time.
 """
 
 from __future__ import annotations

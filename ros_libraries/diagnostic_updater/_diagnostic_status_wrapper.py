@@ -26,8 +26,7 @@ class DiagnosticStatusWrapper(DiagnosticStatus):  # type: ignore[misc]  # the me
         """Merge another level and message, given as in `summary`.
 
         The worse level stays. If both levels are good or both are bad, their messages are joined by "; ". Otherwise the
-        bad
-        one's message stays.
+        bad one's message stays.
         """
         level, text = _level_and_text(args)
         if (level > OK) == (self.level > OK):

@@ -13,8 +13,7 @@ def load_manifest(package_name: str, bootstrap_version: str = "0.7") -> None:
     """Make the code of a package and of its dependencies importable; see `roslib.launcher`.
 
     Programs begin with it and name their own package. A package without a manifest is not an error: the modules beside
-    a
-    program can be imported in any case.
+    a program can be imported in any case.
 
     Args:
         package_name: the package.

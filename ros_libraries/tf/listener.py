@@ -51,8 +51,7 @@ class TransformerROS(Transformer):
     """A `Transformer` that also transforms messages.
 
     Each `transform...` takes a frame's name and a stamped message. It returns a new message as seen from that frame,
-    with
-    the old stamp. Errors are those of `lookupTransform`.
+    with the old stamp. Errors are those of `lookupTransform`.
     """
 
     def asMatrix(self, target_frame: str, hdr: Any) -> Any:

@@ -18,8 +18,7 @@ class Path:
     """The path from a source frame up to a common ancestor and down to the target frame.
 
     `up` and `down` are the samples from source and target to the frame where they meet. `time` is the requested time,
-    or the
-    latest common one, in ns.
+    or the latest common one, in ns.
     """
 
     __slots__ = ("down", "time", "up")

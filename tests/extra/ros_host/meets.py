@@ -1,8 +1,7 @@
 """Sends its name and the peer that it received last, 50 times a second: a node for both worlds.
 
 Arguments: its node's name, the other node's name, and a name for this start of it. It prints each peer that has
-reported
-receiving messages of this very start.
+reported receiving messages of this very start.
 """
 
 import sys

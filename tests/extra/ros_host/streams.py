@@ -2,8 +2,7 @@
 
 Arguments: its own name, the other's, how many messages. After both are connected with each other, each sends messages
 with the numbers 1, 2, 3 ... in `effort`, then end marks with 0, until it is shut down. At the other's first end mark,
-it
-prints the messages received before.
+it prints the messages received before.
 
 `queue_size` is 1,000, so that rospy's own queues lose nothing and any loss is the bridge's. rospy reads up to 64 KiB at
 once, which are 239 of these messages, and drops those beyond the queue's size. With 100, a node that has not read for

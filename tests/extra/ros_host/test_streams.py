@@ -1,8 +1,7 @@
 """A 1 kHz stream each way between a node on real rospy and one of a mission at the same time: nothing is lost.
 
 The counts do not depend on the speed of the computer; a busy one only takes longer. `streams.py` explains why its
-queues
-hold 1,000 messages.
+queues hold 1,000 messages.
 """
 
 from __future__ import annotations

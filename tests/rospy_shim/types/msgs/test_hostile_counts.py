@@ -1,8 +1,7 @@
 """Impossible counts: a packet never makes the decoder build more than its bytes pay for.
 
 genpy iterates over an array of messages as often as the packet says. An exception are messages of octets alone: it
-takes
-the available ones, down to none. Here such a packet is refused as genpy refuses one whose bytes end.
+takes the available ones, down to none. Here such a packet is refused as genpy refuses one whose bytes end.
 """
 
 from __future__ import annotations
