@@ -22,7 +22,7 @@ MAIN_TASK_PERF_ID = 32
 
 
 def CI_LAB_AppMain(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the app; the startup script names this entry point."""
     cfe.es.perf_log_entry(MAIN_TASK_PERF_ID)
     app = CommandIngest(cfe)
     try:

@@ -31,7 +31,7 @@ POOL_BYTES = 6144
 
 
 def HK_AppMain(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the app; the startup script names this entry point."""
     run(cfe)
 
 

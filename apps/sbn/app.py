@@ -35,7 +35,7 @@ UDP_OPS, REMAP_FILTER = "SBN_UDP_Ops", "SBN_F_Remap"
 
 
 def SBN_AppMain(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the app; the startup script names this entry point."""
     run(cfe)
 
 

@@ -170,7 +170,7 @@ class Nets:
             self.send(peer, pr.SUB_MSG, self._subscriptions.all())
 
     def disconnected(self, peer: Peer) -> None:
-        """A peer is gone: so are its pipe and subscriptions (SBN_Disconnected)."""
+        """Disconnect a peer: remove its pipe and subscriptions (SBN_Disconnected)."""
         cfe = self._cfe
         pipe, peer.pipe, peer.connected = peer.pipe, 0, False
         peer.subs.clear()

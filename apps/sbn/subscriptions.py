@@ -117,12 +117,7 @@ class Subscriptions:
     # -- of peers ----------------------------------------------------------------------------------------------------
 
     def from_peer(self, peer: SubscribedPeer, payload: bytes) -> None:
-        """A peer wants messages (SBN_ProcessSubsFromPeer).
-
-        Raises:
-            Malformed: the payload is none.
-            CfeError: the Software Bus has no room for them.
-        """
+        """Add a peer's subscriptions (SBN_ProcessSubsFromPeer)."""
         for each in self._read(peer, payload):
             self._subscribe(peer, _wanted(peer, each.msg_id))
 
@@ -141,11 +136,7 @@ class Subscriptions:
         peer.subs[msg_id] = None
 
     def unsub_from_peer(self, peer: SubscribedPeer, payload: bytes) -> None:
-        """A peer wants messages no more (SBN_ProcessUnsubsFromPeer).
-
-        Raises:
-            Malformed: the payload is none.
-        """
+        """Remove a peer's subscriptions (SBN_ProcessUnsubsFromPeer)."""
         for each in self._read(peer, payload):
             msg_id = _wanted(peer, each.msg_id)
             if msg_id in peer.subs:

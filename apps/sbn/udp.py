@@ -141,7 +141,7 @@ class Udp:
         self._error(ev.UDP_DEBUG_EID, text)
 
     def _seconds(self, now: OsTime, then: OsTime) -> int:
-        """Whole seconds between two times."""
+        """Return whole seconds between two times."""
         return self._cfe.os.time_get_total_seconds(OsTime(now - then))
 
     def _info(self, event_id: int, text: str) -> None:

@@ -27,7 +27,7 @@ LIBRARY_STATE = "SCH_GetProcessingState"
 
 
 def SCH_AppMain(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the app; the startup script names this entry point."""
     cfe.es.perf_log_entry(PERF_ID)
     app = SchSlots(cfe)
     run_status, status = APP_RUN, CFE_SUCCESS

@@ -113,7 +113,7 @@ class Frames:
         self._noisy_in_a_row = 0
 
     def on_major_frame(self) -> None:
-        """The tone (SCH_MajorFrameCallback), in TIME's task."""
+        """Handle the tone (SCH_MajorFrameCallback), in TIME's task."""
         if not self._cfe.time.get_clock_info() & FLAG_FLYING:
             self._judge_noise()
             if not self.ignored:
@@ -146,7 +146,7 @@ class Frames:
             self._on_minor_frame()
 
     def _on_minor_frame(self) -> None:
-        """A slot is over (SCH_MinorFrameCallback)."""
+        """Handle the end of a slot (SCH_MinorFrameCallback)."""
         self._ticks_left = self._ticks(SLOT_US)
         if self.source == SOURCE_NONE:  # no tone in the time for it
             self.source = SOURCE_MINOR_FRAME_TIMER
@@ -176,5 +176,5 @@ class Frames:
         return True
 
     def _ticks(self, period_us: int) -> int:
-        """Ticks of the timer in a time, rounded up."""
+        """Return ticks of the timer in a time, rounded up."""
         return -(-period_us // self._tick_us)

@@ -155,7 +155,7 @@ class Tables:
         return self._messages[at : at + pk.MAX_MESSAGE_SIZE]
 
     def members_of(self, groups: int) -> list[Place]:
-        """Entries of a group, or of any of some multi-groups: the number is in the highest byte, the rest are bits."""
+        """Return the entries of a group (number in the highest byte) or of any of some multi-groups (other bits)."""
         number = groups & pk.GROUP_NUMBER_MASK
         found = []
         for place in _places():

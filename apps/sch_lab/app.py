@@ -28,7 +28,7 @@ PERF_ID = 36
 
 
 def SCH_LAB_AppMain(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the app; the startup script names this entry point."""
     cfe.es.perf_log_entry(PERF_ID)
     app = SchLab(cfe)
     try:
@@ -113,7 +113,7 @@ class SchLab:
             cfe.os.printf("SCH Error subscribing to 1hz!\n")
 
     def _tick_period(self, tick_rate: int) -> int:
-        """Microseconds of a tick, from ticks a second."""
+        """Return microseconds of a tick, from ticks a second."""
         log = self._cfe.es.write_to_sys_log
         if tick_rate == 0:
             log("SCH_LAB_AppInit: Using default tick rate of 1 second")

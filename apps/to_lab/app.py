@@ -24,7 +24,7 @@ MAIN_TASK_PERF_ID = 34
 
 
 def TO_LAB_AppMain(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the app; the startup script names this entry point."""
     cfe.es.perf_log_entry(MAIN_TASK_PERF_ID)
     app = TelemetryOutput(cfe)
     run_status = app.start()

@@ -148,5 +148,5 @@ def read(command: Command, packet: bytes) -> dict[str, Any]:
 
 
 def qos_of(fields: dict[str, Any]) -> int:
-    """Quality of service of a row or a command, as one number."""
+    """Return the quality of service of a row or a command, as one number."""
     return int(fields["Flags"]["Priority"] | fields["Flags"]["Reliability"] << 8)
