@@ -133,7 +133,7 @@ def fan_out_tasks(context: str, count: int = 5_000) -> int:
 
 
 def bus(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Figures by name: rates in 1/s, and ratios to the floor measured in the same run."""
+    """Return figures by name: rates in 1/s, and ratios to the floor measured in the same run."""
     figures: dict[str, float] = {"floor.queue_and_header": rate(floor.queue_and_header)}
     for context in contexts:
         figures[f"floor.hand_overs.{context}"] = rate(partial(floor.hand_overs, context))

@@ -18,7 +18,7 @@ _ROUND_S = 0.003
 
 
 def codec() -> dict[str, float]:
-    """Figures by name.
+    """Return figures by name.
 
     Returns:
         for each message `<name>.pack_us` and `<name>.unpack_us`, and `<name>.ratio`: how many times faster than the

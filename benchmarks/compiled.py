@@ -37,7 +37,7 @@ class _Clock(Console):
 
 
 def _pieces(folder: Path, context: str) -> dict[str, float]:
-    """Seconds that each piece took."""
+    """Return seconds that each piece took."""
     clock = _Clock()
     with Mission(str(folder), tasks=context, console=clock) as flight:
         flight.run_for(FLIGHT_S)

@@ -16,7 +16,7 @@ LOOKING_S = 0.0002  # virtual; a lookup takes none, but checking whether to cont
 
 
 def lookup_us(context: str) -> float:
-    """Wall time of a lookup in us."""
+    """Return the wall time of a lookup in us."""
     with Mission(str(NODES), tasks=context, console=Console(quiet=True)) as flight:
         flight.run_for(START_S)
         while not _looked(flight):

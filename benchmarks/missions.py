@@ -17,7 +17,7 @@ REPEATS = 3
 
 
 def capture_speed(context: str) -> float:
-    """Virtual seconds a wall second of missions/capture, boot and loading of the nodes included."""
+    """Return virtual seconds per wall second of missions/capture, boot and loading of the nodes included."""
     return CAPTURE_S / min(_whole("capture", context, CAPTURE_S) for _ in range(REPEATS))
 
 
@@ -60,7 +60,7 @@ def _counts(flight: Mission) -> tuple[int, int]:
 
 
 def boot_s() -> float:
-    """Wall seconds of a whole process: `cfepy run` of an empty mission for 0.6 virtual s, which ends OPERATIONAL."""
+    """Return the wall time in s of `cfepy run` of an empty mission for 0.6 virtual s, which ends OPERATIONAL."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "startup.scr").write_text("!\n", encoding="utf-8")
         command = [sys.executable, "-m", "cfepy", "run", folder, "--for", "0.6"]
@@ -75,7 +75,7 @@ def boot_s() -> float:
 
 
 def missions(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Figures by name: speeds in virtual seconds a wall second, rates in 1/s, times in s."""
+    """Return figures by name: speeds in virtual seconds per wall second, rates in 1/s, times in s."""
     figures = {"boot_empty_mission_s": boot_s()}
     for context in contexts:
         figures[f"capture_speed.{context}"] = capture_speed(context)

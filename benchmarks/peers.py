@@ -136,7 +136,7 @@ def _wait_for(line: str, process: subprocess.Popen[str]) -> None:
 
 
 def _cpu_s(pid: int) -> float:
-    """CPU time of a process so far, in seconds."""
+    """Return the CPU time of a process so far, in seconds."""
     told = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")
 

@@ -36,7 +36,7 @@ for thread in threads: thread.join()
 
 
 def universe(context: str = "thread") -> dict[str, float]:
-    """Figures by name.
+    """Return figures by name.
 
     Args:
         context: the task context of the kernel.
@@ -92,7 +92,7 @@ def _pass(items: Any) -> None:
 
 
 def _round_trip(kernel: Kernel) -> float:
-    """Microseconds."""
+    """Return the microseconds of a round trip."""
     made = _load(kernel, ("threading", "queue"))
     there, back = (made.importer.modules["queue"].Queue() for _ in range(2))
 

@@ -85,7 +85,7 @@ class Verdict(NamedTuple):
 
 
 def refused(package: Path, scratch: Path) -> dict[str, str]:
-    """Rules that refuse nodes, by node.
+    """Return rules that refuse nodes, by node.
 
     Args:
         package: its folder.

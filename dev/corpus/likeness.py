@@ -39,7 +39,7 @@ def lines(text: str) -> list[str]:
 
 
 def digest(thing: Any) -> str:
-    """Eight digits that stand for it."""
+    """Return a digest of eight digits."""
     return hashlib.sha256(json.dumps(thing, sort_keys=True).encode()).hexdigest()[:8]
 
 
@@ -63,7 +63,7 @@ def differences(one: Outcome, other: Outcome) -> dict[str, tuple[Any, Any]]:
 
 
 def plain(value: Any) -> Any:
-    """Plain data without times."""
+    """Return plain data without times."""
     if isinstance(value, dict):
         if value.keys() == {"secs", "nsecs"}:
             return "time" if value["secs"] > 1_000_000 else value

@@ -107,7 +107,7 @@ def files(*patterns: str) -> Callable[[], list[bytes]]:
 
 
 def texts(*found: str) -> Callable[[], list[bytes]]:
-    """Samples that are written here."""
+    """Return samples written in this module."""
     return lambda: [text.encode() for text in found]
 
 
@@ -437,7 +437,7 @@ def journals() -> list[bytes]:
 
 
 def cds_images() -> list[bytes]:
-    """Memory with blocks in it."""
+    """Return images of CDS memory with blocks."""
     board = Board()
     for size, name in ((10, "APP.One"), (200, "APP.Two"), (33, "TBL.Three")):
         handle = board.cds.register(size, name, name.startswith("TBL"))[0]
@@ -447,7 +447,7 @@ def cds_images() -> list[bytes]:
 
 
 def packets() -> list[bytes]:
-    """Telemetry packets."""
+    """Return telemetry packets."""
     return [
         bytes.fromhex(text)
         for text in _hex_in(json.loads((DATA / "golden_telemetry.json").read_text(encoding="utf-8")))
@@ -607,7 +607,7 @@ LOCK = "topics:\n  /joint_states: 0x0910\n  /phase: 0x0912\nservices:\n  /reset:
 
 @cache
 def table_texts() -> list[bytes]:
-    """Table files in YAML."""
+    """Return table files in YAML."""
     find = table_types(None, []).get
     sources = sorted([*DATA.glob("*.tbl"), *(ROOT / "missions").glob("*/*.tbl")])
     return [table_yaml.write(document(take_apart(path.read_bytes(), find, path.name))).encode() for path in sources]

@@ -258,7 +258,7 @@ def _frame(opcode: int, data: bytes) -> bytes:
 
 
 def tcpros_samples() -> list[bytes]:
-    """Subscribers, callers and probes."""
+    """Return subscribers, callers and probes."""
     string = {"type": "std_msgs/String", "md5sum": "992ce8a1687cec8c8bd883ec73ca41d1", "callerid": "/x"}
     call = {"service": "/switch", "md5sum": "*", "callerid": "/x", "persistent": "1"}
     return [
@@ -282,7 +282,7 @@ NOBODY = "http://127.0.0.1:1/"
 
 
 def master_samples() -> list[bytes]:
-    """Requests to the master."""
+    """Return requests to the master."""
     value = {"p": 1, "q": [1.5, True, b"\0\1", {"r": "text"}]}
     calls = [{"methodName": "getPid", "params": ["/x"]}, {"methodName": "deleteParam", "params": ["/x", "/p"]}]
     return [
@@ -305,7 +305,7 @@ def master_samples() -> list[bytes]:
 
 
 def slave_samples() -> list[bytes]:
-    """Requests to a node."""
+    """Return requests to a node."""
     return [
         _request("requestTopic", "/x", "/chatter", [["TCPROS"]]),
         _request("publisherUpdate", "/master", "/orders", [NOBODY]),
@@ -320,7 +320,7 @@ def slave_samples() -> list[bytes]:
 
 
 def http_samples() -> list[bytes]:
-    """Requests with their heads."""
+    """Return requests with their heads."""
     return [_posted(each) for each in (*master_samples()[:3], slave_samples()[0])] + [
         _posted(b"").replace(b"HTTP/1.1", b"HTTP/1.0") + _posted(master_samples()[1]),
         _posted(master_samples()[0]).replace(b"Content-Type", b"Expect: 100-continue\r\nContent-Type"),
@@ -350,7 +350,7 @@ ROSBRIDGE = b"""{"op": "advertise", "topic": "/orders", "type": "std_msgs/String
 
 
 def rosbridge_samples() -> list[bytes]:
-    """Ops of clients."""
+    """Return ops of clients."""
     lines = ROSBRIDGE.split(b"\n")
     return [b"\n".join(lines[at : at + 3]) for at in range(0, len(lines), 2)]
 
@@ -380,7 +380,7 @@ def foxglove_samples() -> list[bytes]:
 
 
 def websocket_samples() -> list[bytes]:
-    """Handshakes, and frames behind them."""
+    """Return handshakes, and frames behind them."""
     foxglove = _handshake("Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n")
     parts = b'\x01\x83\0\0\0\0{"o' + b'\x80\x8c\0\0\0\0p": "nothing"}'
     return [

@@ -108,7 +108,7 @@ def with_one_user(tree: Tree) -> list[Module]:
 
 
 def circles(tree: Tree, for_types: bool = False) -> list[list[str]]:
-    """Groups of modules that import each other in a circle, largest first.
+    """Return groups of modules that import each other in a circle, largest first.
 
     Those that exist for type checkers alone are left out, unless they are asked for: then they are all there is.
     """
@@ -164,7 +164,7 @@ def by_name(tree: Tree) -> list[tuple[str, str]]:
 
 
 def names_twice(tree: Tree) -> dict[str, list[str]]:
-    """Public classes at the top of modules that have the same name, with the modules."""
+    """Return public classes at the top of modules that have the same name, with the modules."""
     found: dict[str, list[str]] = {}
     for module in tree.modules.values():
         for name in module.classes:

@@ -74,7 +74,7 @@ def allowed(source: str, target: str) -> bool:
 
 
 def wrong_arrows(tree: Tree) -> Iterator[Arrow]:
-    """Imports that go up or to a peer."""
+    """Yield imports that go up or to a peer."""
     for module in tree.modules.values():
         for name, imports in tree.arrows(module).items():
             if not allowed(module.part, tree.modules[name].part):
@@ -82,5 +82,5 @@ def wrong_arrows(tree: Tree) -> Iterator[Arrow]:
 
 
 def homeless(tree: Tree) -> list[str]:
-    """Parts that have no place on a floor."""
+    """Return parts that have no place on a floor."""
     return sorted({module.part for module in tree.modules.values()} - set(LEVEL))

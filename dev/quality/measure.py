@@ -58,7 +58,7 @@ class Median:
         return not (self.found or self.exhausted) and self.schedules < longest(most, self.trials)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data."""
         return asdict(self)
 
 

@@ -31,7 +31,7 @@ class Shrunk:
         return f"{self.preemptions} + {self.others}" if self.others else str(self.preemptions)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data."""
         return asdict(self)
 
 

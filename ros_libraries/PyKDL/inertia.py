@@ -20,7 +20,7 @@ class RotationalInertia:
 
     @staticmethod
     def Zero() -> RotationalInertia:
-        """That of nothing."""
+        """Return a zero inertia."""
         return RotationalInertia()
 
     @staticmethod
@@ -68,7 +68,7 @@ class RigidBodyInertia:
 
     @staticmethod
     def Zero() -> RigidBodyInertia:
-        """That of nothing."""
+        """Return a zero inertia."""
         return RigidBodyInertia()
 
     @staticmethod

@@ -29,7 +29,7 @@ def as_ros_duration(d: Any) -> Any:
 
 
 def as_float_duration(d: Any) -> Any:
-    """Seconds of a rospy.Duration, or of seconds."""
+    """Return seconds of a rospy.Duration, or of seconds."""
     return d.to_sec() if isinstance(d, rospy.Duration) else d
 
 

@@ -155,7 +155,7 @@ class Recorder:
 
 
 def duration_of(text: str) -> float:
-    """Seconds of "10", "10s", "5m" or "1h", for argparse."""
+    """Return seconds of "10", "10s", "5m" or "1h", for argparse."""
     unit = UNITS.get(text[-1:])
     return float(text) if unit is None else float(text[:-1]) * unit
 

@@ -120,7 +120,7 @@ class Master:
         return self._ask("subscribeParam", caller_api, key)
 
     def unsubscribeParam(self, caller_api: str, key: str) -> Any:
-        """Want no changes of a parameter any more."""
+        """End the notifications about a parameter."""
         return self._ask("unsubscribeParam", caller_api, key)
 
     # -- registrations -----------------------------------------------------------------------------------------------
@@ -168,5 +168,5 @@ class Master:
         return self._ask("getTopicTypes")
 
     def getSystemState(self) -> Any:
-        """Publishers, subscribers, providers of services: three lists of [name, [node, ...]]."""
+        """Return publishers, subscribers, providers of services: three lists of [name, [node, ...]]."""
         return self._ask("getSystemState")

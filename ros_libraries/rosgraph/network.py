@@ -74,7 +74,7 @@ def use_ipv6() -> bool:
 
 
 def get_local_addresses() -> list[str]:
-    """Addresses of this machine."""
+    """Return addresses of this machine."""
     return ["127.0.0.1"]
 
 

@@ -86,7 +86,7 @@ def resource_name_package(name: str) -> str | None:
 
 
 def package_resource_name(name: str) -> tuple[str, str]:
-    """Package and own name of a resource; the package may be empty.
+    """Return the package and own name of a resource; the package may be empty.
 
     Raises:
         ValueError: a name with more than two parts.

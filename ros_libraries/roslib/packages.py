@@ -45,7 +45,7 @@ class MultipleNodesException(ROSPkgException):
 
 
 def get_dir_pkg(d: str) -> tuple[str | None, str | None]:
-    """Folder and name of the package that a folder lies in, or None twice."""
+    """Return the folder and name of the package that a folder lies in, or None twice."""
     folder = os.path.realpath(d)
     while not any(os.path.exists(os.path.join(folder, name)) for name in (MANIFEST_FILE, PACKAGE_FILE)):
         if os.path.dirname(folder) == folder:

@@ -28,7 +28,7 @@ def rospack_depends_on(pkg: str) -> Sequence[str]:
 
 
 def rospack_plugins(pkg: str) -> list[tuple[str, str]]:
-    """Package and file of each plugin for a package."""
+    """Return the package and file of each plugin for a package."""
     packages = rospkg.RosPack()
     return [
         (name, file)

@@ -80,7 +80,7 @@ def list_stacks_by_path(path: str, stacks: list[str] | None = None, cache: dict[
 
 
 def get_stack_version(stack: str, env: Env = None) -> str | None:
-    """Version of a stack, or None.
+    """Return the version of a stack, or None.
 
     Raises:
         rospkg.ResourceNotFound: there is no such stack.
@@ -89,5 +89,5 @@ def get_stack_version(stack: str, env: Env = None) -> str | None:
 
 
 def expand_to_packages(names: Sequence[str], env: Env = None) -> tuple[list[str], list[str]]:
-    """Packages of a list of packages and stacks, and the names that are neither."""
+    """Return packages of a list of packages and stacks, and the names that are neither."""
     return rospkg.expand_to_packages(names, rospkg.RosPack(), _stacks(env))

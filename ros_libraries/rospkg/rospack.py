@@ -187,7 +187,7 @@ class RosStack(ManifestManager):
         return list_by_path(MANIFEST_FILE, self.get_path(stack), {})
 
     def get_stack_version(self, stack: str) -> str | None:
-        """Version of a stack, or None.
+        """Return the version of a stack, or None.
 
         Raises:
             ResourceNotFound: there is no such stack.
@@ -229,7 +229,7 @@ def _resource(folder: str, files: Iterable[str], manifest_name: str) -> str | No
 
 
 def expand_to_packages(names: Sequence[str], rospack: RosPack, rosstack: RosStack) -> tuple[list[str], list[str]]:
-    """Packages of a list of packages and stacks, and the names that are neither.
+    """Return packages of a list of packages and stacks, and the names that are neither.
 
     Raises:
         ValueError: no list.
@@ -248,7 +248,7 @@ def expand_to_packages(names: Sequence[str], rospack: RosPack, rosstack: RosStac
 
 
 def get_stack_version_by_dir(stack_dir: str) -> str | None:
-    """Version of the stack in a folder, or None."""
+    """Return the version of the stack in a folder, or None."""
     file = os.path.join(stack_dir, STACK_FILE)
     if not os.path.isfile(file):
         return None

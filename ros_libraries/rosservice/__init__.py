@@ -82,7 +82,7 @@ def get_service_node(service_name: str) -> str | None:
 
 
 def get_service_uri(service_name: str) -> str | None:
-    """URI of a service, or None.
+    """Return the URI of a service, or None.
 
     Raises:
         ROSServiceIOException: the master does not answer.
@@ -119,7 +119,7 @@ def get_service_headers(service_name: str, service_uri: str) -> dict[str, str]:
 
 
 def get_service_type(service_name: str) -> str | None:
-    """Type of a service, or None.
+    """Return the type of a service, or None.
 
     Raises:
         ROSServiceIOException: the master or the service's node does not answer.
@@ -146,7 +146,7 @@ def rosservice_find(service_type: str) -> list[str]:
 
 
 def get_service_class_by_name(service_name: str) -> Any:
-    """Class of a service.
+    """Return the class of a service.
 
     Raises:
         ROSServiceException: the service, its type or its class cannot be found.

@@ -232,7 +232,7 @@ def get_info_text(topic: str) -> str:
 def _rostopic_list_group_by_host(
     master: rosgraph.Master, pubs: Sequence[Row], subs: Sequence[Row]
 ) -> tuple[dict[str, list[Row]], dict[str, list[Row]]]:
-    """Rows by the machine that the nodes run on."""
+    """Return rows by the machine that the nodes run on."""
     sides: tuple[dict[str, list[Row]], dict[str, list[Row]]] = ({}, {})
     for side, rows in zip(sides, (pubs, subs), strict=True):
         for topic, kind, nodes in rows:

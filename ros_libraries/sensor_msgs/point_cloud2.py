@@ -117,7 +117,7 @@ def _check(cloud: Any) -> None:
 
 
 def _get_struct_fmt(is_bigendian: bool, fields: Iterable[Any], field_names: Collection[str] | None = None) -> str:
-    """Format of a point up to the end of its last field that is read."""
+    """Return the format of a point up to the end of its last field that is read."""
     parts = [">" if is_bigendian else "<"]
     offset = 0
     for field in sorted(fields, key=lambda each: int(each.offset)):

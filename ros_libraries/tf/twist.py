@@ -12,7 +12,7 @@ Pose = tuple[list[float], list[float]]
 
 
 def between_poses(start: Pose, end: Pose, seconds: float) -> tuple[Any, Any]:
-    """Linear and angular velocity of a frame that got from one pose to another.
+    """Return the linear and angular velocity of a frame that got from one pose to another.
 
     Args:
         start: translation and rotation (x, y, z, w).

@@ -28,7 +28,7 @@ def from_msg_msg(msg: Any) -> Any:
 
 
 def transform_to_kdl(t: Any) -> Any:
-    """PyKDL.Frame of a geometry_msgs/TransformStamped."""
+    """Return the PyKDL.Frame of a geometry_msgs/TransformStamped."""
     import PyKDL
 
     rotation, place = t.transform.rotation, t.transform.translation

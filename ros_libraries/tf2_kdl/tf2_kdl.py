@@ -40,7 +40,7 @@ def do_transform_wrench(wrench: PyKDL.Wrench, transform: Any) -> Any:
 
 
 def to_msg_vector(vector: Any) -> Any:
-    """geometry_msgs/PointStamped of a vector with a header."""
+    """Return the geometry_msgs/PointStamped of a vector with a header."""
     msg = PointStamped(header=vector.header)
     msg.point.x, msg.point.y, msg.point.z = vector[0], vector[1], vector[2]
     return msg

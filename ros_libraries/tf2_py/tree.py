@@ -113,7 +113,7 @@ class Tree:
         raise ConnectivityException(_no_connection(target, source))
 
     def _latest_upwards(self, frame: str, wanted: str) -> list[tuple[int, str]]:
-        """Newest stamps and parents from a frame up to the root, or to `wanted` if that is met before."""
+        """Return the newest stamps and parents from a frame up to the root, or to `wanted` if that is met before."""
         found: list[tuple[int, str]] = []
         while frame != wanted:
             cache = self.caches[frame]

@@ -42,7 +42,7 @@ class TransformListener:
         self.tf_static_sub.unregister()
 
     def check_for_reset(self) -> None:
-        """Empty the buffer when the clock went back."""
+        """Empty the buffer if the clock went back."""
         with self.last_update_lock:
             now = rospy.Time.now()
             if now < self.last_update:

@@ -151,11 +151,11 @@ class Graph:
         self.node_stale = 5.0
 
     def set_master_stale(self, stale_secs: float) -> None:
-        """How long, in seconds, the master's answer counts as fresh."""
+        """Set how long, in seconds, the master's answer counts as fresh."""
         self.master_stale = stale_secs
 
     def set_node_stale(self, stale_secs: float) -> None:
-        """How long, in seconds, a node's answer counts as fresh."""
+        """Set how long, in seconds, a node's answer counts as fresh."""
         self.node_stale = stale_secs
 
     def update(self) -> bool:

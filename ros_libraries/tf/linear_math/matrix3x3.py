@@ -163,33 +163,33 @@ class Matrix3x3:
         return self
 
     def tdotx(self, v: Vector3) -> float:
-        """Scalar product of the first column and a vector."""
+        """Return the scalar product of the first column and a vector."""
         return self.getColumn(0).dot(v)
 
     def tdoty(self, v: Vector3) -> float:
-        """Scalar product of the second column and a vector."""
+        """Return the scalar product of the second column and a vector."""
         return self.getColumn(1).dot(v)
 
     def tdotz(self, v: Vector3) -> float:
-        """Scalar product of the third column and a vector."""
+        """Return the scalar product of the third column and a vector."""
         return self.getColumn(2).dot(v)
 
     def transposeTimes(self, m: Matrix3x3) -> Matrix3x3:
-        """This matrix, transposed, times another."""
+        """Return this matrix, transposed, times another."""
         return self.transpose() * m
 
     def timesTranspose(self, m: Matrix3x3) -> Matrix3x3:
-        """This matrix times another, transposed."""
+        """Return this matrix times another, transposed."""
         return self * m.transpose()
 
     def scaled(self, s: Vector3) -> Matrix3x3:
-        """This matrix with its columns scaled by the elements of a vector."""
+        """Return this matrix with its columns scaled by the elements of a vector."""
         return Matrix3x3(*(cell for row in self for cell in row * s))
 
     # -- derived matrices --------------------------------------------------------------------------------------------
 
     def transpose(self) -> Matrix3x3:
-        """Rows and columns exchanged."""
+        """Return the transposed matrix."""
         return Matrix3x3(*(row[at] for at in range(3) for row in self))
 
     def absolute(self) -> Matrix3x3:

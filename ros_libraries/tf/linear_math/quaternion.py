@@ -113,15 +113,15 @@ class Quaternion(QuadWord):
     # -- measuring ---------------------------------------------------------------------------------------------------
 
     def dot(self, q: Quaternion) -> float:
-        """Scalar product."""
+        """Return the scalar product."""
         return self[0] * q[0] + self[1] * q[1] + self[2] * q[2] + self[3] * q[3]
 
     def length2(self) -> float:
-        """Square of the length."""
+        """Return the square of the length."""
         return self.dot(self)
 
     def length(self) -> float:
-        """Length."""
+        """Return the length."""
         return sqrt(self.length2())
 
     def normalize(self) -> Quaternion:
@@ -130,11 +130,11 @@ class Quaternion(QuadWord):
         return self
 
     def normalized(self) -> Quaternion:
-        """This quaternion with length 1."""
+        """Return this quaternion with length 1."""
         return self / self.length()
 
     def angle(self, q: Quaternion) -> float:
-        """Half the angle to another rotation, in rad."""
+        """Return half the angle to another rotation, in rad."""
         return tfAcos(self.dot(q) / sqrt(self.length2() * q.length2()))
 
     def angleShortestPath(self, q: Quaternion) -> float:
@@ -160,12 +160,12 @@ class Quaternion(QuadWord):
     # -- two rotations -----------------------------------------------------------------------------------------------
 
     def farthest(self, qd: Quaternion) -> Quaternion:
-        """That of `qd` and -`qd` which is farther away."""
+        """Return the one of `qd` and -`qd` that is farther away."""
         difference, total = self - qd, self + qd
         return qd if difference.length2() > total.length2() else -qd
 
     def nearest(self, qd: Quaternion) -> Quaternion:
-        """That of `qd` and -`qd` which is nearer."""
+        """Return the one of `qd` and -`qd` that is nearer."""
         difference, total = self - qd, self + qd
         return qd if difference.length2() < total.length2() else -qd
 
@@ -209,17 +209,17 @@ def _product(a: QuadWord, b: QuadWord) -> Quaternion:
 
 
 def dot(q1: Quaternion, q2: Quaternion) -> float:
-    """Scalar product."""
+    """Return the scalar product."""
     return q1.dot(q2)
 
 
 def length(q: Quaternion) -> float:
-    """Length."""
+    """Return the length."""
     return q.length()
 
 
 def angle(q1: Quaternion, q2: Quaternion) -> float:
-    """Half the angle of two rotations, in rad."""
+    """Return half the angle of two rotations, in rad."""
     return q1.angle(q2)
 
 

@@ -76,12 +76,12 @@ def tfIsNegative(x: float) -> int:
 
 
 def tfRadians(x: float) -> float:
-    """Degrees in radians."""
+    """Convert degrees to radians."""
     return x * TFSIMD_RADS_PER_DEG
 
 
 def tfDegrees(x: float) -> float:
-    """Radians in degrees."""
+    """Convert radians to degrees."""
     return x * TFSIMD_DEGS_PER_RAD
 
 

@@ -55,7 +55,7 @@ class Arcball:
         return self._constrain
 
     def down(self, point: Sequence[float]) -> None:
-        """The button went down, at a point in pixels."""
+        """Handle a press of the button at a point in pixels."""
         self._vdown = arcball_map_to_sphere(point, self._center, self._radius)
         self._qdown = self._qpre = self._qnow
         self._axis = None
@@ -64,7 +64,7 @@ class Arcball:
             self._vdown = arcball_constrain_to_axis(self._vdown, self._axis)
 
     def drag(self, point: Sequence[float]) -> None:
-        """The pointer went to a point in pixels."""
+        """Handle a move of the pointer to a point in pixels."""
         now = arcball_map_to_sphere(point, self._center, self._radius)
         if self._axis is not None:
             now = arcball_constrain_to_axis(now, self._axis)

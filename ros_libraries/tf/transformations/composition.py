@@ -41,7 +41,7 @@ def decompose_matrix(matrix: Any) -> Parts:
 
 
 def _orthogonal(rows: Any) -> tuple[Any, Any, list[Any]]:
-    """Rows of a rotation, and the scale and shear that were in them (Gram and Schmidt)."""
+    """Return rows of a rotation, and the scale and shear that were in them (Gram and Schmidt)."""
     scale, shear = np.zeros(3), [0.0, 0.0, 0.0]
     scale[0] = vector_norm(rows[0])
     rows[0] /= scale[0]

@@ -42,7 +42,7 @@ def reflection_matrix(point: Any, normal: Any) -> Any:
 
 
 def reflection_from_matrix(matrix: Any) -> tuple[Any, Any]:
-    """Point and normal of the plane that a matrix mirrors at.
+    """Return the point and normal of the plane that a matrix mirrors at.
 
     Raises:
         ValueError: it does not mirror.
@@ -78,7 +78,7 @@ def rotation_matrix(angle: float, direction: Any, point: Any = None) -> Any:
 
 
 def rotation_from_matrix(matrix: Any) -> tuple[float, Any, Any]:
-    """Angle in rad, direction of the axis, and a point on it, of a matrix that turns.
+    """Return the angle in rad, direction of the axis, and a point on it, of a matrix that turns.
 
     Raises:
         ValueError: it does not turn.
@@ -121,7 +121,7 @@ def scale_matrix(factor: float, origin: Any = None, direction: Any = None) -> An
 
 
 def scale_from_matrix(matrix: Any) -> tuple[float, Any, Any]:
-    """Factor, origin, and direction (None for all) of a matrix that scales.
+    """Return the factor, origin, and direction (None for all) of a matrix that scales.
 
     Raises:
         ValueError: it does not scale.
@@ -158,7 +158,7 @@ def shear_matrix(angle: float, direction: Any, point: Any, normal: Any) -> Any:
 
 
 def shear_from_matrix(matrix: Any) -> tuple[float, Any, Any, Any]:
-    """Angle in rad, direction, point and normal of a matrix that shears.
+    """Return the angle in rad, direction, point and normal of a matrix that shears.
 
     Raises:
         ValueError: it does not shear.

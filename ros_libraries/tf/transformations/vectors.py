@@ -12,7 +12,7 @@ _EIGEN_TOLERANCE = 1e-8
 
 
 def vector_norm(data: Any, axis: int | None = None, out: Any = None) -> Any:
-    """Euclidean length.
+    """Return the Euclidean length.
 
     Args:
         data: a vector, or an array of vectors.
